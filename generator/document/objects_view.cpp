@@ -175,6 +175,8 @@ class ObjectRows {
     types_.emplace(entry.type->name);
     accesses_.emplace(access);
     const std::string comment = object.has_sub_indices() ? comment_before(entry.position) : "";
+    const std::string cpp = cpp_name(object, entry);
+    const std::size_t member = cpp.find("::", std::string_view{"od::"}.size());
     return {{"sub_id", object.has_sub_indices() ? Json(anchor_of(object, entry)) : Json(nullptr)},
             {"href", anchor_of(object, entry)},
             {"sub_index", fmt::format("{:02X}", entry.sub_index)},
@@ -191,7 +193,9 @@ class ObjectRows {
             {"changed", is_changed},
             {"limits", limits_text(entry)},
             {"unit", unit_text(entry)},
-            {"cpp", cpp_name(object, entry)},
+            {"cpp", cpp},
+            {"cpp_object", cpp.substr(0, member)},
+            {"cpp_member", member == std::string::npos ? Json(nullptr) : Json(cpp.substr(member))},
             {"entry_line", entry.position.line},
             {"description", shown(entry.description)},
             {"entry_comment", shown(comment)}};

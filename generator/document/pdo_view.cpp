@@ -9,6 +9,7 @@
 #include "device/pdo/pdo_defaults.hpp"
 #include "document/views.hpp"
 #include "text/counted.hpp"
+#include "text/utf8.hpp"
 
 namespace edsc::document {
 namespace {
@@ -37,11 +38,21 @@ std::string name_of(const Device& device, const PdoEntry& mapped) {
   return object->has_sub_indices() ? fmt::format("{}: {}", object->name, mapped.object->name) : object->name;
 }
 
+/// The number of characters that fit a field of this width.
+std::size_t max_characters(unsigned width) {
+  return width < 2 * text_margin ? 0 : static_cast<std::size_t>((width - 2 * text_margin) / character_width);
+}
+
 /// A text that fits a field of this width; empty if not even three characters do.
 std::string fitting(const std::string& text, unsigned width) {
-  if (width < 2 * text_margin) return {};
-  const auto max = static_cast<std::size_t>((width - 2 * text_margin) / character_width);
+  const std::size_t max = max_characters(width);
   return max < 3 ? std::string{} : shortened(text, max);
+}
+
+/// The name of a field that fits it, without that of the object if both do not.
+std::string fitting_name(const PdoEntry& mapped, const std::string& name, unsigned width) {
+  const bool fits = mapped.object == nullptr || count_code_points(name) <= max_characters(width);
+  return fitting(fits ? name : mapped.object->name, width);
 }
 
 Json field_view(const Device& device, const PdoEntry& mapped, unsigned start) {
@@ -57,7 +68,7 @@ Json field_view(const Device& device, const PdoEntry& mapped, unsigned start) {
                           : mapped.object == nullptr ? "missing"
                                                      : "mapped"},
           {"field_name", name},
-          {"short_name", shown(fitting(name, width))},
+          {"short_name", shown(fitting_name(mapped, name, width))},
           {"short_entry", shown(fitting(entry_label(mapped.index, mapped.sub_index), width))},
           {"range", bit_range(start, mapped.bits)},
           {"bits", mapped.bits},

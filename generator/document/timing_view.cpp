@@ -43,7 +43,8 @@ Json message_view(const TimedMessage& one) {
   return {{"can_id", can_id_text(one.message.can_id, one.message.extended)},
           {"message", one.name},
           {"data", one.message.remote ? std::string{"remote"} : fmt::format("{}", one.message.size)},
-          {"period", fmt::format("{}{}", time_text(one.message.period), one.has_assumed_period ? " (assumed)" : "")},
+          {"period", time_text(one.message.period)},
+          {"assumed", one.has_assumed_period},
           {"transmission", time_text(one.response.transmission)},
           {"load", load_text(one)},
           {"worst", bound_text(one.response)},
@@ -141,6 +142,10 @@ void add_timing(const Network& network, Json& view) {
   for (const TimedMessage& one : timing.messages) messages.push_back(message_view(one));
   view["sync"] = sync_view(network, uses, timing);
   view["has_messages"] = !messages.empty();
+  const auto missed = static_cast<std::size_t>(
+      std::ranges::count_if(timing.messages, [](const TimedMessage& one) { return !one.response.meets_deadline; }));
+  view["deadlines_text"] = missed == 0 ? "all deadlines met" : counted(missed, "deadline") + " not met";
+  view["deadlines_class"] = missed == 0 ? "met" : "missed";
   view["load_min"] = percent(timing.load.min);
   view["load_max"] = percent(timing.load.max);
   view["messages"] = std::move(messages);

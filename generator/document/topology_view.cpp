@@ -11,6 +11,7 @@
 #include "document/views.hpp"
 #include "network/cob_id_use.hpp"
 #include "network/communication_objects.hpp"
+#include "text/counted.hpp"
 
 namespace edsc::document {
 namespace {
@@ -21,15 +22,17 @@ constexpr std::size_t head_height = 52;
 constexpr std::size_t row_height = 34;
 constexpr std::size_t max_row_label = 21;  ///< characters before a row
 
-/// The column of a node, narrower if there are many.
-struct Column {
-  std::size_t width, box;
-  std::size_t max_name;  ///< characters in its box
-};
+/// The columns of the nodes share the width of a page, as far as names remain legible.
+constexpr std::size_t columns_width = 1100;
+constexpr std::size_t min_column_width = 84;
+constexpr std::size_t max_column_width = 132;
+constexpr std::size_t box_gap = 8;
+constexpr std::size_t name_character_width = 7;  ///< of the names of nodes, on average
 
-constexpr Column wide_column{132, 118, 16};
-constexpr Column narrow_column{86, 80, 11};
-constexpr std::size_t max_wide_columns = 8;
+std::size_t column_width(const Network& network) {
+  const std::size_t count = std::max<std::size_t>(network.nodes.size(), 1);
+  return std::clamp(columns_width / count, min_column_width, max_column_width);
+}
 
 /// A CAN-ID, the node that sends it, and those that receive it.
 struct Link {
@@ -58,16 +61,28 @@ std::vector<Link> links_of(const std::vector<CobIdUse>& uses) {
 
 std::size_t row_y(std::size_t row) { return head_height + row * row_height + row_height / 2 + 6; }
 
-/// `Statusword, Position actual value` of a PDO.
+/// `Statusword, Position actual value` of a PDO; `Read input: Input 0, Input 1` of entries of one object.
 std::string contents_of(const CobIdUse& use) {
   std::string text;
   if (use.pdo == nullptr) return text;
+  const Object* last = nullptr;
   for (const PdoEntry& mapped : use.pdo->entries) {
     if (mapped.object == nullptr) continue;
     const Object* const object = use.node->device.find(mapped.index);
     const bool is_sub = object != nullptr && object->has_sub_indices();
     text += text.empty() ? "" : ", ";
-    text += is_sub ? fmt::format("{}: {}", object->name, mapped.object->name) : mapped.object->name;
+    text += is_sub && object != last ? fmt::format("{}: {}", object->name, mapped.object->name) : mapped.object->name;
+    last = object;
+  }
+  return text;
+}
+
+/// The names of the mapped entries without those of their objects, for the drawing.
+std::string entry_names_of(const CobIdUse& use) {
+  std::string text;
+  if (use.pdo == nullptr) return text;
+  for (const PdoEntry& mapped : use.pdo->entries) {
+    if (mapped.object != nullptr) text += (text.empty() ? "" : ", ") + mapped.object->name;
   }
   return text;
 }
@@ -86,9 +101,13 @@ class Topology {
 
   void add(Json& view) const {
     Json links = Json::array();
-    for (const Link& link : links_) links.push_back(link_view(link));
+    Json unreceived = Json::array();
+    for (const Link& link : links_) (link.receivers.empty() ? unreceived : links).push_back(link_view(link));
     view["has_links"] = !links.empty();
+    view["has_unreceived"] = !unreceived.empty();
+    view["unreceived_text"] = counted(unreceived.size(), "message");
     view["links"] = std::move(links);
+    view["unreceived"] = std::move(unreceived);
     view["topology"] = drawn_.empty() ? Json(nullptr) : drawing();
   }
 
@@ -98,9 +117,9 @@ class Topology {
     for (const NetworkNode& node : network_.nodes) {
       const std::size_t x = column_x(&node);
       nodes.push_back({{"node_x", x},
-                       {"box_x", x - column_.box / 2},
+                       {"box_x", x - box_width() / 2},
                        {"node_name", node.name},
-                       {"node_short", shortened(node.name, column_.max_name)},
+                       {"node_short", shortened(node.name, box_width() / name_character_width)},
                        {"node_role", fmt::format("{} {}", node.is_master ? "master" : "node", node.node_id)}});
     }
     Json rows = Json::array();
@@ -109,21 +128,25 @@ class Topology {
       rows.push_back(row_view(drawn_[row], row));
       label += fmt::format(" {} to {}.", named(*drawn_[row].sender), receivers_text(drawn_[row]));
     }
-    return {{"topology_label", label},   {"topology_width", label_width + network_.nodes.size() * column_.width},
+    return {{"topology_label", label},   {"topology_width", label_width + network_.nodes.size() * column_},
             {"topology_height", height}, {"line_end", height - 6},
-            {"box_width", column_.box},  {"nodes", std::move(nodes)},
+            {"box_width", box_width()},  {"nodes", std::move(nodes)},
             {"rows", std::move(rows)}};
   }
 
  private:
   [[nodiscard]] std::size_t column_x(const NetworkNode* node) const {
     const auto number = static_cast<std::size_t>(node - network_.nodes.data());
-    return label_width + number * column_.width + column_.width / 2;
+    return label_width + number * column_ + column_ / 2;
   }
+
+  [[nodiscard]] std::size_t box_width() const { return column_ - box_gap; }
 
   [[nodiscard]] static std::string receivers_text(const Link& link) {
     std::string text;
-    for (const CobIdUse* receiver : link.receivers) text += (text.empty() ? "" : ", ") + named(*receiver);
+    for (const CobIdUse* receiver : link.receivers) {
+      text += (text.empty() ? "" : ", ") + (receiver->pdo != nullptr ? named(*receiver) : receiver->node->name);
+    }
     return text;
   }
 
@@ -147,13 +170,13 @@ class Topology {
     }
     const std::string name = fmt::format("{} {}", can_id_text(link.sender->can_id, link.sender->extended),
                                          link.sender->pdo != nullptr ? pdo_label(*link.sender->pdo) : "SYNC");
-    const std::string contents = contents_of(*link.sender);
+    const std::string contents = entry_names_of(*link.sender);
     return {{"y", y},
             {"name_y", contents.empty() ? y + 4 : y - 1},
             {"contents_y", y + 12},
             {"row_name", shortened(name, max_row_label)},
             {"row_contents", shown(shortened(contents, max_row_label + 3))},
-            {"tooltip", fmt::format("{}: {}", named(*link.sender), contents)},
+            {"tooltip", fmt::format("{}: {}", named(*link.sender), contents_of(*link.sender))},
             {"from", from},
             {"is_sync", link.sender->service == FrameService::sync},
             {"arrows", std::move(arrows)}};
@@ -163,7 +186,7 @@ class Topology {
   std::vector<CobIdUse> uses_;
   std::vector<Link> links_;
   std::vector<Link> drawn_;  ///< with receivers
-  Column column_ = network_.nodes.size() > max_wide_columns ? narrow_column : wide_column;
+  std::size_t column_ = column_width(network_);
 };
 
 }  // namespace

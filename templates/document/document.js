@@ -8,7 +8,7 @@
     const target = byId(decodeURIComponent(location.hash.slice(1)));
     if (!target) return;
     const object = target.closest('.object');
-    if (object && form && object.closest('[hidden]')) form.reset();
+    if (object && form && object.closest('.gone')) form.reset();
     for (let one = target; one; one = one.parentElement) if (one.localName === 'details') one.open = true;
     target.scrollIntoView();
   };
@@ -45,11 +45,17 @@
     const maxOpened = 20;  /* objects that a search expands, if it finds not more */
     const entryWord = /^(?:0x)?([0-9a-f]{4})h?(?:[:.-](?:0x)?([0-9a-f]{1,2})h?)?$/;
 
+    /* The texts of an object without those that every object has: the kind with its line, and the head of its table. */
+    const textOf = (object) => {
+      const head = object.querySelector('thead').textContent;
+      return object.textContent.replace(/ [A-Z]+, line \d+/, ' ').replace(head, ' ').toLowerCase();
+    };
+
     /* What is searched, read from the page once. */
     let areas;
     const readPage = () => {
       areas = [...document.querySelectorAll('.area')].map((area) => ({
-        element: area,
+        heading: area.querySelector('h3'),
         id: area.dataset.area,
         chunks: [...area.querySelectorAll('.chunk')].map((chunk) => ({
           element: chunk,
@@ -59,7 +65,7 @@
             index: object.id.slice(0, 4).toLowerCase(),
             differs: object.classList.length > 1,
             summary: object.firstElementChild.textContent.toLowerCase(),
-            text: object.textContent.toLowerCase(),
+            text: textOf(object),
             rows: [...object.querySelectorAll('tr[data-t]')],
             shown: true,
           })),
@@ -78,6 +84,22 @@
       (!wanted.type || row.dataset.t === wanted.type) && (!wanted.access || row.dataset.a === wanted.access) &&
       (!wanted.pdo || (row.dataset.p || '').split(' ').includes(wanted.pdo)) &&
       (!wanted.changed || row.dataset.c !== undefined);
+
+    /* Not `hidden`: without its box, an element costs a pass over all objects. */
+    const setShown = (element, isShown) => element.classList.toggle('gone', !isShown);
+
+    /* Chunks that grow have no layout until the next frame, which only lays out those in view. */
+    const grownChunks = new Set();
+    const grow = (chunk) => {
+      chunk.style.contentVisibility = 'hidden';
+      if (grownChunks.size === 0) {
+        requestAnimationFrame(() => {
+          for (const one of grownChunks) one.style.contentVisibility = '';
+          grownChunks.clear();
+        });
+      }
+      grownChunks.add(chunk);
+    };
 
     let marked = [], expanded = [];
     const show = (object, words) => {
@@ -121,15 +143,15 @@
           });
           if (shown) {
             chunk.objects.forEach((object, at) => {
-              if (object.shown !== results[at]) object.element.hidden = !(object.shown = results[at]);
+              if (object.shown !== results[at]) setShown(object.element, object.shown = results[at]);
             });
+            if (shown > chunk.shown) grow(chunk.element);
+            if (shown !== chunk.shown) chunk.element.style.setProperty('--n', chunk.shown = shown);
           }
-          if (shown && shown !== chunk.shown) chunk.element.style.setProperty('--n', shown);
-          if (shown) chunk.shown = shown;
-          chunk.element.hidden = shown === 0;
+          setShown(chunk.element, shown > 0);
           inAreaCount += shown;
         }
-        area.element.hidden = inAreaCount === 0;
+        setShown(area.heading, inAreaCount > 0);
         count += inAreaCount;
       }
       if (words.length > 0 && count <= maxOpened) for (const object of found) show(object, words);
@@ -139,7 +161,7 @@
     const setAll = (open) => {
       for (const area of areas || (readPage(), areas)) {
         for (const chunk of area.chunks) {
-          if (chunk.element.hidden || area.element.hidden) continue;
+          if (chunk.element.closest('.gone')) continue;
           for (const object of chunk.objects) if (object.shown) object.element.open = open;
         }
       }

@@ -59,6 +59,7 @@ class DevicePage(DocumentCase):
         self.assertEqual(found["1018h:04"]["objects"], ["1018h"])
         self.assertEqual(found["hits"], ["1018h-04"])
         self.assertIn("607Ah", found["target position"]["objects"])
+        self.assertLess(len(found["access"]["objects"]), len(everything), "the heads of the tables are not searched")
         self.assertEqual(found["no such object"], {"objects": [], "status": f"0 of {len(everything)} objects"})
         self.assertEqual(found["escaped"]["objects"], everything)
         self.assertEqual(found["area 6000"]["objects"], [one for one in everything if "6000h" <= one < "A000h"])
@@ -68,6 +69,11 @@ class DevicePage(DocumentCase):
         self.assertTrue(found["opensByKey"] and found["expanded"])
         self.assertEqual(found["printed"], {"isOpen": True, "tools": False})
         self.assertFalse(found["after"])
+
+    def test_a_narrow_screen(self) -> None:
+        for name in ("ezd-1136", "rk5c"):
+            found = self.browse("narrow", self.document(SOURCE_DIR / f"eds/{name}.eds"))
+            self.assertEqual(found, {"page": 0, "cut": [], "cards": []}, name)
 
     def test_filters_select_by_the_keys_of_the_eds(self) -> None:
         path = self.write("drive.eds", sheet(
@@ -96,6 +102,11 @@ class DevicePage(DocumentCase):
         self.assertEqual(found["rpdo-1"]["label"], "RPDO 1, 64 bits. bits 0..15: Controlword; bits 16..23: Modes of "
                          "operation; bits 24..31: Homing method; bits 32..63: Home offset")
         self.assertIsNone(found["tpdo-4"]["label"])
+
+    def test_a_field_has_the_name_of_its_entry_if_that_of_its_object_does_not_fit(self) -> None:
+        found = self.browse("texts", self.document(SOURCE_DIR / "eds/rk5c.eds"), "#tpdo-1 svg g text:first-of-type")
+        # 6020h:01 and 6030h:01; with that of its object, neither fits 32 and 16 bits.
+        self.assertEqual(found["#tpdo-1 svg g text:first-of-type"], ["Position value channel 1", "Speed value channel 1"])
 
     def test_times_of_a_pdo_are_in_milliseconds(self) -> None:
         parameters = {1: ("7", "$NODEID+0x40000180"), 2: ("5", "254"), 3: ("6", "15"), 5: ("6", "250")}
@@ -134,12 +145,13 @@ class DevicePage(DocumentCase):
         page = self.document(self.write("large.eds", sheet(*objects)), "--keep-going")
         found = self.browse("speed", page)
         times = {text: round(time, 1) for text, (time, _) in found["times"].items()}
-        print(f"\n10,000 objects, {page.stat().st_size:,} bytes: load {found['loaded']} ms, search in ms {times}")
+        print(f"\n10,000 objects, {page.stat().st_size:,} bytes: load {found['loaded']} ms, "
+              f"processor time of a search in ms {times}")
         counts = {text: status for text, (_, status) in found["times"].items()}
         self.assertEqual(counts["3456h"], "1 of 10000 objects")
         self.assertEqual(counts["nothing"], "0 of 10000 objects")
         self.assertEqual(counts[""], "10000 objects")
-        self.assertLess(max(times.values()), 5000)  # usually less than 50 ms; here for a busy machine
+        self.assertLess(max(times.values()), 400)  # usually less than 50 ms; here for a slow machine
 
 
 if __name__ == "__main__":

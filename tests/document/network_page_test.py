@@ -55,9 +55,27 @@ class NetworkPage(DocumentCase):
         # SYNC to both nodes, a's TPDO 1 to b and the master, the master's TPDO 1 to a; an arrow for each receiver.
         self.assertEqual(found["#links tbody td:nth-child(1)"], ["080h", "181h", "201h"])
         self.assertEqual(found["#links tbody td:nth-child(2)"], ["master SYNC", "a TPDO 1", "master TPDO 1"])
-        self.assertEqual(found["#links tbody td:nth-child(3)"][1:], ["master RPDO 1, b RPDO 1", "a RPDO 1"])
+        self.assertEqual(found["#links tbody td:nth-child(3)"], ["a, b", "master RPDO 1, b RPDO 1", "a RPDO 1"])
         self.assertEqual(found["#links tbody td:nth-child(4)"], ["", "event-driven (device profile)", "every SYNC"])
         self.assertEqual((len(found["#links svg g circle"]), len(found["#links svg g polygon"])), (3, 5))
+
+    def test_messages_without_a_receiver_are_folded(self) -> None:
+        page = self.document(SOURCE_DIR / "examples/networks/eight_devices.json")
+        found = self.browse("texts", page, "#links > .scroll tbody td:first-child", "#unreceived summary",
+                            "#unreceived tbody td:first-child", "#links > .scroll tbody td:last-child")
+        self.assertEqual(found["#links > .scroll tbody td:first-child"], ["182h", "188h", "201h", "284h", "287h", "303h"])
+        self.assertEqual(found["#unreceived summary"], ["22 messages without a receiver"])
+        self.assertEqual(len(found["#unreceived tbody td:first-child"]), 22)
+        self.assertEqual(found["#links > .scroll tbody td:last-child"][0],
+                         "Read input 8-bit: Digital inputs 0 to 7, Digital inputs 8 to 15")
+
+    def test_missed_deadlines_are_counted_and_coloured(self) -> None:
+        page = self.document(SOURCE_DIR / "examples/networks/eight_devices.json")
+        found = self.browse("texts", page, "#messages-title .missed", "#messages tr.missed td:nth-child(2)",
+                            "#messages tr.missed td:last-child")
+        self.assertEqual(found["#messages-title .missed"], ["2 deadlines not met"])
+        self.assertEqual(found["#messages tr.missed td:nth-child(2)"], ["SDO responses", "SDO requests"])
+        self.assertEqual(found["#messages tr.missed td:last-child"], ["no", "no"])
 
     def test_times_of_the_frames(self) -> None:
         found = self.browse("texts", self.plant(), "#messages tbody td:nth-child(2)", "#messages tbody td:nth-child(3)",

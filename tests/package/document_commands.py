@@ -90,10 +90,19 @@ class DocumentTest(unittest.TestCase):
     def run_commands(self, document: str) -> list[tuple[str, str]]:
         """Returns each command and what it has printed."""
         mark = Path(sys.argv[0]).name
-        blocks = re.compile(rf"<!-- run by: tests/package/{re.escape(mark)} -->\n```sh\n(.*?)```", re.DOTALL)
-        commands = [line for block in blocks.findall((SOURCE_DIR / document).read_text()) for line in block.splitlines()]
-        self.assertGreater(len(commands), 5)
-        return [(command, self.run_command(command)) for command in commands]
+        pattern = re.compile(rf"<!-- run by: tests/package/{re.escape(mark)} -->\n```sh\n(.*?)```", re.DOTALL)
+        blocks = [block.splitlines() for block in pattern.findall((SOURCE_DIR / document).read_text())]
+        self.assertGreater(sum(map(len, blocks)), 5)
+        return [result for block in blocks for result in self.run_block(block)]
+
+    def run_block(self, commands: list[str]) -> list[tuple[str, str]]:
+        """Runs the commands without a pause, as a user who pastes the block does, who then waits for the programs."""
+        started = set(self.programs.values())
+        results = [(command, self.run_command(command)) for command in commands]
+        for name, program in self.programs.items():
+            if program not in started:
+                self.wait_until_ready(name, program)
+        return results
 
     def run_command(self, line: str) -> str:
         line = line.replace("29536", self.port)
@@ -109,10 +118,7 @@ class DocumentTest(unittest.TestCase):
         return result.stdout
 
     def start(self, command: str) -> str:
-        program = Program(command, self.folder, self.variables)
-        name = Path(command.split()[0]).name
-        self.programs[name] = program
-        self.wait_until_ready(name, program)
+        self.programs[Path(command.split()[0]).name] = Program(command, self.folder, self.variables)
         return ""
 
     def wait_until_ready(self, name: str, program: Program) -> None:

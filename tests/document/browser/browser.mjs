@@ -69,8 +69,12 @@ export async function type(page, text) {
   if (text) await page.keyboard.type(text);
 }
 
-// The indices of the objects that are visible, and the status.
-export const results = (page) => page.evaluate(() => ({
-  objects: [...document.querySelectorAll('.object')].filter((one) => one.checkVisibility()).map((one) => one.id),
-  status: document.querySelector('[role=status]').textContent,
-}));
+// The indices of the objects that are visible in the next frame, and the status.
+export const results = (page) => page.evaluate(async () => {
+  await new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+  const isVisible = (one) => one.firstElementChild.checkVisibility();
+  return {
+    objects: [...document.querySelectorAll('.object')].filter(isVisible).map((one) => one.id),
+    status: document.querySelector('[role=status]').textContent,
+  };
+});

@@ -25,17 +25,12 @@ using namespace std::chrono_literals;
 /// A server that sends given text and records what it receives.
 class Server {
  public:
-  Server() : listener_{canopen::opened(::socket(AF_INET, SOCK_STREAM, 0), "socket")} {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    if (::bind(listener_.number(), reinterpret_cast<sockaddr*>(&address), size) != 0 ||
-        ::listen(listener_.number(), 1) != 0 ||
-        ::getsockname(listener_.number(), reinterpret_cast<sockaddr*>(&address), &size) != 0) {
-      canopen::throw_errno("server");
-    }
-    port_ = ntohs(address.sin_port);
+  Server() : Server{Started::now} {}
+  /// Has a port, at which connections are refused until `listen`.
+  [[nodiscard]] static Server started_later() { return Server{Started::later}; }
+
+  void listen() const {
+    if (::listen(listener_.number(), 1) != 0) canopen::throw_errno("listen");
   }
 
   [[nodiscard]] std::string address(const std::string& bus) const {
@@ -71,6 +66,21 @@ class Server {
   void hang_up() { client_ = Descriptor{}; }
 
  private:
+  enum class Started { now, later };
+
+  explicit Server(Started started) : listener_{canopen::opened(::socket(AF_INET, SOCK_STREAM, 0), "socket")} {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    if (::bind(listener_.number(), reinterpret_cast<sockaddr*>(&address), size) != 0 ||
+        ::getsockname(listener_.number(), reinterpret_cast<sockaddr*>(&address), &size) != 0) {
+      canopen::throw_errno("server");
+    }
+    port_ = ntohs(address.sin_port);
+    if (started == Started::now) listen();
+  }
+
   Descriptor listener_;
   Descriptor client_;
   std::uint16_t port_ = 0;
@@ -90,6 +100,19 @@ TEST(SocketcandPort, SendsAndReceivesFrames) {
   server.say("10F00 >< frame 705 1.5 05 >");
   EXPECT_EQ(text_of(bus.receive(60s)), "585 43 00 10 00 91 01 0F 00");
   EXPECT_EQ(text_of(bus.receive(60s)), "705 05");
+}
+
+TEST(SocketcandPort, WaitsForAServerThatIsStartedTogetherWithIt) {
+  Server server = Server::started_later();
+  std::thread greeting{[&] {
+    std::this_thread::sleep_for(100ms);
+    server.listen();
+    server.greet();
+  }};
+  HostBus bus{server.address("vcan0")};
+  greeting.join();
+  EXPECT_TRUE(bus.send(bench::frame("605")));
+  EXPECT_TRUE(server.hears("< send 605 0 >"));
 }
 
 TEST(SocketcandPort, HasFramesThatComeWithTheEndOfTheHandshake) {

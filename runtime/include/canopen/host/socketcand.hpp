@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "canopen/host/socketcand_codec.hpp"
@@ -24,8 +25,9 @@ namespace canopen {
 
 class SocketcandPort : public StreamPort<SocketcandClient> {
  public:
-  /// Connects, and opens a bus of the server in raw mode. Throws std::system_error if the server does not respond or
-  /// rejects the connection, and std::invalid_argument if the name of the bus does not have 1 to 16 characters.
+  /// Connects, and opens a bus of the server in raw mode. A server that does not listen yet, as it was started together
+  /// with this program, has one second to do so. Throws std::system_error if the server does not respond or rejects the
+  /// connection, and std::invalid_argument if the name of the bus does not have 1 to 16 characters.
   SocketcandPort(const std::string& host, const std::string& port, const std::string& bus)
       : StreamPort{connect_to(host, port), "socketcand at " + host + ":" + port} {
     const bool plain = bus.find_first_of(" <>") == std::string::npos;
@@ -38,6 +40,8 @@ class SocketcandPort : public StreamPort<SocketcandClient> {
 
  private:
   static constexpr Duration connect_timeout = std::chrono::seconds{5};
+  static constexpr Duration start_timeout = std::chrono::seconds{1};  ///< of the server
+  static constexpr auto retry_interval = std::chrono::milliseconds{20};
 
   struct FreeAddresses {
     void operator()(addrinfo* addresses) const { ::freeaddrinfo(addresses); }
@@ -52,13 +56,25 @@ class SocketcandPort : public StreamPort<SocketcandClient> {
       throw std::system_error{std::make_error_code(std::errc::host_unreachable), name + ": " + ::gai_strerror(error)};
     }
     const std::unique_ptr<addrinfo, FreeAddresses> addresses{found};
-    int problem = EHOSTUNREACH;
-    for (const addrinfo* address = found; address != nullptr; address = address->ai_next) {
-      Descriptor stream = opened(::socket(address->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), "socket");
-      problem = try_address(stream, *address);
-      if (problem == 0) return stream;
+    const TimePoint end = now() + start_timeout;
+    Descriptor stream;
+    int problem = try_addresses(stream, found);
+    while (problem == ECONNREFUSED && now() < end) {
+      std::this_thread::sleep_for(retry_interval);
+      problem = try_addresses(stream, found);
     }
-    throw std::system_error{problem, std::generic_category(), name};
+    if (problem != 0) throw std::system_error{problem, std::generic_category(), name};
+    return stream;
+  }
+
+  /// Connects `stream` to the first address that accepts it. Returns 0, or the errno of the last one.
+  [[nodiscard]] static int try_addresses(Descriptor& stream, const addrinfo* address) {
+    int problem = EHOSTUNREACH;
+    for (; problem != 0 && address != nullptr; address = address->ai_next) {
+      stream = opened(::socket(address->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), "socket");
+      problem = try_address(stream, *address);
+    }
+    return problem;
   }
 
   /// Returns 0 if connected, otherwise an errno.
