@@ -115,6 +115,16 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
     "configured_pdo_is_used": (
         network(signal(*SPEED),
                 a={**NODE_A, "set": {"1A00h:00": 1, "1A00h:01": "0x20000010", "1800h:01": "0x1A5"}}), []),
+    "configured_link_of_another_node": (
+        network(signal("m", "b.2003h"),
+                b={"node_id": 2, "eds": "node.eds", "heartbeat_ms": 100,
+                   "set": {"1400h:01": "0x1A5", "1600h:00": 1, "1600h:01": "0x20030020"}},
+                c={"node_id": 3, "eds": "node.eds", "heartbeat_ms": 100,
+                   "set": {"1800h:01": "0x1A5", "1800h:05": 10, "1A00h:00": 1, "1A00h:01": "0x20010020"}}), []),
+    "default_can_id_of_another_node": (
+        network(signal("m", "d.2002h"), signal("m", "d.2003h"),
+                c={"node_id": 3, "eds": "node.eds", "heartbeat_ms": 100, "set": {"1800h:01": "0x204", "1800h:05": 10}},
+                d={"node_id": 4, "eds": "valid.eds", "heartbeat_ms": 100}), []),
     "254_entries_of_a_node": (network(*[signal("w", one, "m", every_ms=100) for one in bytes_of_wide(254)], w=wide(9)), []),
     "255_entries_of_a_node": (network(*[signal("w", one, "m", every_ms=100) for one in bytes_of_wide(255)], w=wide(9)),
                               [("error", "network-signal")]),
@@ -146,6 +156,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         (folder / "node.eds").write_bytes((Path(__file__).parent / "node.eds").read_bytes())
+        node_eds = (folder / "node.eds").read_text(encoding="utf-8")
+        (folder / "valid.eds").write_text(node_eds.replace("=$NODEID+0x80000200", "=$NODEID+0x200"))
         (folder / "wide.eds").write_text(wide_sheet())
         for name, (text, code, expected) in TEXTS.items():
             got_code, found = check(edsc, folder, name, text)
