@@ -161,6 +161,15 @@ class Generate(unittest.TestCase):
         for extension in ("eds", "dcf"):
             self.edsc("generate", self.out / f"master.{extension}", "-o", "headers")
 
+    def test_a_node_without_a_heartbeat_is_guarded(self) -> None:
+        self.generate(TINY.replace('"nodes": {', '"nodes": {"m": {"node_id": 127, "master": true}, ')
+                      .replace('"ramp": 250', '"100Ch": 100, "100Dh": 3'))
+        file = configparser.RawConfigParser(comment_prefixes=(";",), delimiters=("=",))
+        file.read(self.out / "m.dcf")
+        self.assertEqual([int(file[f"1F81sub{i}"]["DefaultValue"], 0) for i in (1, 2)], [0x5, 0x0064_0305])
+        header = (self.out / "plant.hpp").read_text()
+        self.assertEqual(re.findall(r"\.assignment = (\w+)", header), ["0x5", "0x640305"])
+
     def test_a_master_with_a_file_refers_to_the_concise_dcfs(self) -> None:
         self.generate()
         shutil.copy(self.out / "master.eds", self.folder / "control.eds")
