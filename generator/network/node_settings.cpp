@@ -1,5 +1,6 @@
 #include "network/node_settings.hpp"
 #include "network/communication_objects.hpp"
+#include "network/reserved_values.hpp"
 
 #include <fmt/format.h>
 
@@ -39,6 +40,9 @@ void set_value(NetworkNode& node, Entry& entry, Value value, Diagnostics& diagno
     return error(fmt::format("cannot be written (AccessType {})", canopen::row_of(entry.access).name));
   }
   if (is_outside_limits(entry, value)) return error("is outside its limits");
+  if (const std::string_view why = why_reserved(entry.index, entry.sub_index, value.bits); !why.empty()) {
+    return error(fmt::format("must not be {}: {}", value.bits, why));
+  }
   entry.default_value = value;
   node.settings.push_back({entry.index, entry.sub_index, std::move(value)});
 }
