@@ -25,8 +25,8 @@ void check_gaps(const RuleContext& context, const Pdo& pdo, const Entry& count) 
     if (entry->default_value && entry->default_value->bits != 0) continue;
     context.report(
         "pdo-mapping-gap", default_place(*entry),
-        fmt::format("{} maps {}, but {} is empty", pdo_label(pdo), counted(entries, "object"), named(*entry)), {},
-        i == 1 ? "counted, but not mapped" : "");
+        fmt::format("{} maps {}, but {} is empty", pdo_label(pdo), counted(entries, "object"), named(*entry)),
+        {{count.default_value->position, "the number of objects"}}, i == 1 ? "counted, but not mapped" : "");
     return;
   }
 }

@@ -13,6 +13,7 @@
 #include "device/cob_id_parameter.hpp"
 #include "device/limits.hpp"
 #include "device/pdo/pdo_defaults.hpp"
+#include "network/cob_id_use.hpp"
 #include "network/communication_objects.hpp"
 #include "network/node_settings.hpp"
 #include "network/resolve_signals.hpp"
@@ -83,7 +84,8 @@ void add_can_ids(const Device& device, std::set<std::uint32_t>& can_ids) {
 
 class SignalPlanner {
  public:
-  SignalPlanner(const Network& network, Diagnostics& diagnostics) : network_{network}, diagnostics_{diagnostics} {
+  SignalPlanner(const Network& network, Diagnostics& diagnostics)
+      : network_{network}, diagnostics_{diagnostics}, uses_{cob_id_uses(network)} {
     for (const NetworkNode& node : network.nodes) add_can_ids(node.device, used_);
   }
 
@@ -172,7 +174,9 @@ class SignalPlanner {
                                      direction == PdoDirection::receive ? "R" : "T"));
       return std::nullopt;
     }
-    const Pdo* chosen = find_pdo(node, direction, [&](const Pdo& pdo) { return has_mapping(pdo, planned.mapping); });
+    const Pdo* chosen = find_pdo(node, direction, [&](const Pdo& pdo) {
+      return has_mapping(pdo, planned.mapping) && !is_linked_to_another(node, pdo, *first.from.node);
+    });
     if (chosen == nullptr) {
       chosen = find_pdo(node, direction, [&](const Pdo& pdo) {
         return pdo.dynamic && pdo.mapping->entries.size() > planned.mapping.size() && !is_configured(node, pdo);
@@ -242,20 +246,33 @@ class SignalPlanner {
     return false;
   }
 
+  [[nodiscard]] bool is_sent_by_another(std::uint32_t can_id, const NetworkNode& sender) const {
+    return std::ranges::any_of(uses_, [&](const CobIdUse& use) {
+      return use.transmits && !use.extended && use.can_id == can_id && use.node != &sender;
+    });
+  }
+
+  /// Whether `set` or a DCF makes an RPDO receive what a node other than the sender of the signal transmits.
+  [[nodiscard]] bool is_linked_to_another(const NetworkNode& node, const Pdo& pdo, const NetworkNode& sender) const {
+    if (pdo.direction != PdoDirection::receive || !on_by_default(pdo) || !is_configured(node, pdo)) return false;
+    const canopen::CobId cob_id{static_cast<std::uint32_t>(communication_default(pdo, 1).value_or(0))};
+    return is_sent_by_another(cob_id.can_id(), sender);
+  }
+
   static bool has_mapping(const Pdo& pdo, const std::vector<std::uint32_t>& mapping) {
     return std::ranges::equal(pdo.entries, mapping, {}, [](const PdoEntry& entry) {
       return mapping_value(entry.index, entry.sub_index, entry.bits);
     });
   }
 
-  /// The CAN-ID of the sender's PDO; for a master without a file that of the receiver's PDO; otherwise a free one.
-  /// Above `max_can_id` if none is free.
+  /// The CAN-ID of the sender's PDO; for a master without a file that of the receiver's PDO; a free one if another node
+  /// transmits that. Above `max_can_id` if none is free.
   std::uint32_t choose_can_id(const PlannedPdo& sender, const PlannedPdo& receiver) {
-    const bool is_master = !network_.find(sender.node)->has_file();
-    const canopen::CobId own{is_master ? receiver.cob_id : sender.cob_id};
+    const NetworkNode& from = *network_.find(sender.node);
+    const canopen::CobId own{from.has_file() ? sender.cob_id : receiver.cob_id};
     const std::uint32_t can_id = own.can_id();
-    const bool is_usable =
-        !own.extended() && can_id >= canopen::function_code::tpdo1 + 1U && !canopen::is_restricted(can_id);
+    const bool is_usable = !own.extended() && can_id >= canopen::function_code::tpdo1 + 1U &&
+                           !canopen::is_restricted(can_id) && !is_sent_by_another(can_id, from);
     if (is_usable && (own.valid() || !used_.contains(can_id)) && assigned_.insert(can_id).second) {
       used_.insert(can_id);
       return can_id;
@@ -284,6 +301,7 @@ class SignalPlanner {
 
   const Network& network_;
   Diagnostics& diagnostics_;
+  std::vector<CobIdUse> uses_;  ///< as configured without signals
   SignalPlan plan_;
   std::set<PdoKey> taken_;
   std::map<std::pair<const NetworkNode*, PdoDirection>, std::uint16_t> master_pdos_;

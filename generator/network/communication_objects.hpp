@@ -18,6 +18,7 @@ inline constexpr std::uint16_t identity = 0x1018;
 inline constexpr std::uint16_t sync_overflow = 0x1019;
 inline constexpr std::uint16_t verify_configuration = 0x1020;
 inline constexpr std::uint16_t concise_dcf = 0x1F22;
+inline constexpr std::uint16_t slave_assignment = 0x1F81;
 
 /// Whether a PDO with this transmission type is sent or applied at a SYNC.
 [[nodiscard]] constexpr bool is_synchronous(std::uint64_t transmission_type) {

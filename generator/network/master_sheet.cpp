@@ -1,5 +1,6 @@
 #include "network/master_sheet.hpp"
 #include "network/communication_objects.hpp"
+#include "network/error_control.hpp"
 
 #include <fmt/format.h>
 
@@ -150,8 +151,7 @@ class MasterSheet {
     std::vector<SheetEntry> consumers;
     for_each_slave([&](const NetworkNode& node) {
       const NodeDescription& description = *node.description;
-      const auto of_device =
-          static_cast<std::uint32_t>(value_of(node.device, communication::producer_heartbeat).value_or(0));
+      const auto of_device = static_cast<std::uint32_t>(heartbeat_time(node.device));
       const std::uint32_t of_master = description.heartbeat_ms ? description.heartbeat_ms->value : 0;
       const std::uint32_t produced = node.has_file() ? of_device : of_master;
       if (produced == 0 || (produced == 0xFFFF && !description.heartbeat_timeout_ms)) return;
@@ -180,12 +180,10 @@ class MasterSheet {
   /// 1F88h).
   void add_slaves() {
     using enum canopen::DataType;
-    constexpr std::uint32_t is_slave = 0x1;
-    constexpr std::uint32_t is_booted = 0x4;
     sheet_.add_var(0x1F80, {0, "NMT startup", unsigned32, "rw", "0x1"});
     add_for_slaves(0x1F22, "Concise DCF", domain, [](const NetworkNode&) { return std::string{}; });
-    add_for_slaves(0x1F81, "NMT slave assignment", unsigned32,
-                   [](const NetworkNode&) { return hex(is_slave | is_booted); });
+    add_for_slaves(communication::slave_assignment, "NMT slave assignment", unsigned32,
+                   [](const NetworkNode& node) { return hex(slave_assignment(node.device)); });
     add_for_slaves(0x1F84, "Device type identification", unsigned32,
                    [](const NetworkNode& node) { return identity_value(node, 0x1000, 0); });
     add_for_slaves(0x1F85, "Vendor identification", unsigned32,

@@ -57,6 +57,7 @@ class NetworkReader {
     }
     if (const WrittenNumber& overflow = network.sync.overflow; overflow && overflow->value == 1) {
       value_error(Pointer{"/sync/overflow"}, "\"overflow\" must be 0 or a number from 2 to 240: 1 is reserved");
+      network.sync.overflow.reset();
     }
     if (const Json* const assume = object_at(root, "assume")) {
       read_members(*assume, Pointer{"/assume"}, network.assume, assume_members, {});

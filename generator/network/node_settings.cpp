@@ -1,5 +1,6 @@
 #include "network/node_settings.hpp"
 #include "network/communication_objects.hpp"
+#include "network/reserved_values.hpp"
 
 #include <fmt/format.h>
 
@@ -8,6 +9,7 @@
 #include <utility>
 
 #include "device/index_range.hpp"
+#include "device/pdo/fixed_mapping.hpp"
 #include "device/pdo/resolve_pdos.hpp"
 #include "device/types/value.hpp"
 #include "diagnostics/quote.hpp"
@@ -38,7 +40,13 @@ void set_value(NetworkNode& node, Entry& entry, Value value, Diagnostics& diagno
   if (!canopen::writable(entry.access) && !same(entry.default_value, value)) {
     return error(fmt::format("cannot be written (AccessType {})", canopen::row_of(entry.access).name));
   }
+  if (is_of_fixed_mapping(node.device, entry) && !same(entry.default_value, value)) {
+    return error("cannot be changed: sub-index 0 of the mapping cannot be written");
+  }
   if (is_outside_limits(entry, value)) return error("is outside its limits");
+  if (const std::string_view why = why_reserved(entry.index, entry.sub_index, value.bits); !why.empty()) {
+    return error(fmt::format("must not be {}: {}", value.bits, why));
+  }
   entry.default_value = value;
   node.settings.push_back({entry.index, entry.sub_index, std::move(value)});
 }

@@ -9,6 +9,7 @@
 #include "device/options/option_table.hpp"
 #include "device/pdo/pdo_defaults.hpp"
 #include "network/communication_objects.hpp"
+#include "network/error_control.hpp"
 
 namespace edsc {
 namespace {
@@ -141,18 +142,18 @@ class MessageCollector {
   /// Heartbeat, or node guarding with a request of the master.
   void add_error_control(const CobIdUse& use) {
     const Device& device = use.node->device;
-    const auto heartbeat = value_of(device, communication::producer_heartbeat).value_or(0);
+    const std::uint64_t heartbeat = heartbeat_time(device);
     if (heartbeat != 0) {
       messages_.push_back(message_of(use, 1, milliseconds{static_cast<std::int64_t>(heartbeat)}));
       messages_.back().name = use.node->name + " heartbeat";
       messages_.back().message.deadline = slack_of_heartbeat(*use.node, heartbeat);
       return;
     }
-    const milliseconds guard{static_cast<std::int64_t>(value_of(device, communication::guard_time).value_or(0))};
-    const bool is_guarded = value_of(device, communication::life_time_factor).value_or(0) != 0;
-    if (guard == milliseconds{} || !is_guarded) return;
-    messages_.push_back(message_of(use, 1, guard));
-    messages_.push_back(message_of(use, 1, guard));
+    const auto guarding = node_guarding(device);
+    if (!guarding) return;
+    const milliseconds guard_time{guarding->guard_time};
+    messages_.push_back(message_of(use, 1, guard_time));
+    messages_.push_back(message_of(use, 1, guard_time));
     messages_.back().message.remote = true;
     messages_.back().name += " request";
   }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "device/index_range.hpp"
+#include "device/pdo/fixed_mapping.hpp"
 #include "device/types/value.hpp"
 #include "device/types/value_bytes.hpp"
 #include "format/dcf/configured_values.hpp"
@@ -15,13 +16,21 @@ namespace {
 
 constexpr std::uint16_t verify_configuration = 0x1020;  // the device clears it when another value is written
 
+/// Whether a ParameterValue only states the mapping that the device has: one that cannot be changed and has no
+/// DefaultValue, such as that of a compact form.
+bool is_of_device(const DataSheet& sheet, const Device& device, const Entry& entry) {
+  if (!is_of_fixed_mapping(device, entry)) return false;
+  const ValueFields fields = sheet.values_of(*sheet.find(entry.index), entry.sub_index, true);
+  return fields.default_value == nullptr || fields.default_value->empty();
+}
+
 /// The values to write, with those that belong to a different one.
 std::vector<WriteValue> values_to_write(const DataSheet& sheet, const Device& device, Diagnostics& diagnostics) {
   std::vector<WriteValue> values;
   std::vector<bool> differs;
   for (const ConfiguredValue& value : configured_values(sheet, device, diagnostics)) {
     const Entry& entry = *value.entry;
-    if (contains(command_objects, entry.index)) continue;
+    if (contains(command_objects, entry.index) || is_of_device(sheet, device, entry)) continue;
     values.push_back(
         {entry.index, entry.sub_index, {value.data.begin(), value.data.end()}, entry.index == verify_configuration});
     differs.push_back(value.differs);

@@ -5,18 +5,10 @@
 
 #include "network/checks/check_groups.hpp"
 #include "network/communication_objects.hpp"
+#include "network/error_control.hpp"
 
 namespace edsc {
 namespace {
-
-std::uint64_t heartbeat_of(const NetworkNode& node) {
-  return value_of(node.device, communication::producer_heartbeat).value_or(0);
-}
-
-bool is_guarded(const NetworkNode& node) {
-  return value_of(node.device, communication::guard_time).value_or(0) != 0 &&
-         value_of(node.device, communication::life_time_factor).value_or(0) != 0;
-}
 
 /// The NMT masters: nodes of the network file with `master`.
 void check_master(const NetworkContext& context) {
@@ -76,14 +68,14 @@ class HeartbeatCheck {
     }
     if (&*producer == &consumer) return error("which is itself");
     monitored_.insert(&*producer);
-    const std::uint64_t produced = heartbeat_of(*producer);
+    const std::uint64_t produced = heartbeat_time(producer->device);
     if (produced == 0) return error(fmt::format("but {} does not produce a heartbeat (1017h is 0)", producer->name));
     if (time <= produced) error(fmt::format("but {} produces it every {} ms (1017h)", producer->name, produced));
   }
 
   void check_guarding(const NetworkNode& node) {
-    if (!is_guarded(node)) return;
-    if (heartbeat_of(node) != 0) {
+    if (!node_guarding(node.device)) return;
+    if (heartbeat_time(node.device) != 0) {
       context_.diagnostics.warning("network-guarding", place_of_value(node.device, communication::guard_time),
                                    fmt::format("node {} has guarding (100Ch, 100Dh) and a heartbeat (1017h); the "
                                                "heartbeat is used",
@@ -100,10 +92,10 @@ class HeartbeatCheck {
 
   void check_monitoring(const NetworkNode& node) {
     if (node.is_master || monitored_.contains(&node)) return;
-    const bool is_guarded_by_master = is_guarded(node) && heartbeat_of(node) == 0;
+    const bool is_guarded_by_master = node_guarding(node.device) && heartbeat_time(node.device) == 0;
     if (is_guarded_by_master && context_.network.master() != nullptr) return;
     context_.diagnostics.warning("network-unmonitored", node.position,
-                                 heartbeat_of(node) == 0
+                                 heartbeat_time(node.device) == 0
                                      ? fmt::format("node {} has neither heartbeat nor guarding", node.name)
                                      : fmt::format("no node monitors the heartbeat of node {}", node.name),
                                  {}, "error control");

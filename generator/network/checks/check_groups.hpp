@@ -19,6 +19,8 @@ struct NetworkContext {
 [[nodiscard]] bool check_node_ids(const NetworkContext& context);
 /// Node-IDs of DCFs, bit rate, length of the bus, LSS addresses.
 void check_nodes(const NetworkContext& context);
+/// Values of the network file, by the rules of single devices.
+void check_settings(const NetworkContext& context);
 /// CAN-IDs of all nodes against each other, and restricted ones.
 void check_cob_ids(const NetworkContext& context);
 /// TPDOs and the RPDOs that receive them.

@@ -10,7 +10,7 @@ void check_network(const Network& network, Diagnostics& diagnostics) {
   const NetworkContext context{network, uses, diagnostics};
   if (network.nodes.empty() || !check_node_ids(context)) return;
   for (auto* const check :
-       {check_nodes, check_cob_ids, check_pdo_links, check_sync, check_error_control, check_timing}) {
+       {check_nodes, check_settings, check_cob_ids, check_pdo_links, check_sync, check_error_control, check_timing}) {
     check(context);
   }
 }

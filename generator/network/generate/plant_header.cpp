@@ -18,6 +18,7 @@
 #include "format/dcf/concise_dcf.hpp"
 #include "network/cob_id_use.hpp"
 #include "network/communication_objects.hpp"
+#include "network/error_control.hpp"
 #include "network/generate/plant_links.hpp"
 #include "network/generate/plant_places.hpp"
 #include "text/ascii.hpp"
@@ -265,21 +266,20 @@ class PlantHeader {
   /// The row of the network list (CiA 302-2): 1F81h and 1F84h to 1F88h of the master, where they are not 0; otherwise
   /// the identity in the EDS of the node.
   [[nodiscard]] ordered_json slave_row(const NetworkNode& master, const NetworkNode& node) const {
-    constexpr std::uint64_t listed_and_booted = 0x5;
     const auto number = [&](std::uint16_t list, std::uint16_t index, std::uint8_t sub_index) {
       const std::uint64_t of_master = value_of(master.device, list, node.node_id).value_or(0);
       return hex_text(of_master != 0 ? of_master : value_of(node.device, index, sub_index).value_or(0));
     };
     const WrittenNumber& serial = node.description->serial_number;
     const std::uint64_t serial_of_master = value_of(master.device, 0x1F88, node.node_id).value_or(0);
-    const std::uint64_t assignment = value_of(master.device, 0x1F81, node.node_id).value_or(0);
+    const std::uint64_t assignment = value_of(master.device, communication::slave_assignment, node.node_id).value_or(0);
     return {{"label", label(node)},
             {"identifier", identifier(node)},
             {"class_name", to_camel_case(identifier(node)) + "Node"},
             {"text_name", cpp_string(node.name)},
             {"position", slave_position(node)},
             {"emcy", emcy_cob_id(node)},
-            {"assignment", hex_text(assignment != 0 ? assignment : listed_and_booted)},
+            {"assignment", hex_text(assignment != 0 ? assignment : slave_assignment(node.device))},
             {"device_type", number(0x1F84, 0x1000, 0)},
             {"vendor_id", number(0x1F85, communication::identity, 1)},
             {"product_code", number(0x1F86, communication::identity, 2)},

@@ -161,6 +161,32 @@ class Generate(unittest.TestCase):
         for extension in ("eds", "dcf"):
             self.edsc("generate", self.out / f"master.{extension}", "-o", "headers")
 
+    def test_a_node_without_a_heartbeat_is_guarded(self) -> None:
+        self.generate(TINY.replace('"nodes": {', '"nodes": {"m": {"node_id": 127, "master": true}, ')
+                      .replace('"ramp": 250', '"100Ch": 100, "100Dh": 3'))
+        file = configparser.RawConfigParser(comment_prefixes=(";",), delimiters=("=",))
+        file.read(self.out / "m.dcf")
+        self.assertEqual([int(file[f"1F81sub{i}"]["DefaultValue"], 0) for i in (1, 2)], [0x5, 0x0064_0305])
+        header = (self.out / "plant.hpp").read_text()
+        self.assertEqual(re.findall(r"\.assignment = (\w+)", header), ["0x5", "0x640305"])
+
+    def test_a_mapping_that_cannot_be_changed_is_not_written(self) -> None:
+        text = (self.folder / "node.eds").read_text()
+        for index in ("1600", "1A00"):
+            entries = re.findall(rf"\[{index}sub[12]\][^\[]*DefaultValue=(\w+)", text)
+            text = re.sub(rf"\[{index}\].*?(?=\[1800\]|\[1401\])",
+                          f"[{index}]\nParameterName=Mapping\nObjectType=0x9\nDataType=0x0007\nAccessType=rw\n"
+                          f"CompactSubObj=2\n\n[{index}Value]\nNrOfEntries=2\n1={entries[0]}\n2={entries[1]}\n\n",
+                          text, flags=re.DOTALL)
+        (self.folder / "node.eds").write_text(text)
+        self.generate(TINY)
+        written = (self.out / "b.cdcf").read_bytes()
+        self.assertIn(bytes.fromhex("0620 00 02000000 FA00"), written)
+        self.assertNotIn(bytes.fromhex("0016 01"), written)
+        refused = self.generate(TINY.replace('"ramp": 250', '"1600h:01": "0x20030020"'), exit_code=1)
+        self.assertIn("1600h:01", refused.stdout + refused.stderr)
+        self.assertIn("sub-index 0 of the mapping cannot be written [network-value]", refused.stdout + refused.stderr)
+
     def test_a_master_with_a_file_refers_to_the_concise_dcfs(self) -> None:
         self.generate()
         shutil.copy(self.out / "master.eds", self.folder / "control.eds")

@@ -48,6 +48,12 @@ def network(*signals: dict, **nodes: dict) -> dict:
             "signals": list(signals)}
 
 
+def sheet_with(section: str, default: str) -> str:
+    """node.eds with another DefaultValue of an entry."""
+    text = (Path(__file__).parent / "node.eds").read_text(encoding="utf-8")
+    return re.sub(rf"(\[{section}\][^\[]*DefaultValue=)\S*", rf"\g<1>{default}", text)
+
+
 def wide_sheet(tpdos: int = 33) -> str:
     """A sheet with 255 bytes that can be mapped: 2000h:01 to 2000h:FE and 2001h."""
     text = (Path(__file__).parent / "node.eds").read_text(encoding="utf-8")
@@ -119,6 +125,30 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
     "configured_pdo_is_used": (
         network(signal(*SPEED),
                 a={**NODE_A, "set": {"1A00h:00": 1, "1A00h:01": "0x20000010", "1800h:01": "0x1A5"}}), []),
+    "configured_link_of_another_node": (
+        network(signal("m", "b.2003h"),
+                b={"node_id": 2, "eds": "node.eds", "heartbeat_ms": 100,
+                   "set": {"1400h:01": "0x1A5", "1600h:00": 1, "1600h:01": "0x20030020"}},
+                c={"node_id": 3, "eds": "node.eds", "heartbeat_ms": 100,
+                   "set": {"1800h:01": "0x1A5", "1800h:05": 10, "1A00h:00": 1, "1A00h:01": "0x20010020"}}), []),
+    "default_can_id_of_another_node": (
+        network(signal("m", "d.2002h"), signal("m", "d.2003h"),
+                c={"node_id": 3, "eds": "node.eds", "heartbeat_ms": 100, "set": {"1800h:01": "0x204", "1800h:05": 10}},
+                d={"node_id": 4, "eds": "valid.eds", "heartbeat_ms": 100}), []),
+    "inhibit_time_longer_than_the_event_timer": (network(signal(*SPEED), a={**NODE_A, "set": {"1800h:03": 101}}),
+                                                 [("warning", "pdo-inhibit-time")]),
+    "inhibit_time_of_the_sheet_longer_than_the_event_timer": (
+        network(signal("d", "2000h", "m"), d={"node_id": 4, "eds": "slow.eds", "heartbeat_ms": 100}),
+        [("warning", "pdo-inhibit-time")]),
+    "reserved_transmission_type": (network(signal(*SPEED), a={**NODE_A, "set": {"1801h:02": 241}}),
+                                   [("error", "network-value")]),
+    "reserved_transmission_type_of_an_rpdo": (network(signal(*SPEED), a={**NODE_A, "set": {"1401h:02": 252}}),
+                                              [("error", "network-value")]),
+    "a_consumer_for_each_node": (network(a={**NODE_A, "set": {"1016h:01": "0x200C8", "1016h:02": "0x300C8"}}), []),
+    "two_consumers_for_a_node": (network(a={**NODE_A, "set": {"1016h:01": "0x200C8", "1016h:02": "0x200FA"}}),
+                                 [("warning", "heartbeat-consumer")]),
+    "more_objects_than_a_mapping_has": (network(a={**NODE_A, "set": {"1A00h:00": 5}}), [("warning", "pdo-mapping-gap")]),
+    "synchronous_without_1005h": (network(signal("w", "2001h", "m", every_sync=1), w=wide(9)), [("warning", "pdo-sync")]),
     "254_entries_of_a_node": (network(*[signal("w", one, "m", every_ms=100) for one in bytes_of_wide(254)], w=wide(9)), []),
     "255_entries_of_a_node": (network(*[signal("w", one, "m", every_ms=100) for one in bytes_of_wide(255)], w=wide(9)),
                               [("error", "network-signal")]),
@@ -186,6 +216,8 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         (folder / "node.eds").write_bytes((Path(__file__).parent / "node.eds").read_bytes())
+        (folder / "valid.eds").write_text(sheet_with("1400sub1", "$NODEID+0x200"))
+        (folder / "slow.eds").write_text(sheet_with("1800sub3", "200"))
         (folder / "wide.eds").write_text(wide_sheet())
         for name, (text, code, expected) in TEXTS.items():
             got_code, found = check(edsc, folder, name, text)
