@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "network/node_configuration.hpp"
+#include "online/scan.hpp"
 
 namespace edsc {
 namespace {
@@ -63,8 +64,7 @@ bool NetworkSession::identify(LiveNode& live, bool wakes) {
 void NetworkSession::check_extra_responses() {
   for (LiveNode& live : nodes_) {
     if (!live.problems.empty() || !watch_.has_extra_responses(live.node->node_id)) continue;
-    add_problem(live, fmt::format(": an SDO request got more than one response; two nodes may have node-ID {}",
-                                  live.node->node_id));
+    add_problem(live, ": " + extra_responses_text(live.node->node_id));
   }
 }
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "configure/configuration_run.hpp"
-#include "network/bus_watch.hpp"
 #include "network/network.hpp"
+#include "online/bus_watch.hpp"
 #include "online/identity.hpp"
 #include "online/live_bus.hpp"
 #include "online/sdo_access.hpp"

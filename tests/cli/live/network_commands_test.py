@@ -203,6 +203,15 @@ node axis2 (6): 0 of 1 value differ
         self.assertEqual(check.returncode, FINE, check.stdout + check.stderr)
         self.assertEqual(self.network_command("verify", "plant.json").returncode, FINE)
 
+    def test_scan_of_two_nodes_with_one_node_id(self) -> None:
+        self.network.device(lambda frame: ["585 43 00 10 00 92 01 02 00"] if frame.startswith("605 40 00 10 00") else [])
+        result = self.network_command("scan", "--sheets", ".", "--nodes", "5,6", "--listen", "500", timeout=5000)
+        self.assertEqual(result.returncode, FAILED, result.stderr)
+        twice = "node 5: an SDO request got more than one response; two nodes may have node-ID 5\n"
+        self.assertIn("edsc: " + twice, result.stderr)
+        self.assertNotIn("node-ID 6", result.stderr)
+        self.assertIn(twice, self.edsc("scan", "--nodes", "5,6", "--listen", "500").stdout)
+
     def test_scan_of_a_node_without_a_file(self) -> None:
         sheets = self.folder / "sheets"
         sheets.mkdir()
