@@ -123,8 +123,8 @@ std::string step_text(const ConfigurationStep& step) {
 
 std::string failure_text(const ConfigurationFailure& failure, std::string_view node) {
   std::string place = "edsc: ";
-  if (failure.value != nullptr && failure.value->position.file != nullptr) {
-    const Place found = place_of(failure.value->position);
+  if (failure.position.file != nullptr) {
+    const Place found = place_of(failure.position);
     place = fmt::format("{}:{}:{}: error: ", found.file, found.line, found.column);
   }
   const std::string wanted = failure.value == nullptr ? "" : " = " + shown(failure.entry, failure.value->bytes);

@@ -20,7 +20,11 @@ void choose_all(ConfigurationRun& run, const Configuration& configuration, bool 
 bool choose_different(ConfigurationRun& run, SdoAccess& node, const Configuration& configuration,
                       bool node_id_and_bit_rate, const ConfigurationHooks& hooks) {
   Comparison comparison = compare_configuration(node, configuration.values, hooks);
-  if (comparison.lost) return false;
+  if (comparison.lost) {
+    run.result.lost = true;
+    run.result.lost_at = configuration.values[comparison.values.size()].entry;
+    return false;
+  }
   std::vector<bool> differs(configuration.values.size());
   for (std::size_t i = 0; i < differs.size(); ++i) {
     ComparedValue& compared = comparison.values[i];

@@ -140,7 +140,7 @@ class Run {
     } else if (holds(step.entry, outcome, step.bytes)) {
       ++result_.verified;
     } else {
-      result_.failures.push_back({step.entry, step.value, "reads back as " + value_of(step.entry, outcome.bytes)});
+      add_failure(step, "reads back as " + value_of(step.entry, outcome.bytes));
     }
   }
 
@@ -149,8 +149,22 @@ class Run {
     if (step.group != 0 && given_up_.insert(step.group).second && outcome.end == SdoEnd::refused) {
       what += "; the related entries are not changed";
     }
-    result_.failures.push_back({step.entry, step.value, std::move(what)});
+    add_failure(step, std::move(what));
     result_.lost = outcome.end == SdoEnd::no_answer;
+  }
+
+  void add_failure(const ConfigurationStep& step, std::string what) {
+    result_.failures.push_back({step.entry, step.value, std::move(what), position_of(step)});
+  }
+
+  /// A step without a value is carried out for a later value of its entry, or for another value of its group.
+  [[nodiscard]] Position position_of(const ConfigurationStep& step) const {
+    const ConfigurationValue* value = step.value;
+    for (const ConfigurationStep& other : steps_) {
+      if (other.value == nullptr || other.group != step.group) continue;
+      if (value == nullptr || (step.value == nullptr && key(other.entry) == key(step.entry))) value = other.value;
+    }
+    return value != nullptr ? value->position : Position{};
   }
 
   static std::uint32_t key(const LiveEntry& entry) { return std::uint32_t{entry.index} << 8 | entry.sub_index; }

@@ -17,6 +17,7 @@ struct ConfigurationFailure {
   LiveEntry entry;
   const ConfigurationValue* value = nullptr;  ///< null if the DCF does not configure this entry
   std::string what;                           ///< `refused by the device: 0609 0030h, invalid value`
+  Position position{};  ///< of the value, or of one that requires the step; no file for a concise DCF
 };
 
 struct ConfigurationResult {

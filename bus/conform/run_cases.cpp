@@ -95,7 +95,7 @@ bool find_device(LiveBus& bus, const Device& sheet, const DutSettings& settings,
     report.lost = fmt::format("node {} does not answer", settings.node.value());
     return false;
   }
-  const Identity found = read_identity(access);
+  const Identity found = read_identity(access).identity;
   report.read_identity = identity_text(found);
   report.identity = identity_differences(identity_of(sheet), found);
   refuse_enabled_drive(access, sheet, found, settings);

@@ -61,6 +61,7 @@ class NetworkText {
  private:
   void add(const FoundNode& node) {
     comment(fmt::format("node {}: {}", node.node_id, device_text(node)));
+    if (node.has_extra_responses) error(node, extra_responses_text(node.node_id));
     const auto fitting = fitting_sheets(sheets_, node.node_id, node.identity);
     if (fitting.empty()) {
       add_without_file(node);
@@ -80,6 +81,7 @@ class NetworkText {
     if (const std::uint32_t serial_number = node.identity.serial_number.value_or(0); serial_number != 0) {
       line += fmt::format(", \"serial_number\": {}", serial_number);
     }
+    ++result_.nodes;
     last_node_ = lines_.size();
     lines_.push_back(line + "}");
     is_node_.push_back(true);
@@ -98,9 +100,13 @@ class NetworkText {
       why +=
           fmt::format("; the closest is {}: {}", closest->path, identity_differences(closest->identity, node.identity));
     }
-    result_.errors.push_back(fmt::format("node {}: {}", node.node_id, why));
-    comment(why);
+    error(node, why);
     comment(fmt::format("\"node_{}\": {{\"node_id\": {}, \"eds\": \"\"}}", node.node_id, node.node_id));
+  }
+
+  void error(const FoundNode& node, const std::string& text) {
+    result_.errors.push_back(fmt::format("node {}: {}", node.node_id, text));
+    comment(text);
   }
 
   void note(const std::string& text) {

@@ -1,6 +1,7 @@
 /// Writes the network file of the nodes found on a bus.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +19,8 @@ struct DescribeSettings {
 struct DescribedNetwork {
   std::string text;                 ///< JSON with comments
   std::vector<std::string> notes;   ///< about nodes for which the choice of a file is not certain
-  std::vector<std::string> errors;  ///< about nodes without a file
+  std::vector<std::string> errors;  ///< about nodes without a file, and about two nodes with one node-ID
+  std::size_t nodes = 0;            ///< with a file
 };
 
 /// Each node gets the file that fits best, and the heartbeat time and serial number that it has. Nodes without a file

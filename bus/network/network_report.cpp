@@ -66,7 +66,7 @@ std::vector<const ConfigurationChange*> differences(const LiveNode& live) {
 bool is_same(const LiveNode& live) { return live.problems.empty() && live.is_compared && differences(live).empty(); }
 
 std::string identity_not_compared(const LiveNode& live) {
-  return live.answers ? names_of(not_compared(expected_identity(*live.node), live.identity)) : std::string{};
+  return live.is_compared ? names_of(not_compared(expected_identity(*live.node), live.identity)) : std::string{};
 }
 
 std::string problem_text(const NodeProblem& problem) {
@@ -114,19 +114,20 @@ Json verify_json(const std::vector<LiveNode>& nodes) {
   return json;
 }
 
-std::string apply_summary(const std::vector<LiveNode>& nodes, bool started) {
+std::string apply_summary(const std::vector<LiveNode>& nodes) {
   const auto configured = static_cast<std::size_t>(std::ranges::count_if(nodes, &LiveNode::succeeded));
+  const auto started = static_cast<std::size_t>(std::ranges::count_if(nodes, &LiveNode::started));
   const bool stored = std::ranges::any_of(nodes, [](const LiveNode& live) { return live.run.stored; });
-  return fmt::format("{} of {} configured{}{}", configured, counted(nodes.size(), "node"), stored ? ", stored" : "",
-                     started                      ? ", started"
-                     : configured == nodes.size() ? ""
-                                                  : "; none started");
+  std::string text =
+      fmt::format("{} of {} configured{}", configured, counted(nodes.size(), "node"), stored ? ", stored" : "");
+  if (started != 0) return text + (started == nodes.size() ? ", started" : fmt::format(", {} started", started));
+  return configured == nodes.size() ? text : text + "; none started";
 }
 
-Json apply_json(const std::vector<LiveNode>& nodes, bool started) {
+Json apply_json(const std::vector<LiveNode>& nodes) {
   Json json{{"version", 1},
             {"succeeded", std::ranges::all_of(nodes, &LiveNode::succeeded)},
-            {"started", started},
+            {"started", std::ranges::all_of(nodes, &LiveNode::started)},
             {"nodes", Json::array()}};
   for (const LiveNode& live : nodes) {
     Json row = node_json(live);

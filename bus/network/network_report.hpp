@@ -16,7 +16,7 @@ namespace edsc {
 /// Whether the node answers, is the device of its file, and has all its values.
 [[nodiscard]] bool is_same(const LiveNode& live);
 
-/// `vendor-ID, product code`: the numbers of the identity that the file or the node does not state.
+/// `vendor-ID, product code`: the numbers of the identity that the file or a node that was compared does not state.
 [[nodiscard]] std::string identity_not_compared(const LiveNode& live);
 
 /// `plant.json:7:5: error: node axis3 (7) does not answer`
@@ -31,8 +31,8 @@ namespace edsc {
 [[nodiscard]] nlohmann::ordered_json verify_json(const std::vector<LiveNode>& nodes);
 
 /// `3 of 3 nodes configured, started`
-[[nodiscard]] std::string apply_summary(const std::vector<LiveNode>& nodes, bool started);
+[[nodiscard]] std::string apply_summary(const std::vector<LiveNode>& nodes);
 
-[[nodiscard]] nlohmann::ordered_json apply_json(const std::vector<LiveNode>& nodes, bool started);
+[[nodiscard]] nlohmann::ordered_json apply_json(const std::vector<LiveNode>& nodes);
 
 }  // namespace edsc

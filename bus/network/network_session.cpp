@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "network/node_configuration.hpp"
+#include "online/scan.hpp"
 
 namespace edsc {
 namespace {
@@ -31,63 +32,67 @@ NetworkSession::NetworkSession(LiveBus& bus, std::vector<LiveNode>& nodes, SdoSe
 bool NetworkSession::identify(bool wakes) {
   for (LiveNode& live : nodes_) {
     hooks_.progress(live, "identified", 0, 1);
-    live.answers = identify(live, wakes);
+    identify(live, wakes);
   }
   bus_.listen(settling_time);
   check_extra_responses();
   return !has_problems();
 }
 
-bool NetworkSession::identify(LiveNode& live, bool wakes) {
+void NetworkSession::identify(LiveNode& live, bool wakes) {
   SdoAccess& access = *live.access;
   SdoOutcome first = access.upload(0x1000, 0);
   if (first.end == SdoEnd::no_answer && wakes) {
     enter_pre_operational(bus_, id_of(live));
     first = access.upload(0x1000, 0);
   }
-  if (first.end == SdoEnd::no_answer) {
-    add_problem(live, " does not answer");
-    return false;
+  live.answers = first.end != SdoEnd::no_answer;
+  if (!live.answers) return add_problem(live, " does not answer");
+  const auto [found, unanswered] = read_identity(access);
+  live.identity = found;
+  if (unanswered != nullptr) {
+    return add_problem(live, fmt::format(" cannot be identified: {} {}: no answer",
+                                         entry_label(unanswered->index, unanswered->sub_index), unanswered->name));
   }
-  live.identity = read_identity(access);
   const Identity expected = expected_identity(*live.node);
   const IdentityMatch match = compare_identity(expected, live.identity);
+  if (match == IdentityMatch::unknown && has_numbers(expected)) {
+    add_problem(
+        live, fmt::format(" cannot be identified: it reports none of the numbers that {} states", file_of(*live.node)));
+  }
   if (match == IdentityMatch::major_revision || match == IdentityMatch::other) {
     live.problems.push_back({fmt::format("{} is not the device of {}: {}", label(*live.node), file_of(*live.node),
                                          identity_differences(expected, live.identity)),
                              place_of_difference(*live.node, expected, live.identity)});
   }
-  return true;
 }
 
 void NetworkSession::check_extra_responses() {
   for (LiveNode& live : nodes_) {
     if (!live.problems.empty() || !watch_.has_extra_responses(live.node->node_id)) continue;
-    add_problem(live, fmt::format(": an SDO request got more than one response; two nodes may have node-ID {}",
-                                  live.node->node_id));
+    add_problem(live, ": " + extra_responses_text(live.node->node_id));
   }
 }
 
 bool NetworkSession::compare() {
   for (LiveNode& live : nodes_) {
-    if (live.problems.empty() && !compare(live)) {
-      add_problem(live, " no longer answers");
-    }
+    if (live.problems.empty()) compare(live);
   }
   check_extra_responses();
   return !has_problems();
 }
 
-bool NetworkSession::compare(LiveNode& live) {
+void NetworkSession::compare(LiveNode& live) {
   live.run = {};
   live.run.node = live.node->node_id;
   live.run.left_out = live.configuration.left_out;
   live.boot_ups = watch_.boot_ups(live.node->node_id);
-  if (!choose_different(live.run, *live.access, live.configuration, false, hooks_for(live, "compared"))) return false;
+  if (!choose_different(live.run, *live.access, live.configuration, false, hooks_for(live, "compared"))) {
+    return add_problem(live, " no longer answers" + place_text(live.run.result));
+  }
   live.run.steps = plan_configuration(live.run.values, &live.node->device);
   live.is_compared = true;
   hooks_.compared(live);
-  return true;
 }
 
 bool NetworkSession::apply(const ApplySettings& settings) {
@@ -98,26 +103,53 @@ bool NetworkSession::apply(const ApplySettings& settings) {
   configure_all(settings);
   bus_.listen(settling_time);
   check_restarts(settings);
-  if (settings.store && (all_succeeded() || settings.on_error == OnError::keep_going)) {
-    for (LiveNode& live : nodes_) {
-      if (!live.succeeded()) continue;
-      hooks_.progress(live, "stored", 0, 1);
-      store_parameters(live.run, *live.access, sdo_.timeout_ms);
-    }
-    bus_.listen(settling_time);
-    check_restarts({});
-  }
+  if (settings.store && (all_succeeded() || settings.on_error == OnError::keep_going)) store_all();
+  check_presence();
+  bus_.listen(settling_time);
+  check_restarts({});
   check_extra_responses();
   if (!all_succeeded()) return false;
-  if (settings.start) {
-    for (const LiveNode& live : nodes_) bus_.send_all(canopen::nmt_frame(canopen::NmtCommand::start, id_of(live)));
-  }
+  if (settings.start) start_all();
   return true;
+}
+
+void NetworkSession::store_all() {
+  for (LiveNode& live : nodes_) {
+    if (!live.succeeded()) continue;
+    hooks_.progress(live, "stored", 0, 1);
+    try {
+      store_parameters(live.run, *live.access, sdo_.timeout_ms);
+    } catch (...) {
+      add_problem(live, " may not have stored its parameters");
+      throw;
+    }
+    live.access->set_timeout(sdo_.timeout_ms);
+  }
+}
+
+/// A node may have lost power since it was configured.
+void NetworkSession::check_presence() {
+  for (LiveNode& live : nodes_) {
+    if (!live.succeeded()) continue;
+    if (live.access->upload(0x1000, 0).end == SdoEnd::no_answer) add_problem(live, " no longer answers");
+  }
+}
+
+void NetworkSession::start_all() {
+  for (LiveNode& live : nodes_) {
+    bus_.send_all(canopen::nmt_frame(canopen::NmtCommand::start, id_of(live)));
+    live.started = true;
+  }
 }
 
 void NetworkSession::configure_all(const ApplySettings& settings) {
   for (LiveNode& live : nodes_) {
-    configure(live, settings);
+    try {
+      configure(live, settings);
+    } catch (...) {
+      add_problem(live, " is not completely configured");
+      throw;
+    }
     hooks_.configured(live);
     if (!live.succeeded() && settings.on_error != OnError::keep_going) return;
   }
@@ -128,15 +160,16 @@ void NetworkSession::configure(LiveNode& live, const ApplySettings& settings) {
   do {
     live.problems.clear();
     ++live.attempts;
-    if (live.attempts > 1) {
-      enter_pre_operational(bus_, id_of(live));
-      if (!compare(live)) {
-        add_problem(live, " no longer answers");
-        continue;
-      }
-    }
-    write(live);
+    if (live.attempts > 1) begin_again(live);
+    if (live.problems.empty()) write(live);
   } while (!live.succeeded() && live.attempts < most);
+}
+
+/// The node may be another one by now.
+void NetworkSession::begin_again(LiveNode& live) {
+  enter_pre_operational(bus_, id_of(live));
+  identify(live, false);
+  if (live.problems.empty()) compare(live);
 }
 
 void NetworkSession::write(LiveNode& live) {

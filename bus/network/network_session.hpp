@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "configure/configuration_run.hpp"
-#include "network/bus_watch.hpp"
 #include "network/network.hpp"
+#include "online/bus_watch.hpp"
 #include "online/identity.hpp"
 #include "online/live_bus.hpp"
 #include "online/sdo_access.hpp"
@@ -34,6 +34,7 @@ struct LiveNode {
   ConfigurationRun run;      ///< the comparison, and the last attempt to configure it
   unsigned attempts = 0;     ///< to configure it
   unsigned boot_ups = 0;     ///< seen before the last comparison
+  bool started = false;      ///< by this session
   std::vector<NodeProblem> problems;
 
   /// Whether it was configured.
@@ -69,25 +70,30 @@ class NetworkSession {
   /// `nodes` must outlive the session; their members `node` and `configuration` are set.
   NetworkSession(LiveBus& bus, std::vector<LiveNode>& nodes, SdoSettings sdo, NetworkHooks hooks);
 
-  /// Reads the identity of all nodes. Missing nodes, other products, and node-IDs of two nodes become problems. Returns
-  /// false if there are any. A node that does not answer is set to Pre-operational first if `wakes`: it may be in
-  /// Stopped.
+  /// Reads the identity of all nodes. Missing nodes, other products, nodes that cannot be identified, and node-IDs of
+  /// two nodes become problems. Returns false if there are any. A node that does not answer is set to Pre-operational
+  /// first if `wakes`: it may be in Stopped.
   bool identify(bool wakes);
 
   /// Reads the configured values of the nodes without a problem. Returns false if there is a problem.
   bool compare();
 
   /// After `identify` and `compare` without problems: configures the nodes in Pre-operational. Stores the parameters of
-  /// the nodes that succeeded, unless an error aborts. Starts all nodes, if all succeeded; returns whether they did.
+  /// the nodes that succeeded, unless an error aborts. Starts all nodes, if all succeeded and still answer; returns
+  /// whether they did.
   bool apply(const ApplySettings& settings);
 
  private:
-  bool identify(LiveNode& live, bool wakes);
-  bool compare(LiveNode& live);
+  void identify(LiveNode& live, bool wakes);
+  void compare(LiveNode& live);
   void check_extra_responses();
+  void begin_again(LiveNode& live);
   void write(LiveNode& live);
   void configure(LiveNode& live, const ApplySettings& settings);
   void configure_all(const ApplySettings& settings);
+  void store_all();
+  void check_presence();
+  void start_all();
   void check_restarts(const ApplySettings& settings);
   static void add_problem(LiveNode& live, std::string_view text);
   ConfigurationHooks hooks_for(const LiveNode& live, std::string_view doing) const;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "device/types/little_endian.hpp"
 #include "online/sdo_access.hpp"
 
@@ -35,15 +37,24 @@ Identity identity_of(const Device& device) {
   return identity;
 }
 
-Identity read_identity(SdoAccess& node) {
-  Identity identity;
+ReadIdentity read_identity(SdoAccess& node) {
+  ReadIdentity read;
   for (const IdentityNumber& number : identity_numbers) {
     constexpr std::size_t size = 4;
     const SdoOutcome outcome = node.upload(number.index, number.sub_index, SdoTransfer::segmented, {}, size);
+    if (outcome.end == SdoEnd::no_answer) {
+      read.unanswered = &number;
+      break;
+    }
     if (!outcome.done() || outcome.bytes.size() != size) continue;
-    identity.*number.value = static_cast<std::uint32_t>(number_of(outcome.bytes));
+    read.identity.*number.value = static_cast<std::uint32_t>(number_of(outcome.bytes));
   }
-  return identity;
+  return read;
+}
+
+bool has_numbers(const Identity& identity) {
+  return std::ranges::any_of(identity_numbers,
+                             [&](const IdentityNumber& number) { return (identity.*number.value).has_value(); });
 }
 
 bool fits(IdentityMatch match) {

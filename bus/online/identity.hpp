@@ -50,14 +50,24 @@ inline constexpr IdentityNumber identity_numbers[] = {
 /// number 0 means unknown.
 [[nodiscard]] Identity identity_of(const Device& device);
 
+/// Whether at least one number is known.
+[[nodiscard]] bool has_numbers(const Identity& identity);
+
 /// Whether the EDS describes the device, at least in another revision.
 [[nodiscard]] bool fits(IdentityMatch match);
 
 /// `same device`
 [[nodiscard]] std::string_view to_text(IdentityMatch match);
 
+/// What a node says about itself.
+struct ReadIdentity {
+  Identity identity;  ///< without the numbers that the node refuses
+  const IdentityNumber* unanswered =
+      nullptr;  ///< the number that the node did not answer; those after it were not read
+};
+
 /// Reads device type and identity object.
-[[nodiscard]] Identity read_identity(SdoAccess& node);
+[[nodiscard]] ReadIdentity read_identity(SdoAccess& node);
 
 /// Compares the numbers that both state.
 [[nodiscard]] IdentityMatch compare_identity(const Identity& sheet, const Identity& device);

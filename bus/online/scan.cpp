@@ -1,5 +1,7 @@
 #include "online/scan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <canopen/nmt/error_control.hpp>
@@ -9,6 +11,7 @@
 #include <span>
 
 #include "device/types/little_endian.hpp"
+#include "online/bus_watch.hpp"
 
 namespace edsc {
 namespace {
@@ -125,7 +128,9 @@ class Scan {
     std::vector<FoundNode> found;
     for (const std::uint8_t node_id : settings_.nodes) {
       const FoundNode& node = nodes_[node_id];
-      if (node.answers_sdo || node.state) found.push_back(node);
+      if (!node.answers_sdo && !node.state) continue;
+      found.push_back(node);
+      found.back().has_extra_responses = watch_.has_extra_responses(node_id);
     }
     return found;
   }
@@ -167,6 +172,7 @@ class Scan {
 
   LiveBus& bus_;
   const ScanSettings& settings_;
+  BusWatch watch_{bus_};
   std::array<FoundNode, 128> nodes_{};
   std::list<Interview> running_;
   bool asked_all_ = false;
@@ -174,6 +180,10 @@ class Scan {
 };
 
 }  // namespace
+
+std::string extra_responses_text(unsigned node_id) {
+  return fmt::format("an SDO request got more than one response; two nodes may have node-ID {}", node_id);
+}
 
 void scan(LiveBus& bus, const ScanSettings& settings, std::vector<FoundNode>& found) {
   Scan scan{bus, settings};

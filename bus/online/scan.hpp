@@ -23,11 +23,15 @@ struct ScanSettings {
 struct FoundNode {
   std::uint8_t node_id = 0;
   bool answers_sdo = false;
+  bool has_extra_responses = false;        ///< to SDO requests: two nodes may have the node-ID
   std::optional<canopen::NmtState> state;  ///< reported by error control
   Identity identity;
   std::optional<std::uint32_t> heartbeat_ms;  ///< 1017h
   std::optional<std::string> name;            ///< 1008h
 };
+
+/// Why a node with `has_extra_responses` is not certain.
+[[nodiscard]] std::string extra_responses_text(unsigned node_id);
 
 /// Stores the nodes found, ascending, also before it throws. Throws Interrupted, BusLost.
 void scan(LiveBus& bus, const ScanSettings& settings, std::vector<FoundNode>& found);

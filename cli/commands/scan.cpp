@@ -123,6 +123,11 @@ void print_text(const Findings& found, const std::vector<Candidate>& candidates,
     fmt::print("{}\n", fmt::format(colour && i == 0 ? fmt::emphasis::bold : fmt::text_style{}, "{}", lines[i]));
   }
   print_misfits(found.nodes, candidates);
+  for (const FoundNode& node : found.nodes) {
+    if (node.has_extra_responses) {
+      print_visibly(stdout, "node {}: {}\n", node.node_id, extra_responses_text(node.node_id));
+    }
+  }
   for (const canopen::LssAddress& address : found.unconfigured) {
     print_visibly(stdout, "without node-ID: {}\n", to_text(address));
   }
@@ -137,6 +142,7 @@ Json as_json(const FoundNode& node, const std::vector<Candidate>& candidates) {
   Json json{{"node_id", node.node_id}};
   json["state"] = node.state ? Json(nmt_state_text(*node.state)) : Json(nullptr);
   json["answers_sdo"] = node.answers_sdo;
+  json["extra_responses"] = node.has_extra_responses;
   const Identity& identity = node.identity;
   json["device_type"] = or_null(identity.device_type);
   json["profile"] = identity.device_type ? Json(*identity.device_type & 0xFFFF) : Json(nullptr);

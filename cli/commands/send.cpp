@@ -33,7 +33,7 @@ struct Settings {
   std::optional<std::uint32_t> count;
   std::optional<std::uint32_t> can_id;
   std::optional<std::uint32_t> overflow;
-  std::string time;
+  std::optional<std::vector<std::uint8_t>> time;
   NodeFile node;
   std::uint32_t number = 0;
   std::vector<std::string> values;
@@ -68,15 +68,8 @@ std::vector<std::uint8_t> present_time() {
 }
 
 canopen::Frame compose_time(const Settings& settings, std::uint32_t /*sent*/) {
-  std::vector<std::uint8_t> bytes;
-  if (settings.time.empty()) {
-    bytes = present_time();
-  } else {
-    const ParsedValue parsed = parse_value_text(*find_type("TIME_OF_DAY"), settings.time);
-    if (!parsed.ok()) fail(parsed.problem);
-    bytes = parsed.bytes;
-  }
-  return frame_with(settings.can_id.value_or(canopen::function_code::time), bytes);
+  return frame_with(settings.can_id.value_or(canopen::function_code::time),
+                    settings.time ? *settings.time : present_time());
 }
 
 /// `statusword=0x27`
@@ -132,9 +125,12 @@ int run_send(const Settings& settings) {
 }
 
 void add_can_id_option(CLI::App& command, Settings& settings) {
-  add_parsed(
-      command, "--id", settings.can_id, [](const std::string& text) { return parse_count(text, 0x1FFF'FFFF); },
-      "a CAN-ID up to 1FFFFFFFh", "another CAN-ID, such as 81h; above 7FFh an extended one");
+  const auto parse = [](const std::string& text) {
+    const auto can_id = parse_count(text, 0x1FFF'FFFF);
+    return can_id && !canopen::is_restricted(*can_id) ? can_id : std::nullopt;
+  };
+  add_parsed(command, "--id", settings.can_id, parse, "a CAN-ID up to 1FFFFFFFh, or is reserved by CiA 301",
+             "another CAN-ID, such as 81h; above 7FFh an extended one");
 }
 
 void add_sync_options(CLI::App& command, Settings& settings) {
@@ -148,7 +144,12 @@ void add_sync_options(CLI::App& command, Settings& settings) {
 }
 
 void add_time_options(CLI::App& command, Settings& settings) {
-  command.add_option("TIME", settings.time, "\"2026-01-31 12:00:00\" (default: the present time, UTC)");
+  const auto parse = [](const std::string& text) -> std::optional<std::vector<std::uint8_t>> {
+    const ParsedValue parsed = parse_value_text(*find_type("TIME_OF_DAY"), text);
+    return parsed.ok() ? std::optional{parsed.bytes} : std::nullopt;
+  };
+  add_parsed(command, "TIME", settings.time, parse, "a time from \"1984-01-01\" to \"2163-06-06 23:59:59.999\"",
+             "\"2026-01-31 12:00:00\" (default: the present time, UTC)");
   add_can_id_option(command, settings);
 }
 
@@ -209,7 +210,11 @@ void add_send_options(CLI::App& command, int& exit_code) {
   add_bus_argument(command, settings.bus);
   add_parsed(command, "--every", settings.every_ms, parse_period, "a time from 1 ms to 600 s",
              "ms between two frames; without --count until Ctrl-C");
-  add_count_option(command, "--count", settings.count, "number of frames (default: 1)")->check(CLI::PositiveNumber);
+  const auto parse_positive = [](const std::string& text) {
+    const auto number = parse_count(text);
+    return number && *number != 0 ? number : std::nullopt;
+  };
+  add_parsed(command, "--count", settings.count, parse_positive, "a number from 1", "number of frames (default: 1)");
   for (const KindRow& row : kinds) {
     CLI::App* kind = command.add_subcommand(row.name, row.description);
     kind->fallthrough();

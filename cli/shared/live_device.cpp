@@ -77,7 +77,13 @@ LiveEntry name_entry(const Device* device, const std::string& text) {
 }
 
 void check_node(SdoAccess& node, const Device& device, const std::string& path, std::string_view hint) {
-  const Identity found = read_identity(node), expected = identity_of(device);
+  const auto [found, unanswered] = read_identity(node);
+  if (unanswered != nullptr) {
+    fail(fmt::format("node {}: {} {}: no answer; {}", node.node().value(),
+                     entry_label(unanswered->index, unanswered->sub_index), unanswered->name, hint),
+         exit_device_failed);
+  }
+  const Identity expected = identity_of(device);
   const IdentityMatch match = compare_identity(expected, found);
   if (match == IdentityMatch::major_revision || match == IdentityMatch::other) {
     fail(fmt::format("node {} is not the device of {}: {}; \"edsc scan BUS --eds FILE\" finds the node of a file; {}",

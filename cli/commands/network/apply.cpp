@@ -53,43 +53,54 @@ void print_problems(const std::vector<LiveNode>& nodes) {
   for (const LiveNode& live : nodes) {
     for (const NodeProblem& problem : live.problems) print_visibly(stderr, "{}\n", problem_text(problem));
     for (const std::string& problem : live.run.problems) {
-      print_visibly(stderr, "edsc: {}: {}\n", label(*live.node), problem);
+      print_visibly(stderr, "{}\n", problem_text({label(*live.node) + ": " + problem, live.node->position}));
     }
   }
 }
 
-int apply(LiveBus& bus, const Settings& settings, LiveNetwork& network) {
-  const bool text = settings.format == "text";
-  ApplySettings apply = settings.apply;
-  apply.on_error = on_error_of(settings);
-  bool succeeded = false;
-  bool is_expected = false;
-  {
-    ProgressLine progress;
-    NetworkHooks hooks;
-    hooks.progress = show_progress(progress, network.nodes);
-    hooks.compared = [&](const LiveNode& live) {
-      progress.hide();
-      if (text) print_differences(live);
-    };
-    hooks.configured = [&](const LiveNode& live) {
-      progress.hide();
-      print_result(live, text);
-    };
-    NetworkSession session{bus, network.nodes, settings.sdo, std::move(hooks)};
-    is_expected = session.identify(true) && session.compare();
-    if (is_expected) succeeded = session.apply(apply);
-  }
-  const bool started = succeeded && apply.start;
+/// What was reached, also if the bus is lost or the command is interrupted.
+void report(const Settings& settings, const LiveNetwork& network, bool writes) {
   print_problems(network.nodes);
   report_identities_not_compared(network.nodes);
-  if (!text) {
-    fmt::print("{}\n", json_text(apply_json(network.nodes, started)));
-  } else if (is_expected) {
-    print_visibly(stdout, "{}\n", apply_summary(network.nodes, started));
+  if (settings.format == "json") {
+    fmt::print("{}\n", json_text(apply_json(network.nodes)));
+  } else if (writes) {
+    print_visibly(stdout, "{}\n", apply_summary(network.nodes));
   } else {
     print_visibly(stderr, "edsc: nothing written\n");
   }
+  std::fflush(stdout);
+}
+
+NetworkHooks hooks_with(ProgressLine& progress, const LiveNetwork& network, bool text) {
+  NetworkHooks hooks;
+  hooks.progress = show_progress(progress, network.nodes);
+  hooks.compared = [&progress, text](const LiveNode& live) {
+    progress.hide();
+    if (text) print_differences(live);
+  };
+  hooks.configured = [&progress, text](const LiveNode& live) {
+    progress.hide();
+    print_result(live, text);
+  };
+  return hooks;
+}
+
+int apply(LiveBus& bus, const Settings& settings, LiveNetwork& network) {
+  ApplySettings apply = settings.apply;
+  apply.on_error = on_error_of(settings);
+  bool writes = false;
+  bool succeeded = false;
+  try {
+    ProgressLine progress;
+    NetworkSession session{bus, network.nodes, settings.sdo, hooks_with(progress, network, settings.format == "text")};
+    writes = session.identify(true) && session.compare();
+    if (writes) succeeded = session.apply(apply);
+  } catch (...) {
+    report(settings, network, writes);
+    throw;
+  }
+  report(settings, network, writes);
   return succeeded ? exit_fine : exit_device_failed;
 }
 

@@ -44,8 +44,7 @@ int scan_network(LiveBus& bus, const Settings& settings, const SheetFolder& shee
   if (!settings.bit_rate) print_visibly(stderr, "edsc: the bit rate is not known; --bit-rate states it\n");
   for (const std::string& error : network.errors) print_visibly(stderr, "edsc: {}\n", error);
   if (!settings.output.empty()) {
-    print_visibly(stdout, "{}: {} of {}\n", settings.output, found.size() - network.errors.size(),
-                  counted(found.size(), "node"));
+    print_visibly(stdout, "{}: {} of {}\n", settings.output, network.nodes, counted(found.size(), "node"));
   }
   return network.errors.empty() ? exit_fine : exit_device_failed;
 }

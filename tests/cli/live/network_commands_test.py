@@ -7,10 +7,12 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
+import time
 from pathlib import Path
 
-from live import EDSC, FAILED, FINE, PATIENCE_MS, SHEET, LiveTest, run
+from live import EDSC, FAILED, FINE, INTERRUPTED, PATIENCE_MS, SHEET, LiveTest, run
 
 
 class NetworkCommands(LiveTest):
@@ -45,30 +47,42 @@ class NetworkCommands(LiveTest):
         frames = self.network.frames("000", "605", "606", "607")
         self.assertFalse([frame for frame in frames if frame.startswith("000 01") or frame[4] == "2"])
 
-    def fake_axis(self, *after_download: str, after_upload: tuple[str, ...] = ()) -> None:
-        """Adds a node 7 with the identity of the EDS, which sends these frames after each response."""
+    def fake_axis(self, *after_download: str, after_upload: tuple[str, ...] = (), ends_at: str | None = None,
+                  silent: tuple[str, ...] = (), refused: dict[str, str] | None = None) -> None:
+        """Adds a node 7 with the identity of the EDS, which sends these frames after each response. It does not answer requests
+        that begin with one of `silent`, nor after a frame that begins with `ends_at`, and aborts those that begin with one of
+        `refused`."""
+        has_power = True
         values = {"00 10 00": "92 01 02 00", "18 10 01": "EF CD AB 00", "18 10 02": "01 10 00 00",
-                  "18 10 03": "02 00 01 00", "04 20 00": "E8 03", "05 20 00": "B8 0B"}
+                  "18 10 03": "02 00 01 00", "04 20 00": "E8 03", "05 20 00": "B8 0B", "00 18 01": "87 01 00 00",
+                  "00 18 02": "FF", "00 18 03": "00 00", "00 18 05": "00 00", "00 1A 00": "02", "00 1A 01": "10 00 41 60",
+                  "00 1A 02": "20 00 64 60", "20 10 01": "00 00 00 00", "20 10 02": "00 00 00 00", "10 10 01": "01 00 00 00"}
 
         def answer(frame: str) -> list[str]:
+            nonlocal has_power
+            has_power = has_power and not (ends_at and frame.startswith(ends_at))
             command, entry = frame[4:6], frame[7:15]
-            if frame[:3] != "607" or command == "80":
+            if frame[:3] != "607" or command == "80" or frame.startswith(silent) or not has_power:
                 return []
+            for request, code in (refused or {}).items():
+                if frame.startswith(request):
+                    return [f"587 80 {entry} {code}"]
             if entry not in values:
                 return [f"587 80 {entry} 00 00 02 06"]
+            size = len(values[entry].split())
             if command == "40":
-                size = len(values[entry].split())
-                response = f"587 {'43' if size == 4 else '4B'} {entry} {values[entry]}" + " 00" * (4 - size)
+                response = f"587 {0x43 | 4 * (4 - size):02X} {entry} {values[entry]}" + " 00" * (4 - size)
                 return [response, *after_upload]
-            values[entry] = frame[16:21]
+            values[entry] = frame[16:15 + 3 * size]
             return [f"587 60 {entry} 00 00 00 00", *after_download]
 
         self.network.device(answer)
 
-    def three_axes(self) -> Path:
+    def three_axes(self, **settings: int) -> Path:
         eds = {"eds": "device.eds"}
+        settings = settings or {"2004h": 1300, "2005h": 2900}
         return self.plant({"axis1": {"node_id": 5, "serial_number": 0x100, **eds, "set": {"2004h": 1200}},
-                           "axis3": {"node_id": 7, "serial_number": 0, **eds, "set": {"2004h": 1300, "2005h": 2900}},
+                           "axis3": {"node_id": 7, "serial_number": 0, **eds, "set": settings},
                            "axis2": {"node_id": 6, "serial_number": 0x101, **eds, "set": {"2004h": 1100}}})
 
     def test_a_good_plant(self) -> None:
@@ -162,6 +176,74 @@ node axis2 (6): 0 of 1 value differ
                          [3, 0])
         self.expect_nothing_started()
 
+    def test_an_identity_without_an_answer(self) -> None:
+        """The number that would show another product does not arrive in time, or none does."""
+        self.three_axes()
+        self.fake_axis(silent=("607 40 18 10 02",))
+        self.expect(self.network_command("apply", "plant.json", "--start", timeout=1000), FAILED,
+                    stderr=self.place("plant.json", '"axis3"') +
+                    "node axis3 (7) cannot be identified: 1018h:02 product code: no answer\nedsc: nothing written\n")
+        self.expect_nothing_written()
+
+    def test_a_node_without_an_identity(self) -> None:
+        self.three_axes()
+        self.fake_axis(refused={"607 40 00 10": "00 00 02 06", "607 40 18 10": "00 00 02 06"})
+        result = self.network_command("apply", "plant.json", "--start")
+        self.assertEqual(result.returncode, FAILED)
+        self.assertIn(self.place("plant.json", '"axis3"') + "node axis3 (7) cannot be identified: it reports none of the "
+                      "numbers that device.eds states\n", result.stderr)
+        self.expect_nothing_written()
+
+    def test_a_node_that_loses_power_after_it_was_configured(self) -> None:
+        self.three_axes()
+        self.fake_axis(ends_at="606 2B 04 20 00")
+        result = self.network_command("apply", "plant.json", "--start", timeout=2000)
+        self.assertEqual(result.returncode, FAILED)
+        self.assertEqual(result.stderr, self.place("plant.json", '"axis3"') + "node axis3 (7) no longer answers\n")
+        self.assertTrue(result.stdout.endswith("2 of 3 nodes configured; none started\n"), result.stdout)
+        self.expect_nothing_started()
+
+    def test_a_node_that_does_not_answer_while_its_values_are_read(self) -> None:
+        self.three_axes()
+        self.fake_axis(silent=("607 40 05 20 00",))
+        result = self.network_command("apply", "plant.json", timeout=1000)
+        self.assertIn(self.place("plant.json", '"axis3"') + "node axis3 (7) no longer answers at 2005h:00 Maximum speed\n",
+                      result.stderr)
+        self.expect_nothing_written()
+
+    def test_an_interruption(self) -> None:
+        self.three_axes()
+        self.fake_axis(silent=("607 2B",))
+        process = subprocess.Popen([EDSC, "network", "apply", self.network.address, "plant.json", "--start", "--timeout",
+                                    str(PATIENCE_MS)], cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        self.addCleanup(process.kill)
+        while not any(frame.startswith("607 2B") for frame in self.network.log):
+            time.sleep(0.02)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=600)
+        self.assertEqual((process.returncode, err), (INTERRUPTED, self.place("plant.json", '"axis3"') +
+                         "node axis3 (7) is not completely configured\nedsc: interrupted\n"))
+        self.assertTrue(out.endswith("1 of 3 nodes configured; none started\n"), out)
+        self.expect_nothing_started()
+
+    def test_a_mapping_that_cannot_be_cleared(self) -> None:
+        """The step has no value; its line is that of the number of mapped objects."""
+        self.three_axes(**{"1A00h:01": 0x60640020, "1A00h:00": 1})
+        self.fake_axis(refused={"607 2F 00 1A 00": "42 00 04 06"})
+        result = self.network_command("apply", "plant.json")
+        self.assertEqual(result.returncode, FAILED)
+        line = self.place("plant.json", '"1A00h:00": 1').rsplit(":", 3)[0]
+        self.assertRegex(result.stderr, rf"{line}:\d+: error: node axis3 \(7\): 1A00h:00 TPDO mapping parameter 1, Number of mapped "
+                         "objects: refused by the device: 0604 0042h")
+
+    def test_parameters_that_cannot_be_stored(self) -> None:
+        self.three_axes()
+        self.fake_axis(refused={"607 23 10 10 01": "00 00 06 06"})
+        result = self.network_command("apply", "plant.json", "--store")
+        self.assertEqual(result.returncode, FAILED)
+        self.assertEqual(result.stderr, self.place("plant.json", '"axis3"') + "node axis3 (7): 1010h:01 Store parameters: refused "
+                         "by the device: 0606 0000h, access failed, hardware error\n")
+
     def test_two_nodes_with_one_node_id(self) -> None:
         self.three_axes()
         self.fake_axis(after_upload=("587 43 18 10 04 01 00 00 00",))
@@ -202,6 +284,15 @@ node axis2 (6): 0 of 1 value differ
                                timeout=600)
         self.assertEqual(check.returncode, FINE, check.stdout + check.stderr)
         self.assertEqual(self.network_command("verify", "plant.json").returncode, FINE)
+
+    def test_scan_of_two_nodes_with_one_node_id(self) -> None:
+        self.network.device(lambda frame: ["585 43 00 10 00 92 01 02 00"] if frame.startswith("605 40 00 10 00") else [])
+        result = self.network_command("scan", "--sheets", ".", "--nodes", "5,6", "--listen", "500", timeout=5000)
+        self.assertEqual(result.returncode, FAILED, result.stderr)
+        twice = "node 5: an SDO request got more than one response; two nodes may have node-ID 5\n"
+        self.assertIn("edsc: " + twice, result.stderr)
+        self.assertNotIn("node-ID 6", result.stderr)
+        self.assertIn(twice, self.edsc("scan", "--nodes", "5,6", "--listen", "500").stdout)
 
     def test_scan_of_a_node_without_a_file(self) -> None:
         sheets = self.folder / "sheets"

@@ -94,10 +94,20 @@ class Send(LiveTest):
 
     def test_wrong_usage(self) -> None:
         for arguments in ((), ("sync", "--overflow", 241), ("sync", "--every", 0), ("frame", "181"), ("frame", "181#0"),
-                          ("pdo", "device.eds", 1), ("time", "yesterday"), ("sync", "--count", 0)):
+                          ("pdo", "device.eds", 1), ("time", "yesterday"), ("time", "")):
             with self.subTest(arguments):
                 result = self.edsc("send", *arguments)
                 self.assertEqual(result.returncode, WRONG_USAGE, result.stderr)
+
+    def test_numbers_that_cannot_be_meant(self) -> None:
+        for arguments, problem in ((("sync", "--count", 0), '--count: "0" is not a number from 1\n'),
+                                   (("sync", "--id", 0), '--id: "0" is not a CAN-ID up to 1FFFFFFFh, or is reserved by CiA 301\n'),
+                                   (("time", "--id", "705h"), '--id: "705h" is not a CAN-ID')):
+            with self.subTest(arguments):
+                result = self.edsc("send", *arguments)
+                self.assertEqual(result.returncode, WRONG_USAGE)
+                self.assertTrue(result.stderr.startswith(problem), result.stderr)
+        self.assertEqual(self.network.frames("000", "705"), ["705 00"])
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include <canopen/host/virtual_bus.hpp>
 #include <canopen/nmt_master/nmt_master.hpp>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -54,6 +55,26 @@ TEST(NmtMaster, TellsThatASlaveIsNotInTheStateItWasCommandedTo) {
   VirtualBus::Endpoint& other = network.bus.attach();
   other.send(bench::frame("000 02 05"));
   EXPECT_EQ(network.pass(100ms), (Lines{"000 02 05", "(5 state 04)", "(5 unexpected state 04)"}));
+}
+
+TEST(NmtMaster, ComparesTheStateInHeartbeatsWithTheLastCommand) {
+  NmtSlave slave{NodeId{5}, plain};
+  slave.heartbeat_time = 100;
+  Network network{{slave}, {}};
+  network.slave(5, true).switch_on();
+  network.pass(0ms);
+  network.master.start(network.bus.now());
+  network.pass(100ms);
+  VirtualBus::Endpoint& other = network.bus.attach();
+  other.send(bench::frame("000 02 05"));
+  EXPECT_EQ(network.pass(100ms), (Lines{"000 02 05", "(5 state 04)", "(5 unexpected state 04)"}));
+  EXPECT_TRUE(network.master.command(canopen::NmtCommand::start, NodeId{5}));
+  EXPECT_EQ(network.pass(100ms), (Lines{"000 01 05", "(5 state 05)"}));
+  EXPECT_TRUE(network.master.command(canopen::NmtCommand::stop, NodeId{5}));
+  EXPECT_EQ(network.pass(100ms), (Lines{"000 02 05", "(5 state 04)"})) << "commanded";
+  other.send(bench::frame("000 82 05"));
+  const Lines reset = network.pass(200ms);
+  EXPECT_EQ(std::ranges::count(reset, "(5 unexpected state 7F)"), 0) << "it is booted again";
 }
 
 TEST(NmtMaster, WaitsForTheHeartbeatBeforeTheStart) {

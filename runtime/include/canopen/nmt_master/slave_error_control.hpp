@@ -45,18 +45,25 @@ class SlaveErrorControl {
   /// Stops monitoring a slave that is being reset or booted. One that is lost is still reported when it comes back.
   void stop(std::size_t i, const NmtSlave& slave) {
     guards_[i].stop();
+    commanded_[i] = LastState{};
     if (heartbeats_.state_of(slave.node_id)) watch_heartbeat(i, slave);
   }
 
   /// Expects the state of a slave that it enters with a command.
   void expect_after(NmtCommand command, std::size_t i) {
     switch (command) {
-      case NmtCommand::start: return guards_[i].expect(NmtState::operational);
-      case NmtCommand::stop: return guards_[i].expect(NmtState::stopped);
-      case NmtCommand::enter_pre_operational: return guards_[i].expect(NmtState::pre_operational);
+      case NmtCommand::start: return expect(i, NmtState::operational);
+      case NmtCommand::stop: return expect(i, NmtState::stopped);
+      case NmtCommand::enter_pre_operational: return expect(i, NmtState::pre_operational);
       case NmtCommand::reset_node:
-      case NmtCommand::reset_communication: return;
+      case NmtCommand::reset_communication: commanded_[i] = LastState{}; return;
     }
+  }
+
+  /// Whether a slave with a heartbeat may be in a state: the one of the last command, or any if there was none since
+  /// its boot-up.
+  [[nodiscard]] bool may_be(std::size_t i, NmtState state) const {
+    return !commanded_[i].known() || commanded_[i].state() == state;
   }
 
   /// Processes a message of a slave.
@@ -113,7 +120,13 @@ class SlaveErrorControl {
     }
   };
 
+  void expect(std::size_t i, NmtState state) {
+    guards_[i].expect(state);
+    commanded_[i] = LastState{state};
+  }
+
   std::array<NodeGuardingMaster, Count> guards_{};
+  std::array<LastState, Count> commanded_{};
   HeartbeatConsumer<Count> heartbeats_{};
 };
 

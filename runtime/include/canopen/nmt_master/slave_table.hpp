@@ -164,6 +164,7 @@ class SlaveTable {
     entry.status = status;
     entry.complete = status == BootStatus::booted || status == BootStatus::was_operational;
     if (!entry.complete || !list_[i].guarded()) error_control_.stop_guarding(i);
+    if (status == BootStatus::was_operational) error_control_.expect_after(NmtCommand::start, i);
   }
 
   // Commands

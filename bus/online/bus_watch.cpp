@@ -1,7 +1,8 @@
-#include "network/bus_watch.hpp"
+#include "online/bus_watch.hpp"
 
 #include <canopen/can/cob_id.hpp>
 #include <canopen/nmt/error_control.hpp>
+#include <canopen/sdo/sdo_protocol.hpp>
 
 namespace edsc {
 
@@ -25,7 +26,9 @@ void BusWatch::count(const canopen::Frame& frame) {
   constexpr std::uint32_t node_id_bits = 0x7F;
   Counts& counts = counts_[frame.id & node_id_bits];
   switch (frame.id & ~node_id_bits) {
-    case canopen::function_code::sdo_request: ++counts.requests; break;
+    case canopen::function_code::sdo_request:
+      if (frame.data[0] != canopen::sdo::abort_command) ++counts.requests;
+      break;
     case canopen::function_code::sdo_response: ++counts.responses; break;
     default: break;
   }

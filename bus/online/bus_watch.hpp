@@ -20,7 +20,7 @@ class BusWatch {
   [[nodiscard]] unsigned boot_ups(std::uint8_t node_id) const { return counts_[node_id].boot_ups; }
 
   /// Whether the default SDO of this node-ID sent more responses than it received requests, those of other clients
-  /// included. This holds for segmented transfers only, in which the server responds once to each request.
+  /// included. This holds for segmented transfers only, in which the server responds once to each request but an abort.
   [[nodiscard]] bool has_extra_responses(std::uint8_t node_id) const {
     return counts_[node_id].responses > counts_[node_id].requests;
   }
