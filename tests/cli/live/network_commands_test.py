@@ -253,6 +253,13 @@ node axis2 (6): 0 of 1 value differ
                            "edsc: nothing written\n")
         self.expect_nothing_written()
 
+    def test_a_response_to_a_request_that_was_not_seen(self) -> None:
+        """Another client sent the request before the command was on the bus."""
+        self.two_axes()
+        responses = ["586 43 18 10 04 01 01 00 00"]
+        self.network.device(lambda frame: [responses.pop()] if responses and frame.startswith("605 40 00 10 00") else [])
+        self.assertEqual(self.network_command("apply", "plant.json").returncode, FINE)
+
     def test_a_node_that_restarts_in_the_middle(self) -> None:
         self.three_axes()
         self.fake_axis("707 00")
