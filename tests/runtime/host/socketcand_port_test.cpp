@@ -25,17 +25,22 @@ using namespace std::chrono_literals;
 /// A server that sends given text and records what it receives.
 class Server {
  public:
-  Server() : listener_{canopen::opened(::socket(AF_INET, SOCK_STREAM, 0), "socket")} {
+  explicit Server(bool listens = true) : listener_{canopen::opened(::socket(AF_INET, SOCK_STREAM, 0), "socket")} {
     sockaddr_in address{};
     address.sin_family = AF_INET;
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     socklen_t size = sizeof address;
     if (::bind(listener_.number(), reinterpret_cast<sockaddr*>(&address), size) != 0 ||
-        ::listen(listener_.number(), 1) != 0 ||
         ::getsockname(listener_.number(), reinterpret_cast<sockaddr*>(&address), &size) != 0) {
       canopen::throw_errno("server");
     }
     port_ = ntohs(address.sin_port);
+    if (listens) listen();
+  }
+
+  /// Before this, connections are refused.
+  void listen() const {
+    if (::listen(listener_.number(), 1) != 0) canopen::throw_errno("listen");
   }
 
   [[nodiscard]] std::string address(const std::string& bus) const {
@@ -187,6 +192,17 @@ TEST(SocketcandPort, TellsOfALostServer) {
   greeting.join();
   server.hang_up();
   EXPECT_THROW((void)bus.receive(60s), std::system_error);
+}
+
+TEST(SocketcandPort, WaitsForAServerThatIsStarting) {
+  Server server{false};
+  std::thread starting{[&] {
+    std::this_thread::sleep_for(100ms);
+    server.listen();
+    server.greet();
+  }};
+  EXPECT_NO_THROW(HostBus{server.address("vcan0")});
+  starting.join();
 }
 
 TEST(SocketcandPort, TellsOfARefusal) {

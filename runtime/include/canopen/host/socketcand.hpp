@@ -24,8 +24,9 @@ namespace canopen {
 
 class SocketcandPort : public StreamPort<SocketcandClient> {
  public:
-  /// Connects, and opens a bus of the server in raw mode. Throws std::system_error if the server does not respond or
-  /// rejects the connection, and std::invalid_argument if the name of the bus does not have 1 to 16 characters.
+  /// Connects, and opens a bus of the server in raw mode. A connection that is refused is tried again for a second,
+  /// since the server may be starting. Throws std::system_error if the server does not respond or rejects the
+  /// connection, and std::invalid_argument if the name of the bus does not have 1 to 16 characters.
   SocketcandPort(const std::string& host, const std::string& port, const std::string& bus)
       : StreamPort{connect_to(host, port), "socketcand at " + host + ":" + port} {
     const bool plain = bus.find_first_of(" <>") == std::string::npos;
@@ -38,6 +39,8 @@ class SocketcandPort : public StreamPort<SocketcandClient> {
 
  private:
   static constexpr Duration connect_timeout = std::chrono::seconds{5};
+  static constexpr Duration start_of_server = std::chrono::seconds{1};
+  static constexpr int retry_ms = 20;
 
   struct FreeAddresses {
     void operator()(addrinfo* addresses) const { ::freeaddrinfo(addresses); }
@@ -52,13 +55,18 @@ class SocketcandPort : public StreamPort<SocketcandClient> {
       throw std::system_error{std::make_error_code(std::errc::host_unreachable), name + ": " + ::gai_strerror(error)};
     }
     const std::unique_ptr<addrinfo, FreeAddresses> addresses{found};
-    int problem = EHOSTUNREACH;
-    for (const addrinfo* address = found; address != nullptr; address = address->ai_next) {
-      Descriptor stream = opened(::socket(address->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), "socket");
-      problem = try_address(stream, *address);
-      if (problem == 0) return stream;
+    const TimePoint end = now() + start_of_server;
+    for (;;) {
+      int problem = EHOSTUNREACH;
+      for (const addrinfo* address = found; address != nullptr; address = address->ai_next) {
+        Descriptor stream =
+            opened(::socket(address->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0), "socket");
+        problem = try_address(stream, *address);
+        if (problem == 0) return stream;
+      }
+      if (problem != ECONNREFUSED || now() >= end) throw std::system_error{problem, std::generic_category(), name};
+      static_cast<void>(::poll(nullptr, 0, retry_ms));
     }
-    throw std::system_error{problem, std::generic_category(), name};
   }
 
   /// Returns 0 if connected, otherwise an errno.
