@@ -104,6 +104,7 @@ class Run {
     if (off == *cob_id) return;
     before_[key(step.entry)] = *cob_id;
     write(step, bytes_of(off, word_size));
+    if (!given_up_.contains(step.group)) disabled_[step.group] = &step.entry;
   }
 
   void switch_on(const ConfigurationStep& step) {
@@ -148,6 +149,9 @@ class Run {
     std::string what = failure_text(outcome);
     if (step.group != 0 && given_up_.insert(step.group).second && outcome.end == SdoEnd::refused) {
       what += "; the related entries are not changed";
+      if (const auto disabled = disabled_.find(step.group); disabled != disabled_.end()) {
+        what += ", but " + entry_label(disabled->second->index, disabled->second->sub_index) + " remains disabled";
+      }
     }
     add_failure(step, std::move(what));
     result_.lost = outcome.end == SdoEnd::no_answer;
@@ -177,6 +181,7 @@ class Run {
   std::vector<const ConfigurationStep*> refused_, written_;
   std::map<std::uint32_t, std::uint32_t> before_;
   std::map<std::uint32_t, Bytes> cleared_;
+  std::map<unsigned, const LiveEntry*> disabled_;  ///< the COB-ID of a group
   std::set<unsigned> given_up_;
 };
 

@@ -69,6 +69,12 @@ std::string identity_not_compared(const LiveNode& live) {
   return live.is_compared ? names_of(not_compared(expected_identity(*live.node), live.identity)) : std::string{};
 }
 
+std::string other_minor_revision(const LiveNode& live) {
+  const Identity expected = expected_identity(*live.node);
+  if (!live.is_compared || compare_identity(expected, live.identity) != IdentityMatch::minor_revision) return {};
+  return identity_differences(expected, live.identity) + ": another minor revision, which a master rejects (1F87h)";
+}
+
 std::string problem_text(const NodeProblem& problem) {
   const Place place = place_of(problem.position);
   return fmt::format("{}:{}:{}: error: {}", place.file, place.line, place.column, problem.text);

@@ -19,6 +19,10 @@ namespace edsc {
 /// `vendor-ID, product code`: the numbers of the identity that the file or a node that was compared does not state.
 [[nodiscard]] std::string identity_not_compared(const LiveNode& live);
 
+/// Another minor revision: the node counts as the device of its file, but 1F87h of a master is compared completely.
+/// Empty for the same revision.
+[[nodiscard]] std::string other_minor_revision(const LiveNode& live);
+
 /// `plant.json:7:5: error: node axis3 (7) does not answer`
 [[nodiscard]] std::string problem_text(const NodeProblem& problem);
 

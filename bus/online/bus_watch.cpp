@@ -29,7 +29,9 @@ void BusWatch::count(const canopen::Frame& frame) {
     case canopen::function_code::sdo_request:
       if (frame.data[0] != canopen::sdo::abort_command) ++counts.requests;
       break;
-    case canopen::function_code::sdo_response: ++counts.responses; break;
+    case canopen::function_code::sdo_response:
+      if (counts.requests != 0) ++counts.responses;
+      break;
     default: break;
   }
 }

@@ -19,8 +19,9 @@ class BusWatch {
   /// The number of boot-up messages with this node-ID so far.
   [[nodiscard]] unsigned boot_ups(std::uint8_t node_id) const { return counts_[node_id].boot_ups; }
 
-  /// Whether the default SDO of this node-ID sent more responses than it received requests, those of other clients
-  /// included. This holds for segmented transfers only, in which the server responds once to each request but an abort.
+  /// Whether the default SDO of this node-ID sent more responses than it received requests since the first request,
+  /// those of other clients included. This holds for segmented transfers only, in which the server responds once to
+  /// each request but an abort.
   [[nodiscard]] bool has_extra_responses(std::uint8_t node_id) const {
     return counts_[node_id].responses > counts_[node_id].requests;
   }

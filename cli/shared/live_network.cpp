@@ -60,6 +60,7 @@ LiveNetwork load_live_network(const LiveNetworkSettings& settings) {
   for (const std::string& name : settings.skip) {
     if (network.find(name) == nullptr) fail("--skip: " + network.unknown_node(name));
   }
+  if (live.nodes.empty()) fail(settings.path + ": no node with an EDS or DCF is left");
   return live;
 }
 
@@ -71,8 +72,10 @@ decltype(NetworkHooks::progress) show_progress(ProgressLine& line, const std::ve
   };
 }
 
-void report_identities_not_compared(const std::vector<LiveNode>& nodes) {
+void report_identities(const std::vector<LiveNode>& nodes) {
   for (const LiveNode& live : nodes) {
+    const std::string revision = other_minor_revision(live);
+    if (!revision.empty()) print_visibly(stderr, "edsc: {}: {}\n", label(*live.node), revision);
     const std::string numbers = identity_not_compared(live);
     if (!numbers.empty()) print_visibly(stderr, "edsc: {}: not compared: {}\n", label(*live.node), numbers);
   }

@@ -35,7 +35,7 @@ struct LiveNetwork {
 /// A callback that shows the progress on a terminal.
 [[nodiscard]] decltype(NetworkHooks::progress) show_progress(ProgressLine& line, const std::vector<LiveNode>& nodes);
 
-/// Prints which numbers of the identities could not be compared.
-void report_identities_not_compared(const std::vector<LiveNode>& nodes);
+/// Prints which numbers of the identities could not be compared, and other minor revisions.
+void report_identities(const std::vector<LiveNode>& nodes);
 
 }  // namespace edsc

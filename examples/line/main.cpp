@@ -4,11 +4,13 @@
 #include <canopen/plant/plant.hpp>
 #include <cstdint>
 #include <cstdio>
+#include <exception>
 #include <line.hpp>
 
-int main(int argc, char** argv) {
-  if (argc != 2) return 2;
-  canopen::HostBus bus{argv[1]};
+namespace {
+
+void run(const char* address) {
+  canopen::HostBus bus{address};
   canopen::Plant<line::Network, canopen::HostBus> plant{bus};
   plant.on(line::signals::inputs::read_input_8_bit_1{}, [&plant](std::uint8_t levels) {
     const bool stands_still = plant.encoder.speed_value_1() == 0;
@@ -19,7 +21,19 @@ int main(int argc, char** argv) {
     std::fflush(stdout);
   };
   plant.on_fault = [](const canopen::PlantNode& node, const canopen::PlantFault& fault) {
-    std::fprintf(stderr, "%s\n", fault_text(node, fault).c_str());
+    std::fprintf(stderr, "%s\n", fault_text(node, fault, line::Network::places).c_str());
   };
   bus.run(plant);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  try {
+    run(argv[1]);
+  } catch (const std::exception& problem) {  // the bus does not exist, or is lost
+    std::fprintf(stderr, "%s\n", problem.what());
+  }
+  return 1;
 }

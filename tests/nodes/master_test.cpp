@@ -349,6 +349,8 @@ TEST(PlantText, AFailedBootUpHasTheLineThatItContradicts) {
 TEST(MasterText, TellsNodeEntryReasonAndNumbers) {
   using canopen::BootStatus;
   EXPECT_EQ(boot_text(NodeId{5}, {BootStatus::booted}), "node 5: booted");
+  EXPECT_EQ(boot_text(NodeId{5}, {BootStatus::no_response, canopen::AbortCode::timeout, 0x1017}),
+            "node 5: no answer: 1017h:00: 0504 0000h, SDO protocol timed out");
   EXPECT_EQ(boot_text(NodeId{5}, {BootStatus::product_code, canopen::ok, 0x1018, 2, 0x10001, 0x20001}),
             "node 5: product code 1018h:02 is not the one of 1F86h: expected 00010001h, seen 00020001h");
   EXPECT_EQ(boot_text(NodeId{5}, {BootStatus::configuration, canopen::AbortCode::value_too_high, 0x2001, 3}),

@@ -61,7 +61,7 @@ void print_problems(const std::vector<LiveNode>& nodes) {
 /// What was reached, also if the bus is lost or the command is interrupted.
 void report(const Settings& settings, const LiveNetwork& network, bool writes) {
   print_problems(network.nodes);
-  report_identities_not_compared(network.nodes);
+  report_identities(network.nodes);
   if (settings.format == "json") {
     fmt::print("{}\n", json_text(apply_json(network.nodes)));
   } else if (writes) {

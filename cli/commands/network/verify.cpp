@@ -34,7 +34,7 @@ int verify(LiveBus& bus, const LiveNetworkSettings& settings, LiveNetwork& netwo
     }
     print_visibly(stdout, "{}\n", verify_summary(network.nodes, settings.path));
   }
-  report_identities_not_compared(network.nodes);
+  report_identities(network.nodes);
   return std::ranges::all_of(network.nodes, is_same) ? exit_fine : exit_device_failed;
 }
 

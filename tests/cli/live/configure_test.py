@@ -265,7 +265,7 @@ node 5: 2 of 2 values differ; 2 of 2 values written, 2 verified, 1020h written
         self.expect(self.edsc("configure", 5, "axis.dcf", "--all", "--store"), FAILED,
                     "node 5: 2 of 5 values written, 1 verified, 3 failed\n", f"""\
 edsc: axis.dcf: 1 error; what is wrong is left out ("edsc check --keep-going" lists it)
-axis.dcf:{mapping}:16: error: 1A00h:02 TPDO mapping parameter 1, Mapping entry 2 = 20020008h: refused by the device: 0604 0041h, object cannot be mapped to the PDO; the related entries are not changed
+axis.dcf:{mapping}:16: error: 1A00h:02 TPDO mapping parameter 1, Mapping entry 2 = 20020008h: refused by the device: 0604 0041h, object cannot be mapped to the PDO; the related entries are not changed, but 1800h:01 remains disabled
 axis.dcf:{speed}:16: error: 2004h:00 Speed = 4000 rpm: refused by the device: 0609 0031h, value too high
 axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
 """)

@@ -12,7 +12,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from live import EDSC, FAILED, FINE, INTERRUPTED, PATIENCE_MS, SHEET, LiveTest, run
+from live import EDSC, FAILED, FINE, INTERRUPTED, PATIENCE_MS, SHEET, WRONG_USAGE, LiveTest, run
 
 
 class NetworkCommands(LiveTest):
@@ -139,6 +139,20 @@ node axis2 (6): 0 of 1 value differ
         self.assertEqual(result.returncode, FAILED)
         self.expect_nothing_written()
 
+    def test_another_minor_revision(self) -> None:
+        """The node is the device of the file, but the generated master does not boot it."""
+        (self.folder / "device.eds").write_text(SHEET.read_text().replace("0x00010002", "0x00010001"))
+        self.plant({"axis1": {"node_id": 5, "serial_number": 0x100, "eds": "device.eds", "set": {"2004h": 1000}}})
+        result = self.network_command("verify", "plant.json")
+        self.assertEqual((result.stderr, result.returncode),
+                         ("edsc: node axis1 (5): revision number is 00010002h, expected 00010001h: another minor revision, which a "
+                          "master rejects (1F87h)\n", FINE))
+
+    def test_no_node_is_left(self) -> None:
+        self.two_axes()
+        self.expect(self.network_command("apply", "plant.json", "--skip", "axis1", "--skip", "axis2", "--start"), WRONG_USAGE,
+                    stderr="edsc: plant.json: no node with an EDS or DCF is left\n")
+
     def test_another_mapping(self) -> None:
         """The network links a TPDO with the mapping of the EDS; the node has stored another one."""
         self.plant({"axis1": {"node_id": 5, "serial_number": 0x100, "eds": "device.eds"},
@@ -252,6 +266,13 @@ node axis2 (6): 0 of 1 value differ
                     "node axis3 (7): an SDO request got more than one response; two nodes may have node-ID 7\n"
                            "edsc: nothing written\n")
         self.expect_nothing_written()
+
+    def test_a_response_to_a_request_that_was_not_seen(self) -> None:
+        """Another client sent the request before the command was on the bus."""
+        self.two_axes()
+        responses = ["586 43 18 10 04 01 01 00 00"]
+        self.network.device(lambda frame: [responses.pop()] if responses and frame.startswith("605 40 00 10 00") else [])
+        self.assertEqual(self.network_command("apply", "plant.json").returncode, FINE)
 
     def test_a_node_that_restarts_in_the_middle(self) -> None:
         self.three_axes()

@@ -19,7 +19,8 @@ namespace canopen {
     std::snprintf(text, sizeof text, format, numbers...);
     return std::string{text};
   };
-  std::string text = who + ": " + std::string{to_text(result.status)};
+  const bool answered_1000h = result.status == BootStatus::no_response && result.index > 0x1000;
+  std::string text = who + ": " + (answered_1000h ? "no answer" : std::string{to_text(result.status)});
   if (result.abort_code != ok) {
     const auto code = static_cast<unsigned>(result.abort_code);
     if (result.index != 0) text += print(": %04Xh:%02X", unsigned{result.index}, unsigned{result.sub_index});
