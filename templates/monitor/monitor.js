@@ -228,7 +228,7 @@
 
   const show = { node: showNode, pdo: showPdo, other: showOther };
   const draw = () => {
-    if (isPaused || !bus) return;
+    if (isPaused || !bus || document.hidden) return;
     showBus();
     for (const key of changed) {
       const row = state.get(key);
@@ -295,6 +295,8 @@
     });
   };
   connect();
+
+  document.addEventListener('visibilitychange', draw);  /* a tab in the background records, and does not draw */
 
   /* Buttons and keys */
 

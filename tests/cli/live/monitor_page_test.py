@@ -169,6 +169,7 @@ class MonitorPage(ReferenceDevices):
             self.assertEqual(found[name][0], "bad")
             self.assertIn(text, found[name][1])
         self.assertEqual(found["isPressed"], "true", "a key that is held down acts once")
+        self.assertEqual((found["hidden"], found["visible"]), ("9.0", "20.0"), "a tab in the background is not drawn")
         self.assertEqual(found["found"], "1 of 2 values")
         self.assertEqual(found["header"], "static", "it does not cover what has the focus")
         self.assertTrue(found["printed"], "a plot is not wider than the paper")

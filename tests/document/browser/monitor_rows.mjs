@@ -91,6 +91,17 @@ async function use(page) {
   await page.waitForFunction(() => globalThis.connections === 2);
   found.reconnected = await connectionAfter(bus(9));
 
+  const ticks = () => page.$eval('#summary', (one) => one.textContent.split(' ')[0]);
+  const other = await page.browser().newPage();
+  await other.bringToFront();
+  await page.waitForFunction(() => document.hidden, { polling: 100 });
+  await send(bus(20));
+  found.hidden = await ticks();
+  await page.bringToFront();
+  await page.waitForFunction(() => !document.hidden, { polling: 100 });
+  found.visible = await ticks();
+  await other.close();
+
   for (const repeat of [false, true, true]) {
     await page.evaluate((one) => document.dispatchEvent(new KeyboardEvent('keydown', { key: 'p', repeat: one })), repeat);
   }
