@@ -348,7 +348,7 @@
       event.preventDefault();
     }
   });
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', remakePlots);
+  for (const query of ['(prefers-color-scheme: dark)', 'print']) matchMedia(query).addEventListener('change', remakePlots);
   addEventListener('resize', () => {
     for (const { chart } of plots.values()) chart.setSize({ width: plotWidth(), height: 170 });
   });

@@ -172,6 +172,7 @@ class MonitorPage(ReferenceDevices):
         self.assertEqual((found["hidden"], found["visible"]), ("9.0", "20.0"), "a tab in the background is not drawn")
         self.assertEqual(found["found"], "1 of 2 values")
         self.assertEqual(found["header"], "static", "it does not cover what has the focus")
+        self.assertEqual(found["ink"], "rgb(27, 31, 36)", "paper is not dark")
         self.assertTrue(found["printed"], "a plot is not wider than the paper")
 
 

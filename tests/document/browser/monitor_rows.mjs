@@ -1,5 +1,5 @@
 // monitor_rows.mjs CHROMIUM URL: the page of edsc monitor --web with rows that it gets from here in place of the bus, as JSON.
-import { watch, withPage } from './browser.mjs';
+import { inScheme, watch, withPage } from './browser.mjs';
 
 const [chromium, url] = process.argv.slice(2);
 
@@ -110,7 +110,9 @@ async function use(page) {
   await page.type('#filter', 'REAL');
   found.found = await page.$eval('#found', (one) => one.textContent);
   found.header = await page.$eval('header', (one) => getComputedStyle(one).position);
+  await inScheme(page, 'dark');
   await page.emulateMediaType('print');
+  found.ink = await page.evaluate(() => getComputedStyle(document.body).color);
   found.printed = await page.evaluate(() => {
     document.body.style.width = '600px';
     return Math.max(...[...document.querySelectorAll('.plot canvas')].map((one) => one.getBoundingClientRect().right))
