@@ -77,7 +77,9 @@
     if (isPlotted && plots.size >= maxPlots) setPlotted(plots.values().next().value.one, false);
     if (isPlotted) {
       keep(one);
-      plots.set(one.key, { one, ...makePlot(one) });
+      const plot = { one, ...makePlot(one) };
+      plots.set(one.key, plot);
+      drawPlot(plot);
     } else {
       const plot = plots.get(one.key);
       plot.chart.destroy();
@@ -86,7 +88,6 @@
     }
     if (one.box) one.box.checked = isPlotted;
     byId('plots-hint').hidden = plots.size > 0;
-    drawPlots();
   };
 
   const keep = (one) => {
@@ -95,12 +96,12 @@
     ++histories;
   };
 
-  const drawPlots = () => {
-    for (const { one, chart, small } of plots.values()) {
-      chart.setData(one.history.data);
-      setText(small, one.text);
-    }
+  const drawPlot = ({ one, chart, small }) => {
+    chart.setData(one.history.data);
+    setText(small, one.text);
   };
+
+  const drawPlots = () => plots.forEach(drawPlot);
 
   const remakePlots = () => {
     for (const { one } of [...plots.values()]) {

@@ -106,6 +106,10 @@ async function use(page) {
     await page.evaluate((one) => document.dispatchEvent(new KeyboardEvent('keydown', { key: 'p', repeat: one })), repeat);
   }
   found.isPressed = await page.$eval('#pause', (one) => one.getAttribute('aria-pressed'));
+  await page.click('#value-rows tr:last-child input');
+  await send(bus(21), pdo(21, 1, [value(1, 'real', '4.5', 4.5), value(3, 'other', '1', 1)]));
+  await page.click('#value-rows tr:last-child input');
+  found.pausedPlots = await plots();
   await page.setViewport({ width: 320, height: 600 });
   await page.type('#filter', 'REAL');
   found.found = await page.$eval('#found', (one) => one.textContent);
