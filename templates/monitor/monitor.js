@@ -77,7 +77,9 @@
     if (isPlotted && plots.size >= maxPlots) setPlotted(plots.values().next().value.one, false);
     if (isPlotted) {
       keep(one);
-      plots.set(one.key, { one, ...makePlot(one) });
+      const plot = { one, ...makePlot(one) };
+      plots.set(one.key, plot);
+      drawPlot(plot);
     } else {
       const plot = plots.get(one.key);
       plot.chart.destroy();
@@ -86,7 +88,6 @@
     }
     if (one.box) one.box.checked = isPlotted;
     byId('plots-hint').hidden = plots.size > 0;
-    drawPlots();
   };
 
   const keep = (one) => {
@@ -95,12 +96,12 @@
     ++histories;
   };
 
-  const drawPlots = () => {
-    for (const { one, chart, small } of plots.values()) {
-      chart.setData(one.history.data);
-      setText(small, one.text);
-    }
+  const drawPlot = ({ one, chart, small }) => {
+    chart.setData(one.history.data);
+    setText(small, one.text);
   };
+
+  const drawPlots = () => plots.forEach(drawPlot);
 
   const remakePlots = () => {
     for (const { one } of [...plots.values()]) {
@@ -228,7 +229,7 @@
 
   const show = { node: showNode, pdo: showPdo, other: showOther };
   const draw = () => {
-    if (isPaused || !bus) return;
+    if (isPaused || !bus || document.hidden) return;
     showBus();
     for (const key of changed) {
       const row = state.get(key);
@@ -296,6 +297,8 @@
   };
   connect();
 
+  document.addEventListener('visibilitychange', draw);  /* a tab in the background records, and does not draw */
+
   /* Buttons and keys */
 
   const pause = byId('pause');
@@ -346,7 +349,7 @@
       event.preventDefault();
     }
   });
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', remakePlots);
+  for (const query of ['(prefers-color-scheme: dark)', 'print']) matchMedia(query).addEventListener('change', remakePlots);
   addEventListener('resize', () => {
     for (const { chart } of plots.values()) chart.setSize({ width: plotWidth(), height: 170 });
   });

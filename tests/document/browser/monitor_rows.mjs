@@ -1,5 +1,5 @@
 // monitor_rows.mjs CHROMIUM URL: the page of edsc monitor --web with rows that it gets from here in place of the bus, as JSON.
-import { watch, withPage } from './browser.mjs';
+import { inScheme, watch, withPage } from './browser.mjs';
 
 const [chromium, url] = process.argv.slice(2);
 
@@ -91,15 +91,32 @@ async function use(page) {
   await page.waitForFunction(() => globalThis.connections === 2);
   found.reconnected = await connectionAfter(bus(9));
 
+  const ticks = () => page.$eval('#summary', (one) => one.textContent.split(' ')[0]);
+  const other = await page.browser().newPage();
+  await other.bringToFront();
+  await page.waitForFunction(() => document.hidden, { polling: 100 });
+  await send(bus(20));
+  found.hidden = await ticks();
+  await page.bringToFront();
+  await page.waitForFunction(() => !document.hidden, { polling: 100 });
+  found.visible = await ticks();
+  await other.close();
+
   for (const repeat of [false, true, true]) {
     await page.evaluate((one) => document.dispatchEvent(new KeyboardEvent('keydown', { key: 'p', repeat: one })), repeat);
   }
   found.isPressed = await page.$eval('#pause', (one) => one.getAttribute('aria-pressed'));
+  await page.click('#value-rows tr:last-child input');
+  await send(bus(21), pdo(21, 1, [value(1, 'real', '4.5', 4.5), value(3, 'other', '1', 1)]));
+  await page.click('#value-rows tr:last-child input');
+  found.pausedPlots = await plots();
   await page.setViewport({ width: 320, height: 600 });
   await page.type('#filter', 'REAL');
   found.found = await page.$eval('#found', (one) => one.textContent);
   found.header = await page.$eval('header', (one) => getComputedStyle(one).position);
+  await inScheme(page, 'dark');
   await page.emulateMediaType('print');
+  found.ink = await page.evaluate(() => getComputedStyle(document.body).color);
   found.printed = await page.evaluate(() => {
     document.body.style.width = '600px';
     return Math.max(...[...document.querySelectorAll('.plot canvas')].map((one) => one.getBoundingClientRect().right))
