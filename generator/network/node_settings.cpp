@@ -39,8 +39,8 @@ void set_value(NetworkNode& node, Entry& entry, Value value, Diagnostics& diagno
     return error(fmt::format("cannot be written (AccessType {})", canopen::row_of(entry.access).name));
   }
   if (is_outside_limits(entry, value)) return error("is outside its limits");
-  entry.default_value = value;
-  node.settings.push_back({entry.index, entry.sub_index, std::move(value)});
+  const std::optional<Value> before = std::exchange(entry.default_value, value);
+  node.settings.push_back({entry.index, entry.sub_index, std::move(value), before});
 }
 
 /// Sets an object that the device may lack.
