@@ -23,13 +23,15 @@ constexpr const char* examples = R"(Examples:
   edsc document drive.eds --against drive-1.0.eds -o drive.html    with what changed and what it breaks
   edsc document drive.eds --against git:HEAD~1 -o drive.html  against the version of a git revision
   edsc document axis1.dcf -o axis1.html                       with the values that differ from the default
-  edsc document plant.json -o plant.html                      a network: topology, SYNC cycle, load, response times)";
+  edsc document plant.json -o plant.html                      a network: topology, SYNC cycle, load, response times
+  edsc document plant.json --nodes -o plant.html              with a page for each node: plant-NODE.html)";
 
 struct Settings {
   LoadSettings load;
   std::string output;
   std::string format;
   std::string against;
+  bool nodes = false;
   ColorOption color;
 };
 
@@ -67,6 +69,7 @@ std::string name_of_older(const Settings& settings, const LoadedDevice& older) {
 }
 
 int document_device(const Settings& settings) {
+  if (settings.nodes) throw CLI::ValidationError("--nodes", "is for networks, not for devices");
   Diagnostics diagnostics;
   const auto loaded = load_device(settings.load, diagnostics);
   if (loaded->device) report_unused_allowances(*loaded, diagnostics);
@@ -85,7 +88,7 @@ int document_device(const Settings& settings) {
     older = load_older(settings, inputs);
     compared = ComparedWith{name_of_older(settings, *older), compare_devices(*older->device, *loaded->device)};
   }
-  const DeviceToDocument device{*loaded, diagnostics, compared ? &*compared : nullptr};
+  const DeviceToDocument device{*loaded, &diagnostics, compared ? &*compared : nullptr};
   write_output(settings.output, document_of(device, format_of(settings)), inputs);
   return exit_fine;
 }
@@ -102,7 +105,11 @@ int document_network(const Settings& settings) {
   }
   std::vector<std::string> inputs = {settings.load.path};
   for (const auto& file : loaded->network.files) inputs.push_back(file->source->name());
-  write_output(settings.output, document_of(loaded->network, diagnostics, format_of(settings)), inputs);
+  if (settings.nodes) {
+    write_all_files(documents_of(loaded->network, diagnostics, format_of(settings), settings.output), inputs);
+  } else {
+    write_output(settings.output, document_of(loaded->network, diagnostics, format_of(settings)), inputs);
+  }
   return exit_fine;
 }
 
@@ -116,10 +123,14 @@ int document(const Settings& settings) {
 void add_document_options(CLI::App& command, int& exit_code) {
   Settings& settings = define_command(command, examples, document, exit_code);
   command.add_option("FILE", settings.load.path, "EDS, DCF, XDD, XDC, or network file (*.json)")->required();
-  command.add_option("-o,--output", settings.output, "file to write (default: standard output)");
+  CLI::Option* const output =
+      command.add_option("-o,--output", settings.output, "file to write (default: standard output)");
   command.add_option("--format", settings.format, "html or markdown (default: by the name of the output; html)")
       ->check(CLI::IsMember({"html", "markdown"}));
   command.add_option("--against", settings.against, "older version of the device: a file, or git:REF");
+  command
+      .add_flag("--nodes", settings.nodes, "of a network: also write a page for each node, beside that of the network")
+      ->needs(output);
   add_node_id_option(command, settings.load.node_id);
   add_options_option(command, settings.load.options_path);
   command.add_flag("--keep-going", settings.load.keep_going, keep_going_help);

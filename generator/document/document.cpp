@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <string_view>
 
 #include "backend/render.hpp"
@@ -32,9 +33,19 @@ std::string rendered(std::string_view name, Json view, DocumentFormat format) {
   return render_html(with_parts(fmt::format("{}.html", name)), view);
 }
 
-Json node_view(const NetworkNode& node) {
+/// The file of the page of a node, beside that of the network: `plant-axis1.html`.
+std::filesystem::path node_page(const std::filesystem::path& network_page, const NetworkNode& node) {
+  std::filesystem::path name = network_page.stem();
+  name += "-" + node.name;
+  name += network_page.extension();
+  return network_page.parent_path() / name;
+}
+
+/// `page` is that of the network if its nodes have pages, otherwise empty.
+Json node_view(const NetworkNode& node, const std::filesystem::path& page) {
   const Device& device = node.device;
   return {{"name", node.name},
+          {"page", page.empty() ? Json(nullptr) : Json(document::url_of(node_page(page, node).filename().string()))},
           {"node_id", node.node_id},
           {"role", node.is_master ? "NMT master" : ""},
           {"vendor", device.vendor_name},
@@ -43,20 +54,8 @@ Json node_view(const NetworkNode& node) {
           {"settings", node.settings.size()}};
 }
 
-}  // namespace
-
-std::string document_of(const DeviceToDocument& device, DocumentFormat format) {
-  Json view;
-  document::add_identity(*device.loaded.device, view);
-  document::add_findings(device.diagnostics, view);
-  document::add_changes(device.compared, view);
-  document::add_pdos(*device.loaded.device, view);
-  document::add_objects(device, view);
-  view["page_title"] = view["title"].get<std::string>() + ", CANopen device";
-  return rendered("device", std::move(view), format);
-}
-
-std::string document_of(const Network& network, const Diagnostics& diagnostics, DocumentFormat format) {
+std::string network_document(const Network& network, const Diagnostics& diagnostics, DocumentFormat format,
+                             const std::filesystem::path& page) {
   Json view;
   view["source"] = document::file_name_of(network.source->name());
   view["page_title"] = document::file_name_of(network.source->name()) + ", CANopen network";
@@ -64,12 +63,43 @@ std::string document_of(const Network& network, const Diagnostics& diagnostics, 
   view["length"] = network.description.length_m ? Json(network.description.length_m->value) : Json(nullptr);
   view["node_count"] = counted(network.nodes.size(), "node");
   Json nodes = Json::array();
-  for (const NetworkNode& node : network.nodes) nodes.push_back(node_view(node));
+  for (const NetworkNode& node : network.nodes) nodes.push_back(node_view(node, page));
   view["members"] = std::move(nodes);
   document::add_findings(diagnostics, view);
   document::add_topology(network, view);
   document::add_timing(network, view);
   return rendered("network", std::move(view), format);
+}
+
+}  // namespace
+
+std::string document_of(const DeviceToDocument& device, DocumentFormat format) {
+  Json view;
+  document::add_identity(device, view);
+  view["checked"] = device.diagnostics != nullptr;
+  if (device.diagnostics != nullptr) document::add_findings(*device.diagnostics, view);
+  document::add_changes(device.compared, view);
+  document::add_pdos(device.device(), view);
+  document::add_objects(device, view);
+  view["page_title"] = view["title"].get<std::string>() + ", CANopen device";
+  return rendered("device", std::move(view), format);
+}
+
+std::string document_of(const Network& network, const Diagnostics& diagnostics, DocumentFormat format) {
+  return network_document(network, diagnostics, format, {});
+}
+
+std::vector<OutputFile> documents_of(const Network& network, const Diagnostics& diagnostics, DocumentFormat format,
+                                     const std::string& path) {
+  const std::string name = document::file_name_of(network.source->name());
+  std::vector<OutputFile> files{{path, network_document(network, diagnostics, format, path)}};
+  for (const NetworkNode& node : network.nodes) {
+    const NodeOfNetwork in_network{node, name, document::file_name_of(path)};
+    DeviceToDocument device{*node.loaded};
+    device.node = &in_network;
+    files.push_back({node_page(path, node).string(), document_of(device, format)});
+  }
+  return files;
 }
 
 }  // namespace edsc

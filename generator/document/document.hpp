@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "compare/change.hpp"
 #include "diagnostics/diagnostics.hpp"
 #include "load/load_device.hpp"
 #include "network/network.hpp"
+#include "text/write_files.hpp"
 
 namespace edsc {
 
@@ -19,11 +21,22 @@ struct ComparedWith {
   Changes changes;
 };
 
+/// The node of a network that a device is.
+struct NodeOfNetwork {
+  const NetworkNode& node;
+  std::string network;  ///< the name of the network file
+  std::string page;     ///< the file of the page of the network, in the same folder
+};
+
 /// A device that was loaded, and what is known about it.
 struct DeviceToDocument {
-  const LoadedDevice& loaded;              ///< has a device
-  const Diagnostics& diagnostics;          ///< the findings of `edsc check`
-  const ComparedWith* compared = nullptr;  ///< null without another version
+  const LoadedDevice& loaded;                ///< has a device, unless `node` has it
+  const Diagnostics* diagnostics = nullptr;  ///< the findings of `edsc check`; null if the page has none
+  const ComparedWith* compared = nullptr;    ///< null without another version
+  const NodeOfNetwork* node = nullptr;       ///< null outside of a network
+
+  /// The device with the values that the network sets, if it is a node of one.
+  [[nodiscard]] const Device& device() const { return node != nullptr ? node->node.device : *loaded.device; }
 };
 
 /// Renders identity, services, PDO layouts, findings, changes and the object dictionary. Texts of the EDS are printable
@@ -32,5 +45,10 @@ struct DeviceToDocument {
 
 /// Renders nodes, PDO links, SYNC cycle, bus load and response times of a network.
 [[nodiscard]] std::string document_of(const Network& network, const Diagnostics& diagnostics, DocumentFormat format);
+
+/// Returns the page of a network at this path, with links to a page for each node in the same folder: `plant.html` and
+/// `plant-axis1.html`. The page of a node shows the values that the network sets beside the default values.
+[[nodiscard]] std::vector<OutputFile> documents_of(const Network& network, const Diagnostics& diagnostics,
+                                                   DocumentFormat format, const std::string& path);
 
 }  // namespace edsc

@@ -134,8 +134,16 @@ Json bit_rate_rows(const Device& device) {
 
 }  // namespace
 
-void add_identity(const Device& device, Json& view) {
+void add_identity(const DeviceToDocument& input, Json& view) {
+  const Device& device = input.device();
   view["title"] = device.product_name.empty() ? file_name_of(device.source->name()) : device.product_name;
+  view["network"] = nullptr;
+  if (input.node != nullptr) {
+    view["title"] = input.node->node.name;
+    view["network"] = {{"network_name", input.node->network},
+                       {"network_page", url_of(input.node->page)},
+                       {"network_node_id", input.node->node.node_id}};
+  }
   view["vendor"] = shown(device.vendor_name);
   view["source"] = file_name_of(device.source->name());
   view["identity"] = identity_rows(device);

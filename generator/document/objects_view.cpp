@@ -7,6 +7,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "backend/cpp/cpp_name.hpp"
 #include "backend/json/configured_value.hpp"
@@ -80,7 +81,7 @@ std::string unit_text(const Entry& entry) {
 
 class ObjectRows {
  public:
-  explicit ObjectRows(const DeviceToDocument& input) : input_{input}, device_{*input.loaded.device} {
+  explicit ObjectRows(const DeviceToDocument& input) : input_{input}, device_{input.device()} {
     for (const Pdo& pdo : device_.pdos) {
       for (const PdoEntry& mapped : pdo.entries) mapped_.emplace(mapped.index, mapped.sub_index);
     }
@@ -100,7 +101,7 @@ class ObjectRows {
     view["areas"] = std::move(areas);
     view["object_count"] = device_.objects.size();
     view["object_count_text"] = counted(device_.objects.size(), "object");
-    view["is_dcf"] = input_.loaded.sheet.is_dcf;
+    view["is_configured"] = input_.loaded.sheet.is_dcf || input_.node != nullptr;
     view["types"] = types_;
     view["accesses"] = accesses_;
   }
@@ -160,11 +161,23 @@ class ObjectRows {
             {"entries", std::move(entries)}};
   }
 
+  /// The default value of an entry with another value, from the network or a DCF.
   [[nodiscard]] std::optional<ConfiguredValue> configured(const Entry& entry) const {
+    if (auto set = set_by_network(entry)) return set;
     const DataSheet& sheet = input_.loaded.sheet;
     const ObjectDescription* const object = sheet.is_dcf ? sheet.find(entry.index) : nullptr;
     if (object == nullptr) return std::nullopt;
     return configured_value(entry, sheet, *object, device_);
+  }
+
+  [[nodiscard]] std::optional<ConfiguredValue> set_by_network(const Entry& entry) const {
+    if (input_.node == nullptr) return std::nullopt;
+    const auto is_of_entry = [&](const Setting& one) {
+      return one.index == entry.index && one.sub_index == entry.sub_index;
+    };
+    const std::vector<Setting>& settings = input_.node->node.settings;
+    const auto first = std::ranges::find_if(settings, is_of_entry);
+    return first == settings.end() ? std::nullopt : std::optional{ConfiguredValue{first->before}};
   }
 
   Json entry_view(const Object& object, const Entry& entry) {

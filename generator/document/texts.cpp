@@ -27,6 +27,18 @@ std::string_view without_semicolons(std::string_view line) {
 
 std::string file_name_of(std::string_view path) { return std::string{path.substr(path.find_last_of("/\\") + 1)}; }
 
+std::string url_of(std::string_view file_name) {
+  constexpr std::string_view unreserved = "-._~";  // RFC 3986, 2.3, with letters and digits
+  std::string url;
+  for (const char one : file_name) {
+    const auto byte = static_cast<unsigned char>(one);
+    const bool is_letter = (byte >= 'A' && byte <= 'Z') || (byte >= 'a' && byte <= 'z');
+    const bool is_plain = is_letter || (byte >= '0' && byte <= '9') || unreserved.find(one) != std::string_view::npos;
+    url += is_plain ? std::string{one} : fmt::format("%{:02X}", byte);
+  }
+  return url;
+}
+
 std::string anchor_of(const Object& object, const Entry& entry) {
   if (!object.has_sub_indices()) return index_label(object.index);
   return fmt::format("{}-{:02X}", index_label(object.index), entry.sub_index);

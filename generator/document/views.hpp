@@ -29,8 +29,12 @@ inline void add_property(Json& rows, std::string_view name, std::string_view val
 /// The name of a file without its folders.
 [[nodiscard]] std::string file_name_of(std::string_view path);
 
-/// `identity`, `services`, `file` and `commissioning`: lists of properties; `bit_rates`, with those not supported.
-void add_identity(const Device& device, Json& view);
+/// The name of a file as a relative URL.
+[[nodiscard]] std::string url_of(std::string_view file_name);
+
+/// `identity`, `services`, `file` and `commissioning`: lists of properties; `bit_rates`, with those not supported;
+/// `network`: null, or that of the node.
+void add_identity(const DeviceToDocument& input, Json& view);
 
 /// `areas` of the object dictionary with their objects, and the choices of the filters.
 void add_objects(const DeviceToDocument& device, Json& view);

@@ -19,6 +19,7 @@ struct Setting {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
   Value value;
+  std::optional<Value> before;  ///< the default value that it replaces
 };
 
 struct NetworkNode {

@@ -47,8 +47,8 @@ void set_value(NetworkNode& node, Entry& entry, Value value, Diagnostics& diagno
   if (const std::string_view why = why_reserved(entry.index, entry.sub_index, value.bits); !why.empty()) {
     return error(fmt::format("must not be {}: {}", value.bits, why));
   }
-  entry.default_value = value;
-  node.settings.push_back({entry.index, entry.sub_index, std::move(value)});
+  const std::optional<Value> before = std::exchange(entry.default_value, value);
+  node.settings.push_back({entry.index, entry.sub_index, std::move(value), before});
 }
 
 /// Sets an object that the device may lack.

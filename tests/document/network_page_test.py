@@ -90,6 +90,29 @@ class NetworkPage(DocumentCase):
         self.assertEqual([title.split(":")[0] for title in found["#sync svg g title"]], ["master SYNC", "master TPDO 1"])
         self.assertIn("10.000 ms", found["#sync-title"][0])
 
+    def test_a_page_for_each_node(self) -> None:
+        self.write("plant #1.json", PLANT.replace('"a"', '"\u00e4xis 1"').replace('"a.', '"\u00e4xis 1.'))
+        self.plant()
+        network = self.document(self.folder / "plant #1.json", "--nodes")
+        pages = [self.folder / f"plant #1-{name}.html" for name in ("master", "\u00e4xis 1", "b")]
+        self.assert_clean(self.browse("audit-expanded", network, *pages))
+        reached = self.browse("follow", network, "#nodes tbody a")
+        self.assertEqual(reached, ["master", "\u00e4xis 1", "b"])
+        self.assertEqual(self.browse("follow", pages[1], ".lead a"), ["plant #1.json"])
+        # heartbeat_ms; RPDO 1 carries the signal of the master, every SYNC; TPDO 1 those of the node, every 10 ms.
+        self.assertEqual(self.browse("check", pages[1], "#changed")["objects"], ["1017h", "1400h", "1600h", "1800h", "1A00h"])
+
+    def test_markdown_of_each_node(self) -> None:
+        self.plant()
+        self.edsc("document", "plant.json", "--nodes", "-o", "plant.md")
+        self.assertIn("(plant-a.md)", (self.folder / "plant.md").read_text().replace("\\", ""))
+        self.assertIn("[plant.json](plant.md)", (self.folder / "plant-a.md").read_text().replace("\\", ""))
+
+    def test_pages_of_nodes_are_for_networks_in_files(self) -> None:
+        self.plant()
+        self.assertIn("is for networks", self.edsc("document", "node.eds", "--nodes", "-o", "a.html", exit_code=2).stderr)
+        self.assertIn("--output", self.edsc("document", "plant.json", "--nodes", exit_code=2).stderr)
+
     def test_options_for_devices_are_errors(self) -> None:
         self.plant()
         for option in (("--against", "old.json"), ("--node-id", "5")):

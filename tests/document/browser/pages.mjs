@@ -132,6 +132,18 @@ async function check(page, [file, box]) {
   return results(page);
 }
 
+// The headings of the pages that links of this selector lead to.
+async function follow(page, [file, selector]) {
+  await open(page, file);
+  const links = await page.$$eval(selector, (all) => all.map((one) => one.href));
+  const headings = [];
+  for (const link of links) {
+    await page.goto(link);
+    headings.push(await page.$eval('h1', (one) => one.textContent));
+  }
+  return headings;
+}
+
 // Texts of elements, by the selectors that follow the file.
 async function texts(page, [file, ...selectors]) {
   const seen = watch(page);
@@ -143,6 +155,6 @@ async function texts(page, [file, ...selectors]) {
   return found;
 }
 
-const commands = { audit, 'audit-expanded': (page, files) => audit(page, files, true), use, drawings, speed, narrow, check, texts };
+const commands = { audit, 'audit-expanded': (page, files) => audit(page, files, true), use, drawings, speed, narrow, check, follow, texts };
 const [chromium, command, ...rest] = process.argv.slice(2);
 console.log(JSON.stringify(await withPage(chromium, (page) => commands[command](page, rest))));
