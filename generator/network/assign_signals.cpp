@@ -7,14 +7,17 @@
 #include <canopen/pdo/transmission_type.hpp>
 #include <map>
 #include <set>
+#include <string>
 #include <tuple>
 #include <utility>
 
 #include "device/cob_id_parameter.hpp"
+#include "device/index_range.hpp"
 #include "device/limits.hpp"
 #include "device/pdo/pdo_defaults.hpp"
 #include "network/cob_id_use.hpp"
 #include "network/communication_objects.hpp"
+#include "network/configured_pdo.hpp"
 #include "network/node_settings.hpp"
 #include "network/resolve_signals.hpp"
 #include "text/counted.hpp"
@@ -107,16 +110,16 @@ class SignalPlanner {
       if (!receiver) return;
       receivers.push_back(*std::move(receiver));
     }
-    const std::uint32_t can_id = choose_can_id(*sender, receivers.front());
-    if (can_id > max_can_id) {
+    const std::optional<std::uint32_t> cob_id = choose_cob_id(*sender, receivers);
+    if (!cob_id) {
       diagnostics_.error("network-signal", first.description->position, "all CAN-IDs for PDOs are in use");
       return;
     }
-    sender->cob_id = can_id | (sender->cob_id & canopen::CobId::no_rtr_bit);
+    sender->cob_id = *cob_id | (sender->cob_id & canopen::CobId::no_rtr_bit);
     set_timing(*first.description, *sender);
     plan_.pdos.push_back(*std::move(sender));
     for (PlannedPdo& receiver : receivers) {
-      receiver.cob_id = can_id;
+      receiver.cob_id = *cob_id;
       plan_.pdos.push_back(std::move(receiver));
     }
   }
@@ -198,6 +201,7 @@ class SignalPlanner {
         static_cast<std::uint32_t>(communication_default(*chosen, 1).value_or(canopen::CobId::invalid_bit));
     const auto type = communication_default(*chosen, transmission_type_sub_index).value_or(255);
     planned.transmission_type = static_cast<std::uint8_t>(type);
+    planned.has_stated_can_id = has_stated_can_id(node, *chosen);
     return planned;
   }
 
@@ -230,25 +234,9 @@ class SignalPlanner {
     return at == node.device.pdos.end() ? nullptr : &*at;
   }
 
-  /// Whether `set` or a DCF configures the CAN-ID or the mapping: another signal must not change them.
-  static bool is_configured(const NetworkNode& node, const Pdo& pdo) {
-    const auto is_of_pdo = [&](std::uint16_t index, std::uint8_t sub_index) {
-      return index == pdo.mapping->index || (index == pdo.communication->index && sub_index == 1);
-    };
-    const bool is_set =
-        std::ranges::any_of(node.settings, [&](const Setting& one) { return is_of_pdo(one.index, one.sub_index); });
-    if (is_set || !node.loaded->sheet.is_dcf) return is_set;
-    for (const ObjectDescription& object : node.loaded->sheet.objects) {
-      for (const SubObjectDescription& sub_object : object.sub_objects) {
-        if (!sub_object.parameter_value.empty() && is_of_pdo(object.index, sub_object.sub_index)) return true;
-      }
-    }
-    return false;
-  }
-
-  [[nodiscard]] bool is_sent_by_another(std::uint32_t can_id, const NetworkNode& sender) const {
+  [[nodiscard]] bool is_sent_by_another(canopen::CobId cob_id, const NetworkNode& sender) const {
     return std::ranges::any_of(uses_, [&](const CobIdUse& use) {
-      return use.transmits && !use.extended && use.can_id == can_id && use.node != &sender;
+      return use.transmits && use.extended == cob_id.extended() && use.can_id == cob_id.can_id() && use.node != &sender;
     });
   }
 
@@ -256,7 +244,7 @@ class SignalPlanner {
   [[nodiscard]] bool is_linked_to_another(const NetworkNode& node, const Pdo& pdo, const NetworkNode& sender) const {
     if (pdo.direction != PdoDirection::receive || !on_by_default(pdo) || !is_configured(node, pdo)) return false;
     const canopen::CobId cob_id{static_cast<std::uint32_t>(communication_default(pdo, 1).value_or(0))};
-    return is_sent_by_another(cob_id.can_id(), sender);
+    return is_sent_by_another(cob_id, sender);
   }
 
   static bool has_mapping(const Pdo& pdo, const std::vector<std::uint32_t>& mapping) {
@@ -265,21 +253,34 @@ class SignalPlanner {
     });
   }
 
-  /// The CAN-ID of the sender's PDO; for a master without a file that of the receiver's PDO; a free one if another node
-  /// transmits that. Above `max_can_id` if none is free.
-  std::uint32_t choose_can_id(const PlannedPdo& sender, const PlannedPdo& receiver) {
+  /// The PDO of a signal whose CAN-ID the others get: the sender or receiver with a stated one; else the sender; for a
+  /// master without a file the first receiver.
+  static const PlannedPdo& leading(const NetworkNode& from, const PlannedPdo& sender,
+                                   const std::vector<PlannedPdo>& receivers) {
+    if (sender.has_stated_can_id) return sender;
+    const auto stated = std::ranges::find(receivers, true, &PlannedPdo::has_stated_can_id);
+    if (stated != receivers.end()) return *stated;
+    return from.has_file() ? sender : receivers.front();
+  }
+
+  /// The CAN-ID of the leading PDO, of 29 bits only if it is stated; a free one if another node transmits that. Nothing
+  /// if none is free.
+  std::optional<std::uint32_t> choose_cob_id(const PlannedPdo& sender, const std::vector<PlannedPdo>& receivers) {
     const NetworkNode& from = *network_.find(sender.node);
-    const canopen::CobId own{from.has_file() ? sender.cob_id : receiver.cob_id};
+    const PlannedPdo& lead = leading(from, sender, receivers);
+    const canopen::CobId own{lead.cob_id};
     const std::uint32_t can_id = own.can_id();
-    const bool is_usable = !own.extended() && can_id >= canopen::function_code::tpdo1 + 1U &&
-                           !canopen::is_restricted(can_id) && !is_sent_by_another(can_id, from);
+    const bool is_free = !is_sent_by_another(own, from);
+    if (lead.has_stated_can_id && own.extended() && is_free) return can_id | canopen::CobId::extended_bit;
+    const bool is_usable =
+        is_free && !own.extended() && can_id >= canopen::function_code::tpdo1 + 1U && !canopen::is_restricted(can_id);
     if (is_usable && (own.valid() || !used_.contains(can_id)) && assigned_.insert(can_id).second) {
       used_.insert(can_id);
       return can_id;
     }
     std::uint32_t free = canopen::function_code::tpdo1 + 1U;
     while (used_.contains(free) || canopen::is_restricted(free)) {
-      if (++free > max_can_id) return free;
+      if (++free > max_can_id) return std::nullopt;
     }
     used_.insert(free);
     assigned_.insert(free);
@@ -321,11 +322,21 @@ void set_receiver_timing(SignalPlan& plan) {
   }
 }
 
-/// Sets an entry unless it has the value.
+/// Sets an entry unless it has the value. A signal does not change what `set` states.
 void set_if_different(NetworkNode& node, std::uint16_t index, std::uint8_t sub_index, std::uint64_t number,
                       const Position& position, Diagnostics& diagnostics) {
   if (value_of(node.device, index, sub_index) == number) return;
-  set_number(node, index, sub_index, number, position, diagnostics);
+  const auto stated = std::ranges::find_if(
+      node.settings, [&](const Setting& one) { return one.index == index && one.sub_index == sub_index; });
+  if (stated == node.settings.end()) {
+    return set_number(node, index, sub_index, number, position, diagnostics);
+  }
+  const bool is_hexadecimal = sub_index == 1 || contains(mapping_parameters, index);
+  diagnostics.error(
+      "network-signal", stated->value.position,
+      fmt::format("node {}: {} must be {} for a signal", node.name, named(*node.device.find(index, sub_index)),
+                  is_hexadecimal ? fmt::format("0x{:X}", number) : std::to_string(number)),
+      {{position, "the signal"}});
 }
 
 void apply(NetworkNode& node, const PlannedPdo& pdo, Diagnostics& diagnostics) {

@@ -30,6 +30,7 @@ struct PlannedPdo {
   std::optional<std::uint16_t> event_timer_ms;
   std::vector<std::uint32_t> mapping;  ///< values of the mapping parameter
   Position position;                   ///< of its first signal
+  bool has_stated_can_id = false;      ///< by `set` or a DCF
 };
 
 struct SignalPlan {

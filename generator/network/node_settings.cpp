@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <canopen/can/cob_id.hpp>
+#include <map>
 #include <utility>
 
 #include "device/index_range.hpp"
@@ -17,6 +18,9 @@
 
 namespace edsc {
 namespace {
+
+/// The entries that the members of a node give a value, and where.
+using StatedEntries = std::map<std::pair<std::uint16_t, std::uint8_t>, Position>;
 
 Entry* find_entry(Device& device, std::uint16_t index, std::uint8_t sub_index) {
   return const_cast<Entry*>(std::as_const(device).find(index, sub_index));
@@ -72,10 +76,21 @@ void set_number(NetworkNode& node, std::uint16_t index, std::uint8_t sub_index, 
   set_value(node, *entry, Value{.bits = number, .hexadecimal = is_hexadecimal, .position = position}, diagnostics);
 }
 
-void set_text(NetworkNode& node, const WrittenValue& written, Diagnostics& diagnostics) {
+namespace {
+
+/// A value in the notation of an EDS, of an entry by name or address. `stated` has the entries of the node so far.
+void set_text(NetworkNode& node, const WrittenValue& written, StatedEntries& stated, Diagnostics& diagnostics) {
   const FoundEntry found = find_one_entry(node.device, written.entry.value);
   if (!found.ok()) {
     diagnostics.error("network-value", written.entry.position, fmt::format("node {}: {}", node.name, found.problem));
+    return;
+  }
+  const std::pair key{found.entry->index, found.entry->sub_index};
+  const auto [first, is_new] = stated.emplace(key, written.entry.position);
+  if (!is_new) {
+    diagnostics.error("network-value", written.entry.position,
+                      fmt::format("node {} has two values of {}", node.name, named(*found.entry)),
+                      {{first->second, "the first one"}});
     return;
   }
   Diagnostics of_value;
@@ -87,6 +102,8 @@ void set_text(NetworkNode& node, const WrittenValue& written, Diagnostics& diagn
   if (!value || of_value.errors() > 0) return;
   set_value(node, *find_entry(node.device, found.entry->index, found.entry->sub_index), *value, diagnostics);
 }
+
+}  // namespace
 
 void apply_sync(NetworkNode& node, const SyncDescription& sync, Diagnostics& diagnostics) {
   if (sync.producer) {
@@ -109,10 +126,12 @@ void apply_sync(NetworkNode& node, const SyncDescription& sync, Diagnostics& dia
 }
 
 void apply_node_members(NetworkNode& node, Diagnostics& diagnostics) {
+  StatedEntries stated;
   if (const WrittenNumber& time = node.description->heartbeat_ms) {
     set_number(node, communication::producer_heartbeat, 0, time->value, time->position, diagnostics);
+    stated.emplace(std::pair{communication::producer_heartbeat, std::uint8_t{0}}, time->position);
   }
-  for (const WrittenValue& value : node.description->set) set_text(node, value, diagnostics);
+  for (const WrittenValue& value : node.description->set) set_text(node, value, stated, diagnostics);
 }
 
 void update_pdos(NetworkNode& node, const SourceFile& network_file, Diagnostics& diagnostics) {

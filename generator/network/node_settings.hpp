@@ -13,13 +13,10 @@ namespace edsc {
 void set_number(NetworkNode& node, std::uint16_t index, std::uint8_t sub_index, std::uint64_t number,
                 const Position& position, Diagnostics& diagnostics);
 
-/// The same for a value in the notation of an EDS, of an entry by name or address.
-void set_text(NetworkNode& node, const WrittenValue& written, Diagnostics& diagnostics);
-
 /// The settings of `sync`, for all nodes that have its objects.
 void apply_sync(NetworkNode& node, const SyncDescription& sync, Diagnostics& diagnostics);
 
-/// The settings of the node itself: `heartbeat_ms`, `set`.
+/// The settings of the node itself: `heartbeat_ms`, `set`. Two values of one entry are reported.
 void apply_node_members(NetworkNode& node, Diagnostics& diagnostics);
 
 /// Resolves the PDOs of the device again, after settings of their parameters. Reports mappings of the network file that

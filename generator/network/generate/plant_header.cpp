@@ -47,12 +47,19 @@ std::string file_comment(const Network& network) {
 /// The names of a node that are not available for its signals: members of canopen::PlantNodeAccess.
 constexpr std::string_view access_members[] = {"boot", "booted", "node_id", "plant", "state"};
 
+/// The names that are not available for nodes: members of canopen::Plant, which would hide the node, the argument of
+/// the constructor of its nodes, and a namespace of the header.
+constexpr std::string_view plant_members[] = {"all_booted",    "boot",     "booted",        "command", "count",
+                                              "device",        "get",      "next_deadline", "on",      "on_booted",
+                                              "on_bus_status", "on_fault", "on_frame",      "on_time", "plant",
+                                              "request",       "set",      "signals",       "start",   "state"};
+
 class PlantHeader {
  public:
   PlantHeader(const Network& network, const std::string& name, const PlantParts& parts)
       : network_{network}, name_{name}, parts_{parts}, uses_{cob_id_uses(network)}, links_{pdo_links(uses_)} {
     IdentifierScope names;
-    static_cast<void>(names.take("signals", ""));
+    for (const std::string_view one : plant_members) static_cast<void>(names.take(std::string{one}, ""));
     for (const NetworkNode& node : network_.nodes) {
       const std::string wanted = to_snake_case(node.name);
       identifiers_.push_back(names.take(wanted.empty() ? "node" : wanted, std::to_string(node.node_id)));

@@ -161,6 +161,14 @@ class Generate(unittest.TestCase):
         for extension in ("eds", "dcf"):
             self.edsc("generate", self.out / f"master.{extension}", "-o", "headers")
 
+    def test_a_node_is_not_hidden_by_a_member_of_the_plant(self) -> None:
+        names = ["axis", "count", "device", "on_fault", "plant", "request", "state"]
+        nodes = {"m": {"node_id": 127, "master": True},
+                 **{name: {"node_id": i, "eds": "node.eds"} for i, name in enumerate(names, 1)}}
+        self.generate(json.dumps({"bit_rate": 500, "nodes": nodes}))
+        self.assertEqual(re.findall(r"^    \w+Node<Plant> (\w+);", (self.out / "plant.hpp").read_text(), re.MULTILINE),
+                         ["axis", "count_2", "device_3", "on_fault_4", "plant_5", "request_6", "state_7"])
+
     def test_a_node_without_a_heartbeat_is_guarded(self) -> None:
         self.generate(TINY.replace('"nodes": {', '"nodes": {"m": {"node_id": 127, "master": true}, ')
                       .replace('"ramp": 250', '"100Ch": 100, "100Dh": 3'))

@@ -135,6 +135,13 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
         network(signal("m", "d.2002h"), signal("m", "d.2003h"),
                 c={"node_id": 3, "eds": "node.eds", "heartbeat_ms": 100, "set": {"1800h:01": "0x204", "1800h:05": 10}},
                 d={"node_id": 4, "eds": "valid.eds", "heartbeat_ms": 100}), []),
+    "value_and_signal_disagree": (network(signal(*SPEED), a={**NODE_A, "set": {"1800h:05": 20}}), [("error", "network-signal")]),
+    "two_values_of_an_entry": (network(a={**NODE_A, "set": {"2006h": 20, "ramp": 30}}), [("error", "network-value")]),
+    "two_heartbeat_times": (network(a={**NODE_A, "set": {"1017h": 200}}), [("error", "network-value")]),
+    "receiver_with_a_can_id": (network(signal(*SPEED), b={**NODE_A, "node_id": 2, "set": {
+        "1400h:01": "0x181", "1600h:00": 1, "1600h:01": "0x20020010"}}), []),
+    "receiver_with_a_can_id_of_29_bits": (network(signal(*SPEED), b={**NODE_A, "node_id": 2, "set": {
+        "1400h:01": "0x20012345", "1600h:00": 1, "1600h:01": "0x20020010"}}), []),
     "inhibit_time_longer_than_the_event_timer": (network(signal(*SPEED), a={**NODE_A, "set": {"1800h:03": 101}}),
                                                  [("warning", "pdo-inhibit-time")]),
     "inhibit_time_of_the_sheet_longer_than_the_event_timer": (
