@@ -10,7 +10,8 @@ import sys
 import unittest
 
 from audits import Audits, Broken, add, data
-from plant import END_MS, EVENT_MS, HEARTBEAT_MS, PRE_OPERATIONAL, START_MS, STOP_MS, SYNC_PERIOD_MS, UNSIGNED32, Frame, axis, clean, eds_of, in_order, log_of, supply, without
+from plant import (END_MS, EVENT_MS, HEARTBEAT_MS, PRE_OPERATIONAL, START_MS, STOP_MS, SYNC_PERIOD_MS, UNSIGNED32, Frame, axis, block_upload,
+                   clean, eds_of, in_order, log_of, supply, without)
 
 
 def screen_of(frames: list[Frame], differences: bool = False) -> str:
@@ -63,6 +64,12 @@ class Times(Audits):
 
 
 class Traffic(Audits):
+    def test_a_log_may_begin_in_any_frame(self) -> None:
+        log = in_order(block_upload(150) + clean())
+        for at in range(0, len(log) // 2, 3):
+            with self.subTest(at=at):
+                self.assert_clean(Broken(lambda _, at=at: log[at:]))
+
     def assert_clean(self, case: Broken, *arguments: str) -> None:
         self.assertEqual(self.report(case, *arguments)["findings"], [])
 
