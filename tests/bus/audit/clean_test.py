@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 import unittest
 
-from audits import Audits, Broken, add, data
+from audits import Audits, Broken, add, data, guarded
 from plant import (END_MS, EVENT_MS, HEARTBEAT_MS, PRE_OPERATIONAL, START_MS, STOP_MS, SYNC_PERIOD_MS, UNSIGNED32, Frame, axis, block_upload,
                    clean, eds_of, in_order, log_of, supply, without)
 
@@ -117,6 +117,12 @@ class Traffic(Audits):
         self.assert_clean(Broken(reset, supply=supply() | {(0x1F80, 0): (UNSIGNED32, "1")}), *arguments)
         rules = {(one["rule"], one["node_id"]) for one in self.report(Broken(reset), *arguments)["findings"]}
         self.assertEqual(rules, {("nmt-state", 6)})
+
+    def test_node_guarding(self) -> None:
+        for name, requests in (("with", True), ("without", False)):
+            with self.subTest(f"{name} the remote frames in the log"):
+                log = guarded(clean(), (0x05, 0x85, 0x05, 0x85, 0x05))
+                self.assert_clean(Broken(lambda _, log=log, requests=requests: [one for one in log if requests or one.can_id != 0x705 or not one.remote]))
 
     def test_a_node_boots_with_the_node_id_of_lss(self) -> None:
         """Node 5 becomes node 7."""
