@@ -74,6 +74,7 @@ class Formats(unittest.TestCase):
         for seed in range(5):
             with self.subTest(seed=seed):
                 self.same(log_frames.frames(200, seed), log_frames.log2asc, True)
+                self.same(log_frames.frames(200, seed), lambda path, frames: log_frames.log2asc(path, frames, "-f"), True)
 
     def test_trc_of_python_can(self) -> None:
         for seed in range(5):
