@@ -114,9 +114,10 @@ inline constexpr Rule rows[] = {
      "CiA 301, 7.2.8.3.1", "the master is at fault"},
     {RuleId::nmt_state, "nmt-state", error,
      "a node reports an unknown state, or one that does not follow from the NMT commands", "CiA 301, 7.3.2.2",
-     "leaving Operational after an EMCY is accepted: 1029h; so is a self-starting node: 1F80h"},
+     "leaving Operational after an EMCY is accepted: 1029h; so is a self-starting node: 1F80h; the NMT "
+     "master, 1F80h or --master, need not obey"},
     {RuleId::nmt_boot_up, "nmt-boot-up", error, "a node does not send a boot-up message after a reset command",
-     "CiA 301, 7.3.2.2.1", "within 5 s"},
+     "CiA 301, 7.3.2.2.1", "within 5 s; not of the NMT master: 1F80h or --master"},
     {RuleId::nmt_reset, "nmt-reset", error, "a node sends a boot-up message without a reset command",
      "CiA 301, 7.3.2.2.1", "it was on the bus before: a reset by its watchdog or its supply, or a second node"},
     {RuleId::stopped_service, "stopped-service", error, "a stopped node sends an EMCY or answers an SDO",

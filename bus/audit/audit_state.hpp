@@ -49,6 +49,7 @@ struct NodeState {
 
   std::optional<canopen::NmtState> state;  ///< empty if not known
   Moment state_since;
+  bool may_boot = false;          ///< a reset command was sent that the node may have obeyed
   std::vector<EndedState> ended;  ///< since the last boot-up message, each state once, the last one at the end
   std::optional<std::int64_t> last_emcy_us;
   std::optional<std::int64_t> last_heartbeat_error_us;  ///< EMCY 8130h
@@ -83,6 +84,7 @@ struct AuditState {
   std::array<NodeState, node_ids> nodes;
   std::vector<std::uint8_t> known;  ///< the node-IDs with an EDS
   std::int64_t times_since = 0;     ///< since when the times of the log are in order
+  std::uint8_t nmt_master = 0;      ///< its node-ID, if it is given; 0: by 1F80h
   std::uint8_t lss_node_id = 0;     ///< that an LSS slave has last accepted; 0: none
 
   [[nodiscard]] NodeState& sender(const Message& message) { return nodes[message.node_id % node_ids]; }

@@ -40,6 +40,8 @@ class Auditor {
   Auditor(const Auditor&) = delete;
   Auditor& operator=(const Auditor&) = delete;
 
+  /// The node-ID of the NMT master, if it is a node, too.
+  void set_nmt_master(std::uint8_t node_id) { audit_.nmt_master = node_id; }
   void silence(RuleId rule) { audit_.findings.silence(rule); }
 
   /// Judges a frame whose message the decoder has just returned.

@@ -49,6 +49,7 @@ NodeSettings settings_of(const NodeModel& model) {
   settings.emcy_inhibit_us = model.parameter(0x1015, 0).value_or(0) * per_inhibit_unit;
   const auto start_up = model.parameter(0x1F80, 0);
   settings.starts_itself = start_up && (*start_up & canopen::nmt_start_up::no_self_start) == 0;
+  settings.is_nmt_master = start_up && (*start_up & canopen::nmt_start_up::master) != 0;
   read_tpdos(model, settings);
   return settings;
 }

@@ -42,6 +42,7 @@ struct NodeSettings {
   std::uint32_t emcy_id = 0;                  ///< as sync_id
   std::int64_t emcy_inhibit_us = 0;
   bool starts_itself = false;       ///< 1F80h
+  bool is_nmt_master = false;       ///< 1F80h
   std::vector<TpdoSettings> tpdos;  ///< by number - 1
   friend bool operator==(const NodeSettings&, const NodeSettings&) = default;
 };

@@ -187,6 +187,9 @@ void SdoFollower::finish(const Step& step) {
 }
 
 void SdoFollower::abort(const Step& step) {
+  // The last segment of a block has the command of an abort in its upper bits, and a sequence number in the others.
+  const bool is_exact = step.data[0] == canopen::sdo::abort_command;
+  if (!continues(is_exact || begun_, "segment", step)) return;
   Message& message = step.message;
   message.abort_code = canopen::sdo::word_of(step.data);
   message.problem = true;

@@ -32,6 +32,7 @@ struct Settings : LogSettings {
   audit::Limits limits;
   std::int64_t sdo_timeout_ms = 1000;
   std::uint32_t bit_rate_kbit = 0;
+  std::uint8_t nmt_master = 0;
   std::vector<std::string> silence;
   std::string format = "text";
   std::string output;
@@ -71,6 +72,7 @@ int audit_log(const Settings& given) {
   LogDecoder decoder{
       nodes.known(), nodes.labels, {settings.log_name(), settings.interface, LogOutput::text, false, {}}};
   audit::Auditor auditor{decoder.decoder(), settings.limits};
+  auditor.set_nmt_master(settings.nmt_master);
   for (const std::string& id : settings.silence) auditor.silence(audit::find_rule(id)->rule);
 
   std::uint64_t frames = 0;
@@ -126,6 +128,10 @@ void add_audit_options(CLI::App& command, int& exit_code) {
   command.add_option("--sdo-timeout", settings.sdo_timeout_ms, "time that an SDO server has to respond, in ms")
       ->check(CLI::Range(1, 3'600'000))
       ->capture_default_str();
+  command
+      .add_option("--master", settings.nmt_master,
+                  "node-ID of the NMT master, which need not obey its own commands (default: bit 0 of 1F80h)")
+      ->check(CLI::Range(1, 127));
   command.add_option("--bit-rate", settings.bit_rate_kbit, "of the bus, in kbit/s, to compute its load")
       ->check(CLI::Range(1, 1000));
   command.add_option("--max-load", settings.limits.max_load, "limit of the load over 100 ms, in percent")

@@ -150,6 +150,8 @@ std::function<void()> read_log(const LogSettings& settings, const std::function<
     return wait_for(file.descriptor(), interrupts) ? read_some(file.descriptor(), to, most) : 0;
   }};
   const LogFormat* const named = find_format(settings.log_format);
+  const std::string_view conversion = named == nullptr ? conversion_of(input.beginning()) : std::string_view{};
+  if (!conversion.empty()) fail(fmt::format("{}: {}", settings.log_name(), conversion));
   const LogFormat& format = named != nullptr ? *named : detect_format(input);
   std::string problem;
   const auto source = format.open(input, problem);

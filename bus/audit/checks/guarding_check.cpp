@@ -46,6 +46,8 @@ void GuardingCheck::response(const SeenMessage& seen, AuditState& audit) {
 void GuardingCheck::see(const SeenMessage& seen, AuditState& audit) {
   switch (seen.message.service) {
     case Service::boot_up: nodes_[seen.message.node_id] = {false, std::nullopt}; return;
+    // A response with toggle 0 looks like a heartbeat if the log does not have the remote frames.
+    case Service::heartbeat: nodes_[seen.message.node_id].toggle.reset(); return;
     case Service::guarding: return seen.frame.remote ? request(seen, audit) : response(seen, audit);
     default: return;
   }

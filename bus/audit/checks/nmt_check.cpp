@@ -28,6 +28,13 @@ bool boots_as_another(const NodeState& node, const AuditState& audit) {
          other.state_since.us >= node.state_since.us;
 }
 
+/// Whether a command may not apply to the node: the master need not obey its own commands, and a node without an EDS
+/// may be the master.
+bool may_ignore(std::uint8_t node_id, bool is_for_all, const AuditState& audit) {
+  const NodeState& node = audit.nodes[node_id];
+  return audit.nmt_master == node_id || node.settings.is_nmt_master || (node.model == nullptr && is_for_all);
+}
+
 void judge_boot_time(std::uint8_t node_id, const NodeState& node, const Moment& now, AuditState& audit) {
   if (node.state != NmtState::initialisation || !node.first_seen || !now.has_time) return;
   if (boots_as_another(node, audit)) return;
@@ -41,7 +48,7 @@ void judge_boot_time(std::uint8_t node_id, const NodeState& node, const Moment& 
 
 }  // namespace
 
-void NmtCheck::change(std::uint8_t node_id, NmtState state, const Moment& now, AuditState& audit) {
+void NmtCheck::change(std::uint8_t node_id, std::optional<NmtState> state, const Moment& now, AuditState& audit) {
   NodeState& node = audit.nodes[node_id];
   before_change_(node_id, now);
   std::erase_if(node.ended, [&](const EndedState& one) { return one.state == node.state; });
@@ -62,7 +69,12 @@ void NmtCheck::command(const SeenMessage& seen, AuditState& audit) {
   for (std::size_t id = 1; id < audit.nodes.size(); ++id) {
     const auto node_id = static_cast<std::uint8_t>(id);
     if (seen.message.node_id != 0 && seen.message.node_id != node_id) continue;
-    const NodeState& node = audit.nodes[id];
+    NodeState& node = audit.nodes[id];
+    if (may_ignore(node_id, seen.message.node_id == 0, audit)) {
+      node.may_boot = node.may_boot || row->leads_to == NmtState::initialisation;
+      change(node_id, std::nullopt, seen.at, audit);
+      continue;
+    }
     // Before its boot-up message a node does not hear anything.
     if (node.state == NmtState::initialisation || (node.state == row->leads_to && node.state)) continue;
     change(node_id, row->leads_to, seen.at, audit);
@@ -74,13 +86,14 @@ void NmtCheck::boot_up(const SeenMessage& seen, AuditState& audit) {
   NodeState& node = audit.nodes[node_id];
   if (node.state == NmtState::initialisation) {
     judge_boot_time(node_id, node, seen.at, audit);
-  } else if (node.first_seen && (node.state || node.first_seen->us >= audit.times_since)) {
+  } else if (!node.may_boot && node.first_seen && (node.state || node.first_seen->us >= audit.times_since)) {
     audit.findings.add({RuleId::nmt_reset, node_id}, seen.at, 0, [&] {
       return std::pair<std::string, std::string>{
           "a reset command before", fmt::format("the node was {}", node.state ? to_text(*node.state) : "on the bus")};
     });
   }
   change(node_id, NmtState::initialisation, seen.at, audit);
+  node.may_boot = false;
   node.ended.clear();
   change(node_id, NmtState::pre_operational, seen.at, audit);
   if (node.settings.starts_itself) node.state.reset();  // it may be Operational at once

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "audit/audit_state.hpp"
 
@@ -22,7 +23,7 @@ class NmtCheck {
   void command(const SeenMessage& seen, AuditState& audit);
   void boot_up(const SeenMessage& seen, AuditState& audit);
   void report(const SeenMessage& seen, AuditState& audit);
-  void change(std::uint8_t node_id, canopen::NmtState state, const Moment& now, AuditState& audit);
+  void change(std::uint8_t node_id, std::optional<canopen::NmtState> state, const Moment& now, AuditState& audit);
 
   BeforeChange before_change_;
 };

@@ -86,7 +86,9 @@ void PdoCheck::judge_tpdo(const SeenMessage& seen, AuditState& audit) {
   const bool due = settings.is_cyclic() && syncs == settings.transmission_type;
   const bool requested = tpdo.requests > 0 && !due;
   if (requested) --tpdo.requests;
-  if (settings.is_requested() && !requested) {
+  // The remote frame may be before the log.
+  const bool log_begins = seen.at.has_time && seen.at.us - audit.times_since < reaction_us;
+  if (settings.is_requested() && !requested && !log_begins) {
     audit.findings.add(subject_of(RuleId::pdo_not_requested, message.node_id, message.number), seen.at, 0, [] {
       return std::pair<std::string, std::string>{"a remote frame before", "none"};
     });

@@ -70,8 +70,7 @@ LogLine AscParser::parse_event(std::string_view time, std::string_view rest) {
 
   const std::string_view channel = take_word(rest);
   if (is_word(channel, "canfd")) {
-    line.kind = LogLineKind::can_fd;
-    line.interface = take_word(rest);
+    parse_fd_channel(rest, line);
     return line;
   }
   if (!is_number(channel)) return line;  // `Start of measurement`, `CAN 1 Status:`
@@ -88,6 +87,47 @@ LogLine AscParser::parse_event(std::string_view time, std::string_view rest) {
   line.kind = LogLineKind::frame;
   parse_data(rest, line);
   return line;
+}
+
+/// `1 Rx 706  0 0 1  1 05   130000  130  0 0 0 0 0 0`: after the CAN-ID a name, which may be missing, two flags, length
+/// code and length, data, duration and length of the frame, and flags with the kind of the frame.
+void AscParser::parse_fd_channel(std::string_view rest, LogLine& line) const {
+  constexpr std::uint32_t remote_flag = 0x10, fd_flag = 0x1000;
+  line.kind = LogLineKind::can_fd;
+  line.interface = take_word(rest);
+  take_word(rest);  // direction
+  const std::string_view id = take_word(rest);
+  if (is_word(id, "errorframe")) {
+    line.kind = LogLineKind::error_frame;
+    line.frame.extended = true;
+    return;
+  }
+  std::string_view word = take_word(rest);
+  if (!is_number(word)) word = take_word(rest);
+  take_word(rest);
+  const auto code = parse_whole<std::uint8_t>(take_word(rest), base_);
+  const auto size = parse_whole<std::uint8_t>(take_word(rest));
+  LogLine classical = line;
+  canopen::Frame& frame = classical.frame;
+  if (!code || !size || *size > frame.data.size() || !parse_id(id, frame) || !parse_bytes(rest, *size, frame)) return;
+  take_word(rest);
+  take_word(rest);
+  const auto flags = parse_whole<std::uint32_t>(take_word(rest), 16);
+  if (!flags || (*flags & fd_flag) != 0) return;
+  frame.remote = (*flags & remote_flag) != 0;
+  if (frame.remote) frame.size = std::min(*code, std::uint8_t{8});
+  classical.kind = LogLineKind::frame;
+  line = classical;
+}
+
+/// Returns false if there are fewer.
+bool AscParser::parse_bytes(std::string_view& rest, std::uint8_t size, canopen::Frame& frame) const {
+  while (frame.size < size) {
+    const auto byte = parse_whole<std::uint8_t>(take_word(rest), base_);
+    if (!byte) return false;
+    frame.data[frame.size++] = *byte;
+  }
+  return true;
 }
 
 /// `64`, `18EBFF00x`
@@ -120,15 +160,7 @@ void AscParser::parse_data(std::string_view rest, LogLine& line) const {
     line.frame.size = size;
     return;
   }
-  while (line.frame.size < size) {
-    const std::string_view word = take_word(rest);
-    const auto byte = parse_whole<std::uint8_t>(word, base_);
-    if (!byte) {
-      line = broken(line, "fewer bytes than the length states");
-      return;
-    }
-    line.frame.data[line.frame.size++] = *byte;
-  }
+  if (!parse_bytes(rest, size, line.frame)) line = broken(line, "fewer bytes than the length states");
 }
 
 }  // namespace edsc

@@ -7,6 +7,7 @@
 ///     0.017000 1  18EBFF00x       Tx   d 2 A0 0F
 ///     0.018000 2  1FF             Rx   r 8
 ///     0.019000 1  ErrorFrame
+///     0.020000 CANFD   1 Rx  1FF  0 0 1  1 05   130000  130  0 0 0 0 0 0       of a channel for CAN FD
 ///
 /// With `base dec`, CAN-IDs, lengths and bytes are decimal; with `timestamps relative`, a time counts from the previous
 /// event. Events that are not frames, such as statistics, are remarks.
@@ -32,6 +33,8 @@ class AscParser final : public LineParser {
   [[nodiscard]] LogLine parse_base(std::string_view text);
   [[nodiscard]] LogLine parse_event(std::string_view time, std::string_view rest);
   [[nodiscard]] bool parse_id(std::string_view word, canopen::Frame& frame) const;
+  void parse_fd_channel(std::string_view rest, LogLine& line) const;
+  [[nodiscard]] bool parse_bytes(std::string_view& rest, std::uint8_t size, canopen::Frame& frame) const;
   void parse_data(std::string_view rest, LogLine& line) const;
 
   int base_ = 16;

@@ -28,6 +28,9 @@ struct LogFormat {
 /// The format that the content has.
 [[nodiscard]] const LogFormat& detect_format(LogInput& input);
 
+/// Why a log that begins with these bytes must be converted before, as a clause; empty if it need not be.
+[[nodiscard]] std::string_view conversion_of(std::string_view beginning);
+
 /// Null if no format has this name.
 [[nodiscard]] const LogFormat* find_format(std::string_view name);
 

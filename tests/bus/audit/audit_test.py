@@ -16,7 +16,7 @@ import unittest
 from dataclasses import replace
 from html.parser import HTMLParser
 
-from audits import EDSC, SOURCE_DIR, Audits, Broken, add, data, replaced
+from audits import EDSC, SOURCE_DIR, Audits, Broken, add, data, guarded, replaced
 from plant import (END_MS, STOP_MS, Frame, axis, block_upload, changed, clean, eds_of, in_order, log_of, repeated_block_upload, sdo, segmented_upload,
                    supply, without)
 
@@ -27,17 +27,6 @@ ERROR_FRAME = "(1700000002.950000) can0 20000004#0004000000000000\n"
 def lss(ms: float, request: str, response: str) -> list[Frame]:
     frames = [Frame(ms, 0x7E5, data(request.ljust(16, "0")))]
     return [*frames, Frame(ms + 1, 0x7E4, data(response.ljust(16, "0")))] if response else frames
-
-
-def guarded(log: list[Frame], responses: tuple[int | None, ...]) -> list[Frame]:
-    """Node 5 is guarded every 200 ms from 1150 ms on, without heartbeats."""
-    log = [one for one in log if one.can_id != 0x705 or one.ms < 1120]
-    log += sdo(1125, 5, "2B17100000000000", "6017100000000000")
-    for at, response in enumerate(responses):
-        log.append(Frame(1150 + 200 * at, 0x705, remote=True))
-        if response is not None:
-            log.append(Frame(1151 + 200 * at, 0x705, bytes([response])))
-    return log
 
 
 def silent_supply(log: list[Frame]) -> list[Frame]:

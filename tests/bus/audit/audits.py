@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import jsonschema
-from plant import Frame, Parameters, axis, clean, eds_of, in_order, log_of, supply
+from plant import Frame, Parameters, axis, clean, eds_of, in_order, log_of, sdo, supply
 
 SOURCE_DIR = Path(sys.argv[1]).resolve()
 EDSC = Path(sys.argv[2]).resolve()
@@ -46,6 +46,17 @@ def data(text: str) -> bytes:
 def replaced(old: list[Frame], position: int, content: str) -> Change:
     """Another content of one of these frames."""
     return lambda log: [Frame(one.ms, one.can_id, data(content)) if one == old[position] else one for one in log]
+
+
+def guarded(log: list[Frame], responses: tuple[int | None, ...]) -> list[Frame]:
+    """Node 5 is guarded every 200 ms from 1150 ms on, without heartbeats."""
+    log = [one for one in log if one.can_id != 0x705 or one.ms < 1120]
+    log += sdo(1125, 5, "2B17100000000000", "6017100000000000")
+    for at, response in enumerate(responses):
+        log.append(Frame(1150 + 200 * at, 0x705, remote=True))
+        if response is not None:
+            log.append(Frame(1151 + 200 * at, 0x705, bytes([response])))
+    return log
 
 
 class Audits(unittest.TestCase):

@@ -9,8 +9,9 @@ from __future__ import annotations
 import sys
 import unittest
 
-from audits import Audits, Broken, add, data
-from plant import END_MS, EVENT_MS, HEARTBEAT_MS, PRE_OPERATIONAL, START_MS, STOP_MS, UNSIGNED32, Frame, axis, clean, eds_of, in_order, log_of, supply, without
+from audits import Audits, Broken, add, data, guarded
+from plant import (END_MS, EVENT_MS, HEARTBEAT_MS, PRE_OPERATIONAL, START_MS, STOP_MS, SYNC_PERIOD_MS, UNSIGNED32, Frame, axis, block_upload,
+                   clean, eds_of, in_order, log_of, supply, without)
 
 
 def screen_of(frames: list[Frame], differences: bool = False) -> str:
@@ -63,6 +64,12 @@ class Times(Audits):
 
 
 class Traffic(Audits):
+    def test_a_log_may_begin_in_any_frame(self) -> None:
+        log = in_order(block_upload(150) + clean())
+        for at in range(0, len(log) // 2, 3):
+            with self.subTest(at=at):
+                self.assert_clean(Broken(lambda _, at=at: log[at:]))
+
     def assert_clean(self, case: Broken, *arguments: str) -> None:
         self.assertEqual(self.report(case, *arguments)["findings"], [])
 
@@ -96,6 +103,26 @@ class Traffic(Audits):
         self.assert_clean(Broken(started, axis=starts_itself))
         rules = {one["rule"] for one in self.report(Broken(started))["findings"]}
         self.assertEqual(rules, {"pdo-state", "nmt-state"})
+
+    def test_the_master_need_not_obey_its_own_commands(self) -> None:
+        """Node 6, and node 9 without an EDS, remain Operational while the master resets all nodes."""
+        def reset(log: list[Frame]) -> list[Frame]:
+            log = [one for one in log if one.ms < STOP_MS]
+            log += [Frame(ms, can_id, b"\x05") for can_id in (0x706, 0x709) for ms in range(STOP_MS, STOP_MS + 500, HEARTBEAT_MS)]
+            log += [Frame(ms, 0x705, bytes([PRE_OPERATIONAL])) for ms in range(STOP_MS + 120, STOP_MS + 500, HEARTBEAT_MS)]
+            log += [Frame(ms, 0x080, bytes([at % 10 + 1])) for at, ms in enumerate(range(STOP_MS + 20, STOP_MS + 500, SYNC_PERIOD_MS))]
+            return [*log, Frame(STOP_MS + 3, 0x000, b"\x81\0"), Frame(STOP_MS + 50, 0x705, b"\0")]
+        arguments = ("--silence", "node-unknown")
+        self.assert_clean(Broken(reset), "--master", "6", *arguments)
+        self.assert_clean(Broken(reset, supply=supply() | {(0x1F80, 0): (UNSIGNED32, "1")}), *arguments)
+        rules = {(one["rule"], one["node_id"]) for one in self.report(Broken(reset), *arguments)["findings"]}
+        self.assertEqual(rules, {("nmt-state", 6)})
+
+    def test_node_guarding(self) -> None:
+        for name, requests in (("with", True), ("without", False)):
+            with self.subTest(f"{name} the remote frames in the log"):
+                log = guarded(clean(), (0x05, 0x85, 0x05, 0x85, 0x05))
+                self.assert_clean(Broken(lambda _, log=log, requests=requests: [one for one in log if requests or one.can_id != 0x705 or not one.remote]))
 
     def test_a_node_boots_with_the_node_id_of_lss(self) -> None:
         """Node 5 becomes node 7."""

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import csv
+import gzip
 import io
 import json
 import os
@@ -73,6 +74,7 @@ class Formats(unittest.TestCase):
         for seed in range(5):
             with self.subTest(seed=seed):
                 self.same(log_frames.frames(200, seed), log_frames.log2asc, True)
+                self.same(log_frames.frames(200, seed), lambda path, frames: log_frames.log2asc(path, frames, "-f"), True)
 
     def test_trc_of_python_can(self) -> None:
         for seed in range(5):
@@ -114,6 +116,15 @@ class Formats(unittest.TestCase):
             refused = edsc(log=capture)
             self.assertEqual(refused.returncode, WRONG_USAGE)
             self.assertIn(b"the link type is EN10MB, not CAN_SOCKETCAN (227)", refused.stderr)
+
+    def test_files_that_must_be_converted_before(self) -> None:
+        line = "(1.000000) can0 706#05\n"
+        for name, log in (("gzip", gzip.compress(line.encode())), ("UTF-16", line.encode("utf-16")),
+                          ("UTF-16", b"\xFE\xFF" + line.encode("utf-16-be")), ("BLF", b"LOGG\x90\0\0\0"), ("MDF", b"MDF     4.10    ")):
+            with self.subTest(name):
+                refused = edsc(log=log)
+                self.assertEqual((refused.returncode, refused.stdout), (WRONG_USAGE, b""))
+                self.assertRegex(refused.stderr.decode(), f"^edsc: <stdin>: .*{name}.*\n$")
 
     def test_a_truncated_capture(self) -> None:
         log = [Frame(0, 0x706, b"\x05"), Frame(100, 0x706, b"\x05")]

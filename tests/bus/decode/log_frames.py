@@ -95,10 +95,10 @@ def python_can_trc(path: Path, log: list[Frame], version: str) -> None:
     writer.stop()
 
 
-def log2asc(path: Path, log: list[Frame]) -> None:
+def log2asc(path: Path, log: list[Frame], *options: str) -> None:
     source = path.with_suffix(".candump")
     candump(source, log, "can0", 1_000_000_000)  # it regards a time of 0 s as missing
-    subprocess.run(["log2asc", "-I", source, "-O", path, "can0"], check=True, timeout=600)
+    subprocess.run(["log2asc", *options, "-I", source, "-O", path, "can0"], check=True, timeout=600)
 
 
 def scapy_capture(path: Path, log: list[Frame], writer_name: str) -> None:
