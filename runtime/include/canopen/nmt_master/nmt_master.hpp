@@ -186,18 +186,10 @@ class NmtMaster {
     void happened(NmtMasterEvent event, NodeId node_id, NmtState state) {
       if (event == NmtMasterEvent::lost) return master.on_lost(node_id, state);
       master.tell(event, node_id, state);
-      if (event == NmtMasterEvent::state_changed) master.check_state(node_id, state);
     }
   };
 
   void tell(NmtMasterEvent event, NodeId node_id, NmtState state) { host_.happened(event, node_id, state); }
-
-  /// Compares the state in a heartbeat with the commanded one; node guarding does so itself.
-  void check_state(NodeId node_id, NmtState state) {
-    const std::optional<std::size_t> i = slaves_.find(node_id);
-    if (!i || !slaves_.complete(*i) || !slaves_[*i].beats() || slaves_.error_control().may_be(*i, state)) return;
-    tell(NmtMasterEvent::unexpected_state, node_id, state);
-  }
 
   // The network
 

@@ -25,7 +25,7 @@ namespace canopen {
 enum class NmtMasterEvent : std::uint8_t {
   boot_up,           ///< its boot-up message
   state_changed,     ///< its first state, or a different one
-  unexpected_state,  ///< a booted slave reports a state other than the one commanded
+  unexpected_state,  ///< a state other than the one of the last command since its boot-up
   toggle_error,      ///< guarding: a response with the same toggle bit as the previous one
   lost,              ///< no heartbeat or guarding response within its time
   back,              ///< the first one after it was lost

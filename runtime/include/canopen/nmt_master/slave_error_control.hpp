@@ -60,16 +60,10 @@ class SlaveErrorControl {
     }
   }
 
-  /// Whether a slave with a heartbeat may be in a state: the one of the last command, or any if there was none since
-  /// its boot-up.
-  [[nodiscard]] bool may_be(std::size_t i, NmtState state) const {
-    return !commanded_[i].known() || commanded_[i].state() == state;
-  }
-
   /// Processes a message of a slave.
   template <class Listener>
   void on_message(const ErrorControlMessage& message, std::size_t i, TimePoint now, Listener&& listener) {
-    heartbeats_.on_message(message, now, Watch<Listener>{listener});
+    heartbeats_.on_message(message, now, Watch<Listener>{listener, commanded_[i]});
     guards_[i].on_message(message, Watch<Listener>{listener});
   }
 
@@ -95,12 +89,16 @@ class SlaveErrorControl {
   template <class Listener>
   struct Watch {
     Listener& listener;
+    LastState commanded{};  ///< unknown if there was no command since the boot-up
 
     void happened(HeartbeatEvent event, NodeId node_id, NmtState state) {
       switch (event) {
         case HeartbeatEvent::boot_up: return;
-        case HeartbeatEvent::started:
-        case HeartbeatEvent::state_changed: return listener.happened(NmtMasterEvent::state_changed, node_id, state);
+        case HeartbeatEvent::started: return listener.happened(NmtMasterEvent::state_changed, node_id, state);
+        case HeartbeatEvent::state_changed:
+          listener.happened(NmtMasterEvent::state_changed, node_id, state);
+          if (!commanded.known() || commanded.state() == state) return;
+          return listener.happened(NmtMasterEvent::unexpected_state, node_id, state);
         case HeartbeatEvent::back: return listener.happened(NmtMasterEvent::back, node_id, state);
         case HeartbeatEvent::lost: return listener.happened(NmtMasterEvent::lost, node_id, state);
       }

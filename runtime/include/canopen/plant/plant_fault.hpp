@@ -14,7 +14,7 @@ enum class PlantFaultKind : std::uint8_t {
   boot,              ///< its boot-up failed: `boot`. After no_response it is tried again every second
   lost,              ///< no heartbeat or guarding response within its time; it is reset, and booted when it is back
   not_watched,       ///< it has booted, but its loss will not be detected: neither heartbeat nor guarding
-  unexpected_state,  ///< it has booted, but its state is not the one commanded: `state`
+  unexpected_state,  ///< a state other than the one commanded: `state`
   toggle_error,      ///< guarding: a response with the same toggle bit as the previous one
   emergency,         ///< an EMCY with a code other than 0000h: `emergency`
   emergency_over,    ///< EMCY 0000h: an error has disappeared, the error register has the remaining ones
