@@ -229,7 +229,7 @@
 
   const show = { node: showNode, pdo: showPdo, other: showOther };
   const draw = () => {
-    if (isPaused || !bus || document.hidden) return;
+    if (isPaused || !bus) return;
     showBus();
     for (const key of changed) {
       const row = state.get(key);
@@ -240,6 +240,17 @@
     for (const row of state.values()) if (row.kind === 'node') showNode(row);
     if (emcyRows.length) showEmcys();
     drawPlots();
+  };
+
+  /* Once a frame, however many events have come: a tab in the background, or on a busy computer, records and does not draw. */
+  let isDue = false;
+  const drawSoon = () => {
+    if (isDue) return;
+    isDue = true;
+    requestAnimationFrame(() => {
+      isDue = false;
+      draw();
+    });
   };
 
   /* The events of the server */
@@ -278,7 +289,7 @@
     /* The EMCYs come by their keys, which are texts. */
     rows.sort((a, b) => (a.kind === 'emcy' && b.kind === 'emcy' ? a.number - b.number : 0));
     rows.forEach(take);
-    draw();
+    drawSoon();
     showConnection(true, 'connected');
     clearTimeout(silence);
     silence = setTimeout(showSilence, mostSilenceMs);
@@ -296,8 +307,6 @@
     });
   };
   connect();
-
-  document.addEventListener('visibilitychange', draw);  /* a tab in the background records, and does not draw */
 
   /* Buttons and keys */
 
