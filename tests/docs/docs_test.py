@@ -10,11 +10,14 @@ In README.md, CONTRIBUTING.md, CHANGELOG.md and all *.md of docs
 - a block under `<!-- run by: path -->` is run by that test, which names the document.
 - a block under `<!-- path -->` is part of that file, character by character.
 - a block under `<!-- output: command -->` is the output of the command.
-- the syntax of a ```python block, which is for another library, is checked.
+- the syntax of a ```python block, which is for another library, is checked; so is that of a ```json block.
+- the commands, actions and options of `edsc` in an indented block, which needs a bus or a file of the reader, exist.
+- the heading that a link names exists.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shlex
@@ -25,7 +28,10 @@ import tempfile
 from pathlib import Path
 
 BLOCK = re.compile(r"(?:<!-- (?P<mark>[^>]+) -->\n)?```(?P<language>\w*)\n(?P<text>.*?)```", re.DOTALL)
-LINK = re.compile(r"\]\((?!https?:)([^)#]+)(?:#[^)]*)?\)")
+LINK = re.compile(r"\]\((?!https?:)([^)#]*)(?:#([^)]*))?\)")
+HEADING = re.compile(r"^#+ (.*)$", re.MULTILINE)
+INDENTED_COMMAND = re.compile(r"^    edsc (.*)$", re.MULTILINE)
+OPTION = re.compile(r"(?<=\s)--?[a-z][a-z-]*")
 NOT_RUN_HERE = {"./test.sh"}
 
 
@@ -55,6 +61,29 @@ def check_python(document: Path, text: str) -> list[str]:
     return []
 
 
+def check_json(document: Path, text: str) -> list[str]:
+    try:
+        json.loads(text)
+    except json.JSONDecodeError as error:
+        return [f"{document}: line {error.lineno} of a block: {error.msg}"]
+    return []
+
+
+def check_indented_commands(document: Path, text: str, folder: Path, environment: dict[str, str]) -> list[str]:
+    problems = []
+    for line in INDENTED_COMMAND.findall(text):
+        command = line.split()[0]
+        if command.startswith("-"):
+            continue
+        action = line.split()[1] if command == "network" and line.split()[1].islower() else ""
+        printed = run(f"edsc {command} {action} --help", folder, environment)
+        if printed.returncode != 0:
+            problems.append(f"{document}: `edsc {command} {action}` does not exist")
+        known = set(OPTION.findall(printed.stdout.replace(",", " ")))
+        problems += [f"{document}: `edsc {line}`: unknown option {one}" for one in OPTION.findall(line) if one not in known]
+    return problems
+
+
 def check_block(document: Path, block: re.Match[str], source: Path, folder: Path, environment: dict[str, str]) -> list[str]:
     mark, text = block["mark"], block["text"]
     if mark and mark.startswith("output: "):
@@ -70,16 +99,26 @@ def check_block(document: Path, block: re.Match[str], source: Path, folder: Path
         return check_commands(document, text, folder, environment)
     if block["language"] == "python":
         return check_python(document, text)
+    if block["language"] == "json":
+        return check_json(document, text)
     return []
 
 
+def anchors_of(document: Path) -> set[str]:
+    """The anchors of its headings, as GitHub makes them."""
+    headings = HEADING.findall(BLOCK.sub("", document.read_text(encoding="utf-8")))
+    return {re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-") for heading in headings}
+
+
 def check_links(document: Path, text: str, source: Path) -> list[str]:
-    prose = BLOCK.sub("", text)
-    return [
-        f"{document}: the target of link {target} does not exist"
-        for target in LINK.findall(prose)
-        if not (source / document).parent.joinpath(target).exists()
-    ]
+    problems = []
+    for name, anchor in LINK.findall(BLOCK.sub("", text)):
+        target = (source / document).parent / name if name else source / document
+        if not target.exists():
+            problems.append(f"{document}: the target of link {name} does not exist")
+        elif anchor and target.suffix == ".md" and anchor not in anchors_of(target):
+            problems.append(f"{document}: {target.name} does not have the heading of link #{anchor}")
+    return problems
 
 
 def main() -> int:
@@ -95,6 +134,7 @@ def main() -> int:
         for document in documents:
             text = (source / document).read_text(encoding="utf-8")
             problems += check_links(document, text, source)
+            problems += check_indented_commands(document, BLOCK.sub("", text), folder, environment)
             for block in BLOCK.finditer(text):
                 blocks += 1
                 problems += check_block(document, block, source, folder, environment)
