@@ -205,7 +205,7 @@ class SignalPlanner {
     return planned;
   }
 
-  /// Names a free PDO with a fixed mapping of these entries and others; empty if there is none.
+  /// Names a PDO that maps these entries and others, and whose mapping is fixed or configured; empty if there is none.
   [[nodiscard]] std::string fixed_mapping(const NetworkNode& node, const PlannedPdo& planned) const {
     const Pdo* const pdo = find_pdo(node, planned.direction, [&](const Pdo& one) {
       return std::ranges::all_of(planned.mapping, [&](std::uint32_t value) {
@@ -220,9 +220,9 @@ class SignalPlanner {
       labels += (labels.empty() ? "" : ", ") + entry_label(entry.index, entry.sub_index);
     }
     return fmt::format(
-        "; its {} always maps {}: it can be used by signals with the same rate and receivers for all of "
+        "; its {} {} {}: it can be used by signals with the same rate and receivers for all of "
         "them, in this order",
-        pdo_label(*pdo), labels);
+        pdo_label(*pdo), pdo->dynamic ? "is configured to map" : "always maps", labels);
   }
 
   template <class Condition>

@@ -113,7 +113,7 @@ class NetworkLoader {
 
   /// A DCF states the node-ID, which the network file may repeat.
   void check_node_id(NetworkNode& node, const NodeDescription& description) {
-    if (description.node_id) return;
+    if (description.node_id || !description.dcf) return;
     if (node.device.node_id) {
       node.node_id = *node.device.node_id;
     } else {

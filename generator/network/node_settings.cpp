@@ -1,6 +1,5 @@
 #include "network/node_settings.hpp"
 #include "network/communication_objects.hpp"
-#include "network/reserved_values.hpp"
 
 #include <fmt/format.h>
 
@@ -12,6 +11,7 @@
 #include "device/index_range.hpp"
 #include "device/pdo/fixed_mapping.hpp"
 #include "device/pdo/resolve_pdos.hpp"
+#include "device/reserved_values.hpp"
 #include "device/types/value.hpp"
 #include "diagnostics/quote.hpp"
 #include "load/find_entry.hpp"

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "device/pdo/pdo_defaults.hpp"
 #include "network/checks/check_groups.hpp"
@@ -71,17 +72,23 @@ void check_consumer(const NetworkContext& context, const CobIdUse& producer, con
   }
 }
 
-/// A window that is not shorter than the period has no effect (CiA 301, 7.5.2.7).
+/// A window that is not shorter than the period has no effect (CiA 301, 7.5.2.7). That of `sync` is the window of all
+/// nodes: it is reported once.
 void check_windows(const NetworkContext& context, const NetworkNode& producer) {
   const std::uint64_t period = value_of(producer.device, communication::cycle_period).value_or(0);
+  const WrittenNumber& of_network = context.network.description.sync.window_us;
+  bool is_reported = false;
   for (const NetworkNode& node : context.network.nodes) {
     const std::uint64_t window = value_of(node.device, communication::window_length).value_or(0);
     if (period == 0 || window <= period) continue;
+    const Position place = place_of_value(node.device, communication::window_length);
+    const bool is_of_network = of_network && place.file == of_network->position.file &&
+                               place.line == of_network->position.line && place.column == of_network->position.column;
+    if (is_of_network && std::exchange(is_reported, true)) continue;
     context.diagnostics.error(
-        "network-sync-window", place_of_value(node.device, communication::window_length),
-        fmt::format("node {} has a synchronous window (1007h) of {} us, longer than the period of "
-                    "{} us",
-                    node.name, window, period));
+        "network-sync-window", place,
+        fmt::format("{} a synchronous window (1007h) of {} us, longer than the period of {} us",
+                    is_of_network ? "all nodes have" : fmt::format("node {} has", node.name), window, period));
   }
 }
 
@@ -94,10 +101,21 @@ void check_time(const NetworkContext& context) {
         fmt::format("nodes {} and {} produce TIME", producers[0]->node->name, producers[i]->node->name),
         {{producers[0]->position, producers[0]->node->name}});
   }
-  if (producers.empty() && !consumers.empty()) {
+  if (consumers.empty()) return;
+  if (producers.empty()) {
     context.diagnostics.warning(
         "network-time", consumers.front()->position,
         fmt::format("node {} consumes TIME, which no node produces", consumers.front()->node->name));
+    return;
+  }
+  const CobIdUse& producer = *producers.front();
+  for (const CobIdUse* const consumer : consumers) {
+    if (consumer->can_id == producer.can_id && consumer->extended == producer.extended) continue;
+    context.diagnostics.warning("network-time", consumer->position,
+                                fmt::format("node {} consumes TIME with CAN-ID {}, node {} produces it with {}",
+                                            consumer->node->name, can_id_text(consumer->can_id, consumer->extended),
+                                            producer.node->name, can_id_text(producer.can_id, producer.extended)),
+                                {{producer.position, producer.node->name}});
   }
 }
 

@@ -31,6 +31,8 @@ TEXTS = {  # name: (text, exit code, findings as (severity, rule, line, column))
                          [("error", "network-syntax", 2, 2)]),
     "name_with_line_end": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": true},\n "a/b": {"node_id": 2, '
                            '"master": true}}}', 1, [("error", "network-file", 2, 2)]),
+    "node_id_of_an_eds": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": true}, "a": {"node_id": 128, "eds": "node.eds"}}}',
+                          1, [("error", "network-file", 1, 83)]),
     "reserved_overflow": ('{"bit_rate": 500, "sync": {"overflow": 1}, "nodes": {"m": {"node_id": 1, "master": true}}}', 1,
                           [("error", "network-file", 1, 40)]),
 }
@@ -142,6 +144,10 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
         "1400h:01": "0x181", "1600h:00": 1, "1600h:01": "0x20020010"}}), []),
     "receiver_with_a_can_id_of_29_bits": (network(signal(*SPEED), b={**NODE_A, "node_id": 2, "set": {
         "1400h:01": "0x20012345", "1600h:00": 1, "1600h:01": "0x20020010"}}), []),
+    "two_can_ids_of_time": (network(a={**NODE_A, "set": {"1012h": "0x400001F0"}},
+                                    b={**NODE_A, "node_id": 2, "set": {"1012h": "0x800001F1"}}), [("warning", "network-time")]),
+    "window_of_all_nodes": ({**network(), "sync": {"producer": "m", "period_us": 10000, "window_us": 10001}},
+                            [("error", "network-sync-window")]),
     "inhibit_time_longer_than_the_event_timer": (network(signal(*SPEED), a={**NODE_A, "set": {"1800h:03": 101}}),
                                                  [("warning", "pdo-inhibit-time")]),
     "inhibit_time_of_the_sheet_longer_than_the_event_timer": (

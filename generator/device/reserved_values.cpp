@@ -1,11 +1,10 @@
-#include "network/reserved_values.hpp"
+#include "device/reserved_values.hpp"
 
 #include <algorithm>
 #include <canopen/pdo/pdo_parameters.hpp>
 
 #include "device/index_range.hpp"
 #include "device/pdo/pdo_defaults.hpp"
-#include "network/communication_objects.hpp"
 
 namespace edsc {
 namespace {
@@ -21,7 +20,7 @@ struct ReservedValue {
   std::string_view why;
 };
 
-constexpr ReservedValue rows[] = {
+constexpr ReservedValue reserved_values[] = {
     {{0x1400, 0x15FF},
      transmission_type_sub_index,
      [](std::uint64_t value) { return is_reserved_type(true, value); },
@@ -30,7 +29,7 @@ constexpr ReservedValue rows[] = {
      transmission_type_sub_index,
      [](std::uint64_t value) { return is_reserved_type(false, value); },
      "241 to 251 are reserved (CiA 301, 7.5.2.37)"},
-    {{communication::sync_overflow, communication::sync_overflow},
+    {{0x1019, 0x1019},
      0,
      [](std::uint64_t value) { return value == 1 || value > 240; },
      "1 and the values above 240 are reserved (CiA 301, 7.5.2.22)"},
@@ -39,11 +38,11 @@ constexpr ReservedValue rows[] = {
 }  // namespace
 
 std::string_view why_reserved(std::uint16_t index, std::uint8_t sub_index, std::uint64_t value) {
-  const auto row = std::ranges::find_if(rows, [&](const ReservedValue& one) {
+  const auto row = std::ranges::find_if(reserved_values, [&](const ReservedValue& one) {
     return index >= one.indices.first && index <= one.indices.last && sub_index == one.sub_index &&
            one.is_reserved(value);
   });
-  return row == std::end(rows) ? std::string_view{} : row->why;
+  return row == std::end(reserved_values) ? std::string_view{} : row->why;
 }
 
 }  // namespace edsc
