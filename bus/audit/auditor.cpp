@@ -17,25 +17,20 @@ Auditor::Auditor(const Decoder& decoder, const Limits& limits)
   }
 }
 
-/// A time shortly before that of an earlier frame, as in logs of two interfaces, counts as the same time.
 Moment Auditor::moment_of(const LogLine& line) {
-  constexpr std::int64_t max_disorder_us = 100'000;
   Moment moment{line.number, line.has_time, now_.us};
   if (!line.has_time) return moment;
-  if (!begin_us_) begin_us_ = line.microseconds;
-  if (line.microseconds - *begin_us_ < now_.us - max_disorder_us) restart_times(line);
-  moment.us = std::max(now_.us, line.microseconds - *begin_us_);
+  const std::int64_t back_us = times_.add(line.microseconds);
+  moment.us = times_.now_us();
+  if (back_us > 0) restart_times(moment, back_us);
   return moment;
 }
 
-/// The time continues a microsecond after the last frame, and no time is compared with one before. What happened in
-/// between is not known.
-void Auditor::restart_times(const LogLine& line) {
-  const std::int64_t back = now_.us - (line.microseconds - *begin_us_);
-  audit_.times_since = now_.us + 1;
-  begin_us_ = line.microseconds - audit_.times_since;
-  audit_.findings.add({RuleId::log_time}, {line.number, true, audit_.times_since}, back, [&] {
-    return std::pair<std::string, std::string>{"times in order", milliseconds(back) + " back"};
+/// No time is compared with one before. What happened in between is not known.
+void Auditor::restart_times(const Moment& now, std::int64_t back_us) {
+  audit_.times_since = now.us;
+  audit_.findings.add({RuleId::log_time}, now, back_us, [&] {
+    return std::pair<std::string, std::string>{"times in order", milliseconds(back_us) + " back"};
   });
   for (std::size_t id = 1; id < AuditState::node_ids; ++id) {
     end_stretch(static_cast<std::uint8_t>(id), now_);
@@ -113,7 +108,7 @@ Totals Auditor::totals() const {
   const auto nodes =
       std::ranges::count_if(audit_.nodes, [](const NodeState& node) { return node.first_seen.has_value(); });
   return {frames_,
-          begin_us_.has_value(),
+          times_.first_us().has_value(),
           now_.us,
           static_cast<std::size_t>(nodes),
           bus_.mean_load(now_, audit_.limits),

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +19,7 @@
 #include "audit/cycle_times.hpp"
 #include "decode/decoder.hpp"
 #include "decode/log/log_line.hpp"
+#include "decode/log/ordered_time.hpp"
 
 namespace edsc::audit {
 
@@ -57,7 +57,7 @@ class Auditor {
 
  private:
   [[nodiscard]] Moment moment_of(const LogLine& line);
-  void restart_times(const LogLine& line);
+  void restart_times(const Moment& now, std::int64_t back_us);
   void judge_interface(const LogLine& line);
   void end_stretch(std::uint8_t node_id, const Moment& now);
   void read_settings(const Message& message);
@@ -74,7 +74,7 @@ class Auditor {
   BusCheck bus_;
   CycleTimes cycle_times_;
   std::uint64_t frames_ = 0;
-  std::optional<std::int64_t> begin_us_;
+  OrderedTime times_;
   std::string interface_;  ///< of the first frame that has one
   Moment now_;
 };

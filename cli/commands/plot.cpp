@@ -5,6 +5,7 @@
 
 #include "commands/commands.hpp"
 #include "decode/log/log_decoder.hpp"
+#include "decode/log/ordered_time.hpp"
 #include "decode/log/value_number.hpp"
 #include "load/find_entry.hpp"
 #include "monitor/progress_line.hpp"
@@ -106,15 +107,21 @@ bool has_values(const Message& message) {
 }
 
 struct PlottedLog {
-  std::optional<std::int64_t> first_us;
-  std::int64_t last_us = 0;
-  std::uint64_t frames = 0;
+  static constexpr std::uint64_t max_shown_steps = 10;
 
-  void count(const LogLine& line) {
+  OrderedTime times;
+  std::uint64_t frames = 0, steps_back = 0;
+
+  /// Puts the time of the frame in order.
+  void count(LogLine& line, const Settings& settings, std::string& complaints) {
     ++frames;
     if (!line.has_time) return;
-    last_us = first_us ? std::max(last_us, line.microseconds) : line.microseconds;
-    first_us = std::min(first_us.value_or(line.microseconds), line.microseconds);
+    const std::int64_t back_us = times.add(line.microseconds);
+    if (back_us > 0 && ++steps_back <= max_shown_steps) {
+      complaints += fmt::format("{}:{}: the times go back by {:.3f} s; the plot continues without a gap\n",
+                                printable(settings.log_name()), line.number, static_cast<double>(back_us) / 1e6);
+    }
+    line.microseconds = *times.first_us() + times.now_us();
   }
 };
 
@@ -149,7 +156,7 @@ int plot(const Settings& settings) {
   const auto use = [&](LogLine& line) {
     const Message* const message = decoder.evaluate(line, complaints);
     if (message == nullptr) return;
-    log.count(line);
+    log.count(line, settings, complaints);
     take_values(line, *message, wanted);
     constexpr std::uint64_t some_frames = 4096;
     if (log.frames % some_frames == 0 && progress.due()) progress.show(counted(log.frames, "frame"));
@@ -160,11 +167,14 @@ int plot(const Settings& settings) {
   progress.hide();
   fail_if_unreadable();
   if (log.frames == 0) fail(settings.log_name() + ": the log has no frames", exit_input_has_errors);
-  if (!log.first_us) {
+  if (!log.times.first_us()) {
     fail(settings.log_name() + ": the frames have no times; candump writes them with -L or -t a",
          exit_input_has_errors);
   }
-  Plot picture{settings.title.empty() ? settings.log_name() : settings.title, *log.first_us, log.last_us, {}};
+  Plot picture{settings.title.empty() ? settings.log_name() : settings.title,
+               *log.times.first_us(),
+               *log.times.first_us() + log.times.now_us(),
+               {}};
   for (Wanted& one : wanted) {
     if (one.line.series.empty()) {
       print_visibly(stderr, "{}: {} has no values\n", settings.log_name(), one.line.name);

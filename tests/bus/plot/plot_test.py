@@ -99,6 +99,16 @@ class Plot(unittest.TestCase):
         self.assertEqual(picture.legend(0), ["node 6 axis-y Position actual value 6064h:00 in inc"])
         self.assert_points(picture, 0, picture.paths(0)[0], [(1.0, 0), (2.5, 1000), (4.0, -500), (11.0, 200)])
 
+    def test_times_that_go_back(self) -> None:
+        """After a step of more than 100 ms the plot continues; a shorter one counts as the same time."""
+        log = "".join(f"({time}) can0 {position(value)}\n"
+                      for time, value in ((100.0, 0), (102.0, 1000), (101.95, 900), (103.0, 500), (50.0, -500), (57.0, 200)))
+        result = edsc("6064h", log=log)
+        self.assertEqual(result.returncode, FINE)
+        self.assertEqual(result.stderr, "<stdin>:5: the times go back by 53.000 s; the plot continues without a gap\n")
+        picture = Picture(result.stdout)
+        self.assert_points(picture, 0, picture.paths(0)[0], [(100, 0), (102, 1000), (102, 900), (103, 500), (103, -500), (110, 200)])
+
     def test_values_without_a_unit_are_steps(self) -> None:
         """TPDO 2 has the BOOLEAN Ready in bit 0, and the INTEGER8 Step in bits 4..7: Ah is -6."""
         log = "".join(f"({time}) can0 286#{bits:02X}FFFFFF00002040\n" for time, bits in ((0.0, 0xA3), (3.0, 0x02), (10.0, 0x43)))
