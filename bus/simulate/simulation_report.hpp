@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "network/network.hpp"
-#include "network/timing.hpp"
+#include "network/timing/timing.hpp"
 #include "simulate/simulation_fault.hpp"
 #include "simulate/simulation_result.hpp"
 

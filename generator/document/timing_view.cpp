@@ -4,8 +4,8 @@
 #include <string>
 
 #include "document/views.hpp"
-#include "network/sync_timing.hpp"
-#include "network/timing.hpp"
+#include "network/timing/sync_timing.hpp"
+#include "network/timing/timing.hpp"
 #include "text/counted.hpp"
 
 namespace edsc::document {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "text/text_table.hpp"
 #include "text/counted.hpp"
+#include "text/text_table.hpp"
 
 namespace edsc {
 namespace {

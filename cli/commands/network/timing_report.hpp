@@ -8,8 +8,8 @@
 
 #include "network/cob_id_use.hpp"
 #include "network/network.hpp"
-#include "network/sync_timing.hpp"
-#include "network/timing.hpp"
+#include "network/timing/sync_timing.hpp"
+#include "network/timing/timing.hpp"
 
 namespace edsc {
 

@@ -4,7 +4,7 @@
 
 #include "network/checks/check_groups.hpp"
 #include "network/checks/merged_note.hpp"
-#include "network/timing.hpp"
+#include "network/timing/timing.hpp"
 
 namespace edsc {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "network/cob_id_use.hpp"
 #include "network/network.hpp"
-#include "network/timing.hpp"
+#include "network/timing/timing.hpp"
 
 namespace edsc {
 

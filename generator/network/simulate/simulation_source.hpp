@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "network/network.hpp"
-#include "network/timing.hpp"
+#include "network/timing/timing.hpp"
 #include "text/write_files.hpp"
 
 namespace edsc {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "network/response_times.hpp"
+#include "network/timing/response_times.hpp"
 
 namespace edsc {
 

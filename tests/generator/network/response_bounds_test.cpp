@@ -7,7 +7,7 @@
 #include <random>
 
 #include "can_simulator.hpp"
-#include "network/response_times.hpp"
+#include "network/timing/response_times.hpp"
 
 namespace edsc {
 namespace {

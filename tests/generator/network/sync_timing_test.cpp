@@ -1,4 +1,4 @@
-#include "network/sync_timing.hpp"
+#include "network/timing/sync_timing.hpp"
 
 #include <gtest/gtest.h>
 

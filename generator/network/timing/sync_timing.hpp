@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "network/cob_id_use.hpp"
-#include "network/timing.hpp"
+#include "network/timing/timing.hpp"
 
 namespace edsc {
 

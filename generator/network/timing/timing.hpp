@@ -6,7 +6,7 @@
 
 #include "network/cob_id_use.hpp"
 #include "network/network.hpp"
-#include "network/response_times.hpp"
+#include "network/timing/response_times.hpp"
 
 namespace edsc {
 

@@ -1,4 +1,4 @@
-#include "network/response_times.hpp"
+#include "network/timing/response_times.hpp"
 
 #include <algorithm>
 #include <canopen/can/arbitration.hpp>

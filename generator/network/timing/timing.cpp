@@ -1,4 +1,4 @@
-#include "network/timing.hpp"
+#include "network/timing/timing.hpp"
 
 #include <algorithm>
 #include <chrono>
