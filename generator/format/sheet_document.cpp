@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <string_view>
 #include <utility>
@@ -15,6 +16,21 @@ namespace {
 
 /// EDSVersion for the sections of CiA 306-1.
 constexpr std::string_view eds_version = "4.0";
+
+/// An object with sub-objects does not have a value, and CiA 306-1, 4.6.3, does not have these keys for it; an XDD
+/// often has their attributes. Its DataType is that of sub-objects without one.
+EntryDescription without_value(const ObjectDescription& object) {
+  EntryDescription entry = object;
+  for (Field EntryDescription::*const field :
+       {&EntryDescription::access_type, &EntryDescription::low_limit, &EntryDescription::high_limit,
+        &EntryDescription::default_value, &EntryDescription::parameter_value, &EntryDescription::pdo_mapping}) {
+    entry.*field = {};
+  }
+  const bool is_inherited = std::ranges::any_of(
+      object.sub_objects, [](const SubObjectDescription& sub_object) { return !sub_object.data_type.present; });
+  if (!is_inherited) entry.data_type = {};
+  return entry;
+}
 
 /// The text on one line, with one blank between lines.
 std::string one_line(std::string_view text) {
@@ -98,7 +114,7 @@ class SheetWriter {
 
   void write_object(const ObjectDescription& object) {
     add_section(fmt::format("{:04X}", object.index));
-    put_entry(object);
+    put_entry(object.sub_objects.empty() ? EntryDescription{object} : without_value(object));
     put(object_keys, object);
     for (const SubObjectDescription& sub_object : object.sub_objects) {
       add_section(fmt::format("{:04X}sub{:X}", object.index, sub_object.sub_index));

@@ -215,6 +215,16 @@ class FromXdd(CommandLine):
         self.assertIn("the attribute selfStartingDevice of CANopenGeneralFeatures cannot be expressed", made.stderr)
         self.assertIn("parameter/unit cannot be expressed", made.stderr)
 
+    def test_gives_an_array_the_keys_of_cia_306_only(self) -> None:
+        """Other loaders of EDS files reject a DataType or an AccessType beside SubNumber."""
+        array = 'name="Gains" objectType="8" subNumber="3"'
+        text = XDD.read_text(encoding="utf-8")
+        self.assertEqual(text.count(array), 1)
+        xdd = self.write("gains.xdd", text.replace(array, f'{array} dataType="0008" accessType="rw" defaultValue="1" PDOmapping="no"'))
+        self.same_device(xdd, ".eds")
+        section = (self.folder / "gains.eds").read_text().split("[2002]\n")[1].split("\n\n")[0]
+        self.assertEqual(section, "ParameterName=Gains\nObjectType=0x8\nSubNumber=3")
+
     def test_makes_a_dcf_of_an_xdc(self) -> None:
         self.same_device(XDC, ".dcf")
         text = (self.folder / "drive_node_5.dcf").read_text()
