@@ -74,6 +74,14 @@ void NetworkSession::check_extra_responses() {
   }
 }
 
+/// Another master may have started a node that was not completely configured.
+void NetworkSession::check_foreign_commands() {
+  for (LiveNode& live : nodes_) {
+    if (!live.succeeded() || watch_.foreign_commands(live.node->node_id) == live.foreign_commands) continue;
+    add_problem(live, " received a command of another NMT master while it was configured");
+  }
+}
+
 bool NetworkSession::compare() {
   for (LiveNode& live : nodes_) {
     if (live.problems.empty()) compare(live);
@@ -87,6 +95,7 @@ void NetworkSession::compare(LiveNode& live) {
   live.run.node = live.node->node_id;
   live.run.left_out = live.configuration.left_out;
   live.boot_ups = watch_.boot_ups(live.node->node_id);
+  live.foreign_commands = watch_.foreign_commands(live.node->node_id);
   if (!choose_different(live.run, *live.access, live.configuration, false, hooks_for(live, "compared"))) {
     return add_problem(live, " no longer answers" + place_text(live.run.result));
   }
@@ -108,6 +117,7 @@ bool NetworkSession::apply(const ApplySettings& settings) {
   bus_.listen(settling_time);
   check_restarts({});
   check_extra_responses();
+  check_foreign_commands();
   if (!all_succeeded()) return false;
   if (settings.start) start_all();
   return true;

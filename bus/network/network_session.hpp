@@ -29,12 +29,13 @@ struct LiveNode {
   Configuration configuration;
   std::unique_ptr<SdoAccess> access;
   bool answers = false;
-  Identity identity;         ///< found
-  bool is_compared = false;  ///< its values were read
-  ConfigurationRun run;      ///< the comparison, and the last attempt to configure it
-  unsigned attempts = 0;     ///< to configure it
-  unsigned boot_ups = 0;     ///< seen before the last comparison
-  bool started = false;      ///< by this session
+  Identity identity;              ///< found
+  bool is_compared = false;       ///< its values were read
+  ConfigurationRun run;           ///< the comparison, and the last attempt to configure it
+  unsigned attempts = 0;          ///< to configure it
+  unsigned boot_ups = 0;          ///< seen before the last comparison
+  unsigned foreign_commands = 0;  ///< of another NMT master, as many as before the last comparison
+  bool started = false;           ///< by this session
   std::vector<NodeProblem> problems;
 
   /// Whether it was configured.
@@ -87,6 +88,7 @@ class NetworkSession {
   void identify(LiveNode& live, bool wakes);
   void compare(LiveNode& live);
   void check_extra_responses();
+  void check_foreign_commands();
   void begin_again(LiveNode& live);
   void write(LiveNode& live);
   void configure(LiveNode& live, const ApplySettings& settings);

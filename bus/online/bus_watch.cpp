@@ -7,14 +7,22 @@
 namespace edsc {
 
 BusWatch::BusWatch(LiveBus& bus) : bus_{bus} {
-  const auto observe = [this](const canopen::Frame& frame, canopen::TimePoint) { count(frame); };
-  bus.on_frame = observe;
-  bus.on_sent = observe;
+  bus.on_frame = [this](const canopen::Frame& frame, canopen::TimePoint) {
+    count_command(frame);
+    count(frame);
+  };
+  bus.on_sent = [this](const canopen::Frame& frame, canopen::TimePoint) { count(frame); };
 }
 
 BusWatch::~BusWatch() {
   bus_.on_frame = nullptr;
   bus_.on_sent = nullptr;
+}
+
+void BusWatch::count_command(const canopen::Frame& frame) {
+  constexpr std::uint8_t nmt_size = 2;
+  if (frame.id != canopen::function_code::nmt || frame.extended || frame.remote || frame.size != nmt_size) return;
+  if (const std::uint8_t node_id = frame.data[1]; node_id < counts_.size()) ++counts_[node_id].foreign_commands;
 }
 
 void BusWatch::count(const canopen::Frame& frame) {

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 import time
@@ -285,6 +286,17 @@ node axis2 (6): 0 of 1 value differ
         self.assertTrue(result.stdout.endswith("1 of 3 nodes configured; none started\n"), result.stdout)
         frames = self.network.frames("000", "605", "606", "607")
         self.assertFalse([frame for frame in frames if frame.startswith("000 01") or frame[4:15] == "23 10 10 01"])
+
+    def test_another_master_that_starts_the_nodes(self) -> None:
+        self.three_axes()
+        self.fake_axis("000 01 00")
+        result = self.network_command("apply", "plant.json", "--start")
+        self.assertEqual(result.returncode, FAILED, result.stdout)
+        for node in ("axis1 (5)", "axis3 (7)", "axis2 (6)"):
+            self.assertRegex(result.stderr, rf"plant.json:\d+:5: error: node {re.escape(node)} received a command of another NMT "
+                                            r"master while it was configured\n")
+        self.assertTrue(result.stdout.endswith("0 of 3 nodes configured; none started\n"), result.stdout)
+        self.assertFalse([frame for frame in self.network.frames("000") if frame[4:6] == "01" and frame != "000 01 00"])
 
     def test_scan_writes_the_network_file(self) -> None:
         sheets = self.folder / "sheets"
