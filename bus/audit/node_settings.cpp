@@ -5,7 +5,7 @@
 namespace edsc::audit {
 namespace {
 
-constexpr std::int64_t per_millisecond = 1000, per_inhibit_unit = 100;  ///< microseconds
+constexpr std::int64_t per_millisecond = 1000;  ///< microseconds
 
 void read_tpdos(const NodeModel& model, NodeSettings& settings) {
   for (const PdoLayout& pdo : model.pdos()) {
@@ -15,7 +15,7 @@ void read_tpdos(const NodeModel& model, NodeSettings& settings) {
     TpdoSettings& tpdo = settings.tpdos[pdo.number - 1U];
     tpdo.is_sent = pdo.cob_id.valid() && pdo.bits > 0;
     tpdo.transmission_type = static_cast<std::uint8_t>(model.parameter(index, 2).value_or(255));
-    tpdo.inhibit_us = model.parameter(index, 3).value_or(0) * per_inhibit_unit;
+    tpdo.inhibit_us = std::int64_t{model.parameter(index, 3).value_or(0)} * model.inhibit_time_unit();
     tpdo.event_us = model.parameter(index, 5).value_or(0) * per_millisecond;
   }
 }
@@ -46,7 +46,7 @@ NodeSettings settings_of(const NodeModel& model) {
   settings.sync_window_us = model.parameter(0x1007, 0).value_or(0);
   if (const auto overflow = model.parameter(0x1019, 0)) settings.sync_overflow = static_cast<std::uint8_t>(*overflow);
   settings.emcy_id = model.emcy().value();
-  settings.emcy_inhibit_us = model.parameter(0x1015, 0).value_or(0) * per_inhibit_unit;
+  settings.emcy_inhibit_us = std::int64_t{model.parameter(0x1015, 0).value_or(0)} * usual_inhibit_time_unit;
   const auto start_up = model.parameter(0x1F80, 0);
   settings.starts_itself = start_up && (*start_up & canopen::nmt_start_up::no_self_start) == 0;
   settings.is_nmt_master = start_up && (*start_up & canopen::nmt_start_up::master) != 0;

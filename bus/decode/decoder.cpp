@@ -86,7 +86,7 @@ void decode_lss(const Frame& frame, Message& message) {
 
 Decoder::Decoder(const std::vector<KnownNode>& nodes) : followers_(node_ids) {
   for (const KnownNode& node : nodes) {
-    NodeModel model{node.node_id, *node.device};
+    NodeModel model{node.node_id, *node.device, node.inhibit_time_unit};
     if (NodeModel* const same = model_of(node.node_id)) {
       *same = std::move(model);
     } else {

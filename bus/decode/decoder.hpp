@@ -15,6 +15,7 @@
 #include "decode/node_model.hpp"
 #include "decode/sdo_follower.hpp"
 #include "device/device.hpp"
+#include "device/options/options.hpp"
 
 namespace edsc {
 
@@ -22,6 +23,7 @@ namespace edsc {
 struct KnownNode {
   std::uint8_t node_id = 0;
   const Device* device = nullptr;
+  std::uint32_t inhibit_time_unit = usual_inhibit_time_unit;  ///< of its PDOs, in microseconds
 };
 
 /// Decodes frames in the order of the bus, with memory that does not grow with their number. NMT, SYNC, TIME, EMCY,

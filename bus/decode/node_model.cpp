@@ -46,7 +46,8 @@ std::string display_name(const Object& object, const Entry& entry) {
   return object.has_sub_indices() ? object_name + ", " + entry.name : object_name;
 }
 
-NodeModel::NodeModel(std::uint8_t node_id, const Device& device) : node_id_{node_id}, device_{&device} {
+NodeModel::NodeModel(std::uint8_t node_id, const Device& device, std::uint32_t inhibit_time_unit)
+    : node_id_{node_id}, device_{&device}, inhibit_time_unit_{inhibit_time_unit} {
   profile_ = static_cast<std::uint16_t>(parameter(0x1000, 0).value_or(0));
   lay_out_all();
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "device/device.hpp"
+#include "device/options/options.hpp"
 #include "values/drive_words.hpp"
 
 namespace edsc {
@@ -47,10 +48,12 @@ struct SdoServerIds {
 class NodeModel {
  public:
   /// The device must outlive the model. Its formulas must be resolved for this node-ID.
-  NodeModel(std::uint8_t node_id, const Device& device);
+  NodeModel(std::uint8_t node_id, const Device& device, std::uint32_t inhibit_time_unit = usual_inhibit_time_unit);
 
   [[nodiscard]] std::uint8_t node_id() const { return node_id_; }
   [[nodiscard]] const Device& device() const { return *device_; }
+  /// Of PDOs, in microseconds.
+  [[nodiscard]] std::uint32_t inhibit_time_unit() const { return inhibit_time_unit_; }
   /// The low word of the device type 1000h: 402 for a drive.
   [[nodiscard]] std::uint16_t profile() const { return profile_; }
 
@@ -92,6 +95,7 @@ class NodeModel {
   std::uint8_t node_id_;
   std::uint16_t profile_ = 0;
   const Device* device_;
+  std::uint32_t inhibit_time_unit_;
   std::vector<PdoLayout> pdos_;  ///< in the order of the device
   Parameters written_;           ///< values that differ from the EDS
   Parameters stored_;            ///< those of them that remain after a reset

@@ -120,7 +120,9 @@ CLI::Option* add_log_options(CLI::App& command, LogSettings& settings) {
 
 std::vector<KnownNode> LogNodes::known() const {
   std::vector<KnownNode> nodes;
-  for (const auto& [node_id, device] : loaded) nodes.push_back({node_id, &*device->device});
+  for (const auto& [node_id, device] : loaded) {
+    nodes.push_back({node_id, &*device->device, device->options.inhibit_time_unit()});
+  }
   return nodes;
 }
 

@@ -79,19 +79,20 @@ void check_times(const RuleContext& context, const Pdo& pdo, std::uint64_t type)
   check_time(context, pdo, event_timer, canopen::event_timer_is_used(is_receive(pdo), number), type);
 }
 
-/// The event timer is in ms, the inhibit time in 100 us. With an inhibit time longer than its event timer, a PDO is
-/// never sent when the timer expires.
+/// The event timer is in ms. With an inhibit time longer than its event timer, a PDO is never sent when the timer
+/// expires.
 void check_inhibit_time(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {
-  constexpr std::uint64_t per_millisecond = 10;
+  constexpr std::uint64_t per_millisecond = 1000;
+  const std::uint32_t unit = context.options.inhibit_time_unit();
   if (!canopen::inhibit_time_is_used(is_receive(pdo), static_cast<std::uint32_t>(type))) return;
-  const std::uint64_t inhibit = communication_default(pdo, inhibit_time).value_or(0);
+  const std::uint64_t inhibit = communication_default(pdo, inhibit_time).value_or(0) * unit;
   const std::uint64_t timer = communication_default(pdo, event_timer).value_or(0);
   if (timer == 0 || inhibit <= timer * per_millisecond) return;
   const Entry& entry = *pdo.communication->find(inhibit_time);
   const Entry& timer_entry = *pdo.communication->find(event_timer);
   context.report("pdo-inhibit-time", default_place(entry),
-                 fmt::format("{} is {}.{} ms (in 100 us), longer than the event timer of {}, {} ms", named(entry),
-                             inhibit / per_millisecond, inhibit % per_millisecond, pdo_label(pdo), timer),
+                 fmt::format("{} is {}.{} ms (in {} us), longer than the event timer of {}, {} ms", named(entry),
+                             inhibit / per_millisecond, inhibit % per_millisecond / 100, unit, pdo_label(pdo), timer),
                  {{default_place(timer_entry), "the event timer"}});
 }
 

@@ -184,6 +184,12 @@ class OptionsReader {
 
 }  // namespace
 
+std::uint32_t Options::inhibit_time_unit() const {
+  const auto stated =
+      std::ranges::find_if(runtime, [](const RuntimeOption& one) { return one.row->flat_name == "inhibit_time_unit"; });
+  return stated == runtime.end() ? usual_inhibit_time_unit : stated->value;
+}
+
 Options read_options(const SourceFile& source, NameCheck is_name, Diagnostics& diagnostics) {
   OptionFile file{source, diagnostics};
   Options options;

@@ -72,6 +72,9 @@ struct DeprecatedOption {
 
 struct OptionRow;
 
+/// The unit of the inhibit times of PDOs in microseconds (CiA 301, 7.5.2.37), unless an option states another.
+inline constexpr std::uint32_t usual_inhibit_time_unit = 100;
+
 /// A deviation from CiA 301 for the runtime: a member of canopen::DeviceOptions.
 struct RuntimeOption {
   const OptionRow* row;
@@ -114,6 +117,9 @@ struct Options {
   [[nodiscard]] bool is_settable(std::uint16_t index, std::uint8_t sub_index) const {
     return std::ranges::find(settable, EntryKey{index, sub_index}) != settable.end();
   }
+
+  /// The unit of the inhibit times of PDOs in microseconds.
+  [[nodiscard]] std::uint32_t inhibit_time_unit() const;
 };
 
 /// Reads an options file. Unknown members and invalid values are errors, with the path of the member. The deprecated

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "device/complete_device.hpp"
-#include "device/options/option_table.hpp"
+#include "device/options/options.hpp"
 #include "device/pdo/pdo_defaults.hpp"
 #include "network/communication_objects.hpp"
 #include "network/error_control.hpp"
@@ -25,16 +25,8 @@ milliseconds interval(const WrittenNumber& number, unsigned default_ms) {
 }
 
 /// Inhibit times of 1015h and of PDOs are in multiples of 100 us.
-Nanoseconds inhibit_time(std::uint64_t value, std::uint32_t unit_us = 100) {
+Nanoseconds inhibit_time(std::uint64_t value, std::uint32_t unit_us = usual_inhibit_time_unit) {
   return microseconds{unit_us} * static_cast<std::int64_t>(value);
-}
-
-/// The unit of the inhibit times of PDOs, which differs in some devices.
-std::uint32_t inhibit_time_unit(const NetworkNode& node) {
-  for (const RuntimeOption& one : node.loaded->options.runtime) {
-    if (one.row->flat_name == "inhibit_time_unit") return one.value;
-  }
-  return 100;
 }
 
 class MessageCollector {
@@ -124,8 +116,8 @@ class MessageCollector {
   }
 
   void add_event_driven(const CobIdUse& use, std::size_t size) {
-    const Nanoseconds inhibit =
-        inhibit_time(communication_default(*use.pdo, inhibit_time_sub_index).value_or(0), inhibit_time_unit(*use.node));
+    const Nanoseconds inhibit = inhibit_time(communication_default(*use.pdo, inhibit_time_sub_index).value_or(0),
+                                             use.node->loaded->options.inhibit_time_unit());
     const milliseconds timer{
         static_cast<std::int64_t>(communication_default(*use.pdo, event_timer_sub_index).value_or(0))};
     TimedMessage one = message_of(use, size, inhibit != Nanoseconds{} ? inhibit : timer);

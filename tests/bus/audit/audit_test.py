@@ -125,6 +125,14 @@ class Options(Audits):
         self.assertEqual(self.report(case)["findings"], [])
         self.assertEqual([one["rule"] for one in self.report(case, "--sdo-timeout", "200")["findings"]], ["sdo-timeout"])
 
+    def test_the_options_file_states_the_unit_of_inhibit_times(self) -> None:
+        """100 units are 10 ms, with units of 1 ms 100 ms, with units of 50 us 5 ms."""
+        for unit, after_ms, rules in ((100, 6, ["pdo-inhibit-time"]), (100, 45, []), (1000, 45, ["pdo-inhibit-time"]), (50, 6, [])):
+            with self.subTest(unit=unit, after_ms=after_ms):
+                (self.folder / "axis.options.json").write_text(json.dumps({"pdo": {"inhibit_time_unit": unit}}))
+                case = Broken(add(Frame(1205 + after_ms, 0x185, bytes(2))))
+                self.assertEqual([one["rule"] for one in self.report(case)["findings"]], rules)
+
     def test_silence(self) -> None:
         self.assertEqual(self.report(BROKEN["nmt-reset"], "--silence", "nmt-reset")["findings"], [])
         unknown = self.audit(Broken(), "--silence", "nmt-rest")
