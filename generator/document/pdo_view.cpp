@@ -143,7 +143,7 @@ std::string pdo_can_id(const Value& value) {
 /// A time in milliseconds, `1.5 ms`.
 std::string timer_text(double time) { return time == 0 ? "0 ms (off)" : fmt::format("{} ms", time); }
 
-Json pdo_properties(const Pdo& pdo) {
+Json pdo_properties(const Pdo& pdo, const Options& options) {
   Json rows = Json::array();
   if (const Value* const cob_id = parameter(pdo, cob_id_sub_index)) {
     add_property(rows, "CAN-ID", pdo_can_id(*cob_id));
@@ -154,7 +154,8 @@ Json pdo_properties(const Pdo& pdo) {
       communication_default(pdo, transmission_type_sub_index).value_or(default_transmission_type);
   add_property(rows, "Transmission type", fmt::format("{}, {}", type, transmission_text(type)));
   if (const auto inhibit = communication_default(pdo, inhibit_time_sub_index)) {
-    add_property(rows, "Inhibit time", timer_text(static_cast<double>(*inhibit) / 10));
+    const std::uint64_t microseconds = *inhibit * options.inhibit_time_unit();
+    add_property(rows, "Inhibit time", timer_text(static_cast<double>(microseconds) / 1000));
   }
   if (const auto timer = communication_default(pdo, event_timer_sub_index)) {
     add_property(rows, "Event timer", timer_text(static_cast<double>(*timer)));
@@ -175,7 +176,7 @@ std::string remark_of(const Pdo& pdo) {
   return pdo.broken ? "the mapping is invalid" : "";
 }
 
-Json pdo_view(const Device& device, const Pdo& pdo) {
+Json pdo_view(const DeviceToDocument& input, const Pdo& pdo) {
   const bool receives = pdo.direction == PdoDirection::receive;
   const auto offset = static_cast<std::uint16_t>(pdo.number - 1);
   const bool is_enabled = on_by_default(pdo);
@@ -189,16 +190,16 @@ Json pdo_view(const Device& device, const Pdo& pdo) {
           {"has_communication", pdo.communication != nullptr},
           {"has_mapping", pdo.mapping != nullptr},
           {"remark", shown(remark_of(pdo))},
-          {"properties", pdo_properties(pdo)},
-          {"drawing", drawing_view(device, pdo)}};
+          {"properties", pdo_properties(pdo, input.loaded.options)},
+          {"drawing", drawing_view(input.device(), pdo)}};
 }
 
-Json group_view(const Device& device, PdoDirection direction, const char* name) {
+Json group_view(const DeviceToDocument& input, PdoDirection direction, const char* name) {
   Json enabled = Json::array();
   Json disabled = Json::array();
-  for (const Pdo& pdo : device.pdos) {
+  for (const Pdo& pdo : input.device().pdos) {
     if (pdo.direction != direction) continue;
-    (on_by_default(pdo) ? enabled : disabled).push_back(pdo_view(device, pdo));
+    (on_by_default(pdo) ? enabled : disabled).push_back(pdo_view(input, pdo));
   }
   const std::string count = counted(disabled.size(), "PDO");
   const bool has_disabled = !disabled.empty();
@@ -212,11 +213,11 @@ Json group_view(const Device& device, PdoDirection direction, const char* name) 
 
 }  // namespace
 
-void add_pdos(const Device& device, Json& view) {
+void add_pdos(const DeviceToDocument& input, Json& view) {
   Json groups = Json::array();
   for (const auto& [direction, name] :
        {std::pair{PdoDirection::receive, "Receive PDOs"}, std::pair{PdoDirection::transmit, "Transmit PDOs"}}) {
-    Json group = group_view(device, direction, name);
+    Json group = group_view(input, direction, name);
     if (group["group_size"] != 0) groups.push_back(std::move(group));
   }
   view["has_pdos"] = !groups.empty();

@@ -40,7 +40,7 @@ void add_identity(const DeviceToDocument& input, Json& view);
 void add_objects(const DeviceToDocument& device, Json& view);
 
 /// `pdo_groups`, with the drawing of each PDO.
-void add_pdos(const Device& device, Json& view);
+void add_pdos(const DeviceToDocument& input, Json& view);
 
 /// `findings` and a sentence that counts them.
 void add_findings(const Diagnostics& diagnostics, Json& view);

@@ -223,7 +223,7 @@ class FromXdd(CommandLine):
         xdd = self.write("gains.xdd", text.replace(array, f'{array} dataType="0008" accessType="rw" defaultValue="1" PDOmapping="no"'))
         self.same_device(xdd, ".eds")
         section = (self.folder / "gains.eds").read_text().split("[2002]\n")[1].split("\n\n")[0]
-        self.assertEqual(section, "ParameterName=Gains\nObjectType=0x8\nSubNumber=3")
+        self.assertEqual(section, "ParameterName=Gains\nObjectType=8\nSubNumber=3")
 
     def test_makes_a_dcf_of_an_xdc(self) -> None:
         self.same_device(XDC, ".dcf")

@@ -123,6 +123,9 @@ class DevicePage(DocumentCase):
         self.assertEqual({key: found[key] for key in ("CAN-ID", "Transmission type", "Inhibit time", "Event timer")},
                          {"CAN-ID": "180h + node-ID", "Transmission type": "254, event-driven (manufacturer)",
                           "Inhibit time": "1.5 ms", "Event timer": "250 ms"})
+        self.write("timers.options.json", '{"pdo": {"inhibit_time_unit": 1000}}')
+        found = self.browse("drawings", self.document(path, "--keep-going"))["tpdo-1"]["properties"]
+        self.assertEqual(found["Inhibit time"], "15 ms")
 
     def test_texts_of_the_eds_are_not_markup(self) -> None:
         path = self.write("evil.eds", sheet(
