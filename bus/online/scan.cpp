@@ -9,6 +9,8 @@
 #include <iterator>
 #include <list>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "device/types/little_endian.hpp"
 #include "online/bus_watch.hpp"
@@ -66,6 +68,7 @@ class Interview {
 
   void cancel() { client_.cancel(canopen::AbortCode::general, bus_.now()); }
 
+  [[nodiscard]] std::uint8_t node_id() const { return node_.node_id; }
   [[nodiscard]] bool over() const { return next_ == question_count; }
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return client_.next_deadline(); }
 
@@ -110,12 +113,11 @@ class Scan {
     const TimePoint begin = bus_.now();
     std::size_t next = 0;
     while (next != settings_.nodes.size() || !running_.empty() || waits_for_heartbeats(begin)) {
-      while (next != settings_.nodes.size() && running_.size() < max_at_once) {
-        running_.emplace_back(bus_, nodes_[settings_.nodes[next++]], Duration{settings_.timeout_ms * 1000U});
-      }
+      while (next != settings_.nodes.size() && running_.size() < max_at_once) ask(settings_.nodes[next++]);
       if (const auto frame = bus_.receive(wait())) on_frame(*frame);
       for (Interview& interview : running_) interview.on_time(bus_.now());
-      running_.remove_if([](const Interview& interview) { return interview.over(); });
+      std::erase_if(running_, [](const Interview& interview) { return interview.over(); });
+      ask_again();
       if (running_.empty() && next == settings_.nodes.size() && !asked_all_) {
         asked_all_ = true;
         asked_at_ = bus_.now();
@@ -136,6 +138,23 @@ class Scan {
   }
 
  private:
+  void ask(std::uint8_t node_id) {
+    running_.emplace_back(bus_, nodes_[node_id], Duration{settings_.timeout_ms * 1000U});
+    asked_[node_id] = true;
+  }
+
+  /// A node that was asked before its boot-up message and did not answer is asked once more.
+  void ask_again() {
+    for (const std::uint8_t node_id : std::exchange(booted_, {})) {
+      if (nodes_[node_id].answers_sdo || !asked_[node_id]) continue;
+      if (std::ranges::find(running_, node_id, &Interview::node_id) == running_.end()) {
+        ask(node_id);
+      } else {
+        booted_.push_back(node_id);
+      }
+    }
+  }
+
   [[nodiscard]] Duration wait() const {
     const TimePoint now = bus_.now();
     Duration shortest = look_again;
@@ -152,6 +171,8 @@ class Scan {
     if (!message) return;
     FoundNode& node = nodes_[message->node_id.value()];
     node.state = message->state;
+    if (message->state != canopen::NmtState::initialisation || node.node_id == 0) return;
+    if (!std::exchange(has_booted_[node.node_id], true)) booted_.push_back(node.node_id);
   }
 
   [[nodiscard]] bool waits_for_heartbeats(TimePoint begin) const {
@@ -175,6 +196,8 @@ class Scan {
   BusWatch watch_{bus_};
   std::array<FoundNode, 128> nodes_{};
   std::list<Interview> running_;
+  std::array<bool, 128> asked_{}, has_booted_{};  ///< by node-ID
+  std::vector<std::uint8_t> booted_;              ///< the nodes to be asked again
   bool asked_all_ = false;
   TimePoint asked_at_{};
 };

@@ -90,6 +90,24 @@ node  state  vendor-ID  product    revision   serial     device type            
 class ScanOfAnEmptyBus(LiveTest):
     nodes = ()
 
+    def test_a_node_that_boots_is_asked_again(self) -> None:
+        """It is not ready for the first request, and sends its boot-up message only then."""
+        requests = []
+
+        def answer(frame: str) -> list[str]:
+            if not frame.startswith("607 40"):
+                return []
+            requests.append(frame)
+            if len(requests) == 1:
+                return ["707 00"]
+            return ["587 43 00 10 00 92 01 02 00"] if frame[7:15] == "00 10 00" else [f"587 80 {frame[7:15]} 00 00 02 06"]
+
+        self.network.device(answer)
+        result = self.edsc("scan", "--nodes", "7", "--timeout", 500, "--listen", 100, "--format", "json")
+        (node,) = self.expect_json(result, "scan.schema.json")["nodes"]
+        self.assertEqual((node["node_id"], node["answers_sdo"], node["device_type"]), (7, True, 0x20192))
+        self.assertEqual([frame[7:15] for frame in requests[:2]], ["00 10 00", "00 10 00"])
+
     def test_nothing_is_there(self) -> None:
         self.expect(self.edsc("scan", "--timeout", 20, "--listen", 20), FAILED,
                     stderr=f"edsc: no node answers on {self.network.address}\n")
