@@ -67,6 +67,13 @@ std::string node_with_id(const SimulatedNetwork& simulated, unsigned node_id) {
   return at != nodes.end() ? at->name : fmt::format("node {}", node_id);
 }
 
+/// The NMT master sends the SDO requests and NMT commands.
+std::string sender_of(const SimulatedNetwork& simulated, const OtherFrames& frames) {
+  if (frames.node) return node_of(simulated, *frames.node).name;
+  const NetworkNode* const master = simulated.network.master();
+  return master != nullptr ? master->name : "master";
+}
+
 std::string condition_text(const SimulatedNodeEnd& end) {
   switch (end.condition) {
     case Condition::off: return "off";
@@ -111,9 +118,7 @@ void add_frames(const SimulatedNetwork& simulated, std::vector<std::string>& lin
     add(can_id_text(one.message.can_id, one.message.extended), one.name, simulated.result.messages[i], bound_of(one));
   }
   for (const OtherFrames& one : simulated.result.others) {
-    add(can_id_text(one.can_id, one.extended),
-        one.node ? fmt::format("{}, other frames", node_of(simulated, *one.node).name) : "master, other frames",
-        one.seen, std::nullopt);
+    add(can_id_text(one.can_id, one.extended), sender_of(simulated, one) + ", other frames", one.seen, std::nullopt);
   }
   for (std::string& line : table.lines()) lines.push_back(std::move(line));
 }
