@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "eds/sections/section_keys.hpp"
 #include "format/object_list_sections.hpp"
@@ -19,15 +20,14 @@ constexpr std::string_view eds_version = "4.0";
 
 /// An object with sub-objects does not have a value, and CiA 306-1, 4.6.3, does not have these keys for it; an XDD
 /// often has their attributes. Its DataType is that of sub-objects without one.
-EntryDescription without_value(const ObjectDescription& object) {
-  EntryDescription entry = object;
+EntryDescription without_value(EntryDescription entry, const std::vector<SubObjectDescription>& sub_objects) {
   for (Field EntryDescription::*const field :
        {&EntryDescription::access_type, &EntryDescription::low_limit, &EntryDescription::high_limit,
         &EntryDescription::default_value, &EntryDescription::parameter_value, &EntryDescription::pdo_mapping}) {
     entry.*field = {};
   }
   const bool is_inherited = std::ranges::any_of(
-      object.sub_objects, [](const SubObjectDescription& sub_object) { return !sub_object.data_type.present; });
+      sub_objects, [](const SubObjectDescription& sub_object) { return !sub_object.data_type.present; });
   if (!is_inherited) entry.data_type = {};
   return entry;
 }
@@ -114,7 +114,8 @@ class SheetWriter {
 
   void write_object(const ObjectDescription& object) {
     add_section(fmt::format("{:04X}", object.index));
-    put_entry(object.sub_objects.empty() ? EntryDescription{object} : without_value(object));
+    const EntryDescription& entry = object;
+    put_entry(object.sub_objects.empty() ? entry : without_value(entry, object.sub_objects));
     put(object_keys, object);
     for (const SubObjectDescription& sub_object : object.sub_objects) {
       add_section(fmt::format("{:04X}sub{:X}", object.index, sub_object.sub_index));
