@@ -48,7 +48,7 @@ Json message_view(const TimedMessage& one) {
           {"transmission", time_text(one.response.transmission)},
           {"load", load_text(one)},
           {"worst", bound_text(one.response)},
-          {"deadline", time_text(one.message.deadline.value_or(one.message.period))},
+          {"deadline", time_text(deadline_of(one.message))},
           {"verdict", one.response.meets_deadline ? "yes" : "no"},
           {"class", one.response.meets_deadline ? "met" : "missed"}};
 }

@@ -100,6 +100,12 @@ std::vector<CobIdUse> cob_id_uses(const Network& network) {
   return uses;
 }
 
+const CobIdUse* sync_producer(const std::vector<CobIdUse>& uses) {
+  const auto found = std::ranges::find_if(
+      uses, [](const CobIdUse& use) { return use.service == FrameService::sync && use.transmits; });
+  return found == uses.end() ? nullptr : &*found;
+}
+
 std::string can_id_text(std::uint32_t can_id, bool extended) {
   return fmt::format("{:03X}h{}", can_id, extended ? " (29 bits)" : "");
 }

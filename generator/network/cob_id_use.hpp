@@ -28,6 +28,9 @@ struct CobIdUse {
 /// The uses of all nodes: configured COB-IDs that exist, and the fixed ones of NMT, the default SDO and error control.
 [[nodiscard]] std::vector<CobIdUse> cob_id_uses(const Network& network);
 
+/// The first node that transmits SYNC; null if none does.
+[[nodiscard]] const CobIdUse* sync_producer(const std::vector<CobIdUse>& uses);
+
 /// `185h`, or `1234h (29 bits)`.
 [[nodiscard]] std::string can_id_text(std::uint32_t can_id, bool extended);
 

@@ -19,8 +19,6 @@ std::string milliseconds_text(Nanoseconds time) {
 
 Json microseconds_json(Nanoseconds time) { return static_cast<double>(time.count()) / 1e3; }
 
-Nanoseconds deadline_of(const TimedMessage& one) { return one.message.deadline.value_or(one.message.period); }
-
 std::string bound_text(const ResponseTime& response) {
   if (response.worst) return milliseconds_text(*response.worst);
   return response.bound == ResponseBound::overload ? "overload" : "not found";
@@ -28,7 +26,7 @@ std::string bound_text(const ResponseTime& response) {
 
 /// The message with the least time between its worst response and its deadline; null without a bound.
 const TimedMessage* nearest_to_deadline(const NetworkTiming& timing) {
-  const auto reserve = [](const TimedMessage& one) { return deadline_of(one) - *one.response.worst; };
+  const auto reserve = [](const TimedMessage& one) { return deadline_of(one.message) - *one.response.worst; };
   const TimedMessage* nearest = nullptr;
   for (const TimedMessage& one : timing.messages) {
     if (!one.response.worst || one.has_assumed_period) continue;
@@ -48,7 +46,7 @@ Json message_json(const TimedMessage& one) {
           {"synchronous", one.is_synchronous},
           {"transmission_us", microseconds_json(one.response.transmission)},
           {"worst_us", one.response.worst ? microseconds_json(*one.response.worst) : Json(nullptr)},
-          {"deadline_us", microseconds_json(deadline_of(one))},
+          {"deadline_us", microseconds_json(deadline_of(one.message))},
           {"meets_deadline", one.response.meets_deadline}};
 }
 
@@ -76,7 +74,8 @@ std::vector<std::string> TimingReport::summary() const {
   }
   if (const TimedMessage* const nearest = nearest_to_deadline(timing_)) {
     lines.push_back(fmt::format("nearest to its deadline: {}, at most {} of {} ms", nearest->name,
-                                milliseconds_text(*nearest->response.worst), milliseconds_text(deadline_of(*nearest))));
+                                milliseconds_text(*nearest->response.worst),
+                                milliseconds_text(deadline_of(nearest->message))));
   }
   return lines;
 }
@@ -90,7 +89,7 @@ std::vector<std::string> TimingReport::table() const {
                one.message.remote ? "remote" : std::to_string(one.message.size),
                milliseconds_text(one.message.period) + (one.has_assumed_period ? " assumed" : ""),
                milliseconds_text(one.response.transmission), bound_text(one.response),
-               milliseconds_text(deadline_of(one)), one.response.meets_deadline ? "" : "missed"});
+               milliseconds_text(deadline_of(one.message)), one.response.meets_deadline ? "" : "missed"});
   }
   return table.lines();
 }

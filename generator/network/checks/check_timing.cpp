@@ -33,7 +33,7 @@ void check_response(const NetworkContext& context, const TimedMessage& one) {
   if (one.has_assumed_period || one.response.meets_deadline || !one.response.worst) return;
   const std::string can_id = can_id_text(one.message.can_id, one.message.extended);
   const std::string worst = milliseconds_text(*one.response.worst);
-  const std::string deadline = milliseconds_text(one.message.deadline.value_or(one.message.period));
+  const std::string deadline = milliseconds_text(deadline_of(one.message));
   if (one.is_synchronous) {
     context.diagnostics.error("network-sync-window", one.position,
                               fmt::format("{} ({}) may end {} after SYNC was due, outside the synchronous window or "

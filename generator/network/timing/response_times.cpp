@@ -185,7 +185,7 @@ std::vector<ResponseTime> response_times(std::span<const CanMessage> messages, c
     result.bound = ResponseBound::not_found;
     BusyPeriod{std::span{queued}.first(lower), queued[i], result.blocking, error_cost, bus}.examine(result);
     const CanMessage& message = messages[queued[i].place];
-    result.meets_deadline = result.worst && *result.worst <= message.deadline.value_or(message.period);
+    result.meets_deadline = result.worst && *result.worst <= deadline_of(message);
   }
   return results;
 }

@@ -47,6 +47,11 @@ struct CanMessage {
   std::optional<Nanoseconds> deadline{};  ///< from the event to the end of the frame; none means `period`
 };
 
+/// The longest response time that meets the deadline: without one, the period.
+[[nodiscard]] constexpr Nanoseconds deadline_of(const CanMessage& message) {
+  return message.deadline.value_or(message.period);
+}
+
 struct BusTiming {
   std::uint32_t bit_rate = 0;  ///< bit/s: 1,000..1,000,000
   /// Shortest time between two errors, up to 24 h; none if there are no errors. Each error costs 31 bit times and the

@@ -16,9 +16,8 @@ Nanoseconds microseconds_of(const CobIdUse& use, std::uint16_t index) {
 }  // namespace
 
 std::optional<SyncTiming> sync_timing(const std::vector<CobIdUse>& uses, const NetworkTiming& timing) {
-  const auto producer = std::ranges::find_if(
-      uses, [](const CobIdUse& use) { return use.service == FrameService::sync && use.transmits; });
-  if (producer == uses.end() || timing.messages.empty()) return std::nullopt;
+  const CobIdUse* const producer = sync_producer(uses);
+  if (producer == nullptr || timing.messages.empty()) return std::nullopt;
   SyncTiming sync{microseconds_of(*producer, communication::cycle_period),
                   microseconds_of(*producer, communication::window_length)};
   if (sync.period == Nanoseconds{}) return std::nullopt;

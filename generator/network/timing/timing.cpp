@@ -46,12 +46,10 @@ class MessageCollector {
 
  private:
   [[nodiscard]] Nanoseconds sync_period() const {
-    for (const CobIdUse& use : uses_) {
-      if (use.service != FrameService::sync || !use.transmits) continue;
-      const auto period = value_of(use.node->device, communication::cycle_period).value_or(0);
-      return microseconds{static_cast<std::int64_t>(period)};
-    }
-    return {};
+    const CobIdUse* const producer = sync_producer(uses_);
+    if (producer == nullptr) return {};
+    const auto period = value_of(producer->node->device, communication::cycle_period).value_or(0);
+    return microseconds{static_cast<std::int64_t>(period)};
   }
 
   void add(const CobIdUse& use) {
