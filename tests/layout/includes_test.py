@@ -1,22 +1,18 @@
 #!/usr/bin/env python3
-"""The include graph is that of docs/architecture.md, no module includes a higher one, and files and folders stay small.
+"""The include graph is that of docs/architecture.md, and no module includes a higher one.
 
-    includes_test.py SOURCE_DIR [--write | unittest arguments]
+    includes_test.py SOURCE_DIR [unittest arguments]
 
 The page has tables of modules, each with the modules that it may include. A module is below all modules that include it.
 A folder of the runtime is a module, and so is each of its umbrella headers.
-
-tests/layout/large.tsv lists the files and folders that are larger than the limits. Their counts may only decrease; `--write`
-lowers them to the present ones and removes what is within the limits.
 """
 
 from __future__ import annotations
 
 import re
-import subprocess
 import sys
 import unittest
-from collections import Counter, defaultdict
+from collections import defaultdict
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -26,13 +22,6 @@ TOPS = {"runtime": "runtime/include", "generator": "generator", "bus": "bus", "c
 UMBRELLAS = ("node.hpp", "master.hpp")
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 ROW = re.compile(r"^\| `((?:runtime|generator|bus|cli)(?:/[\w.]+)?)/?` \| (.*?) \|", re.MULTILINE)
-
-LARGE = "tests/layout/large.tsv"
-MAX_LINES = 400
-MAX_FILES = 25
-# Folders of similar data files, which a program reads as a whole; they have no limit.
-DATA_FOLDERS = ("tests/compile_fail", "tests/bus/decode/cases", "tests/fixtures", "tests/traces")
-GENERATED = "generated/"  # the EDS determines the length of these files
 
 
 def top_of(path: Path) -> str:
@@ -77,33 +66,6 @@ def documented_includes() -> dict[str, set[str]]:
     return {module: set(re.findall(r"`([\w/.]+)`", cell)) for module, cell in ROW.findall(page)}
 
 
-def sizes() -> dict[str, int]:
-    """Returns the lines of each source and the files of each folder that are above the limits."""
-    listed = subprocess.run(["git", "-C", SOURCE_DIR, "ls-files"], capture_output=True, text=True)
-    if listed.returncode != 0:
-        raise unittest.SkipTest("the folder is not a git repository")
-    files = [name for name in listed.stdout.splitlines() if (SOURCE_DIR / name).is_file()]
-    folders = Counter(str(Path(name).parent) for name in files)
-    large = {folder: count for folder, count in folders.items() if count > MAX_FILES and folder not in DATA_FOLDERS}
-    for name in files:
-        if name.endswith((".cpp", ".hpp")) and not name.startswith(GENERATED):
-            lines = (SOURCE_DIR / name).read_bytes().count(b"\n")
-            if lines > MAX_LINES:
-                large[name] = lines
-    return large
-
-
-def known_sizes() -> dict[str, int]:
-    rows = (SOURCE_DIR / LARGE).read_text(encoding="utf-8").splitlines()[1:]
-    return {name: int(count) for name, count in (row.split("\t") for row in rows)}
-
-
-def write_sizes() -> None:
-    present, known = sizes(), known_sizes()
-    rows = [f"{name}\t{min(known[name], present[name])}" for name in sorted(known) if name in present]
-    (SOURCE_DIR / LARGE).write_text("\n".join(["path\tlines or files", *rows]) + "\n", encoding="utf-8")
-
-
 class Includes(unittest.TestCase):
     maxDiff = None
 
@@ -139,22 +101,5 @@ class Includes(unittest.TestCase):
         self.assertEqual(names, set())
 
 
-class Sizes(unittest.TestCase):
-    maxDiff = None
-
-    def test_files_and_folders_stay_small(self) -> None:
-        known = known_sizes()
-        grown = {name: count for name, count in sizes().items() if count > known.get(name, 0)}
-        self.assertEqual(grown, {}, f"more than {MAX_LINES} lines or {MAX_FILES} files, and more than in {LARGE}")
-
-    def test_each_count_is_the_present_one(self) -> None:
-        present = sizes()
-        shrunk = {name: count for name, count in known_sizes().items() if count > present.get(name, 0)}
-        self.assertEqual(shrunk, {}, f"smaller now: run tests/layout/includes_test.py . --write to update {LARGE}")
-
-
 if __name__ == "__main__":
-    if sys.argv[2:] == ["--write"]:
-        write_sizes()
-    else:
-        unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
