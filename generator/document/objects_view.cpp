@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "backend/cpp/cpp_name.hpp"
-#include "backend/json/configured_value.hpp"
+#include "backend/json/replaced_default.hpp"
 #include "compare/compare_parts.hpp"
 #include "document/views.hpp"
 #include "text/counted.hpp"
@@ -162,22 +162,22 @@ class ObjectRows {
   }
 
   /// The default value of an entry with another value, from the network or a DCF.
-  [[nodiscard]] std::optional<ConfiguredValue> configured(const Entry& entry) const {
+  [[nodiscard]] std::optional<ReplacedDefault> configured(const Entry& entry) const {
     if (auto set = set_by_network(entry)) return set;
     const DataSheet& sheet = input_.loaded.sheet;
     const ObjectDescription* const object = sheet.is_dcf ? sheet.find(entry.index) : nullptr;
     if (object == nullptr) return std::nullopt;
-    return configured_value(entry, sheet, *object, device_);
+    return replaced_default(entry, sheet, *object, device_);
   }
 
-  [[nodiscard]] std::optional<ConfiguredValue> set_by_network(const Entry& entry) const {
+  [[nodiscard]] std::optional<ReplacedDefault> set_by_network(const Entry& entry) const {
     if (input_.node == nullptr) return std::nullopt;
     const auto is_of_entry = [&](const Setting& one) {
       return one.index == entry.index && one.sub_index == entry.sub_index;
     };
     const std::vector<Setting>& settings = input_.node->node.settings;
     const auto first = std::ranges::find_if(settings, is_of_entry);
-    return first == settings.end() ? std::nullopt : std::optional{ConfiguredValue{first->before}};
+    return first == settings.end() ? std::nullopt : std::optional{ReplacedDefault{first->before}};
   }
 
   Json entry_view(const Object& object, const Entry& entry) {

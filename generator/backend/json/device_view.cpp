@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <canopen/can/cob_id.hpp>
 
-#include "backend/json/configured_value.hpp"
 #include "backend/json/information_view.hpp"
+#include "backend/json/replaced_default.hpp"
 #include "device/types/value_bytes.hpp"
 #include "text/source_file.hpp"
 
@@ -156,7 +156,7 @@ ordered_json object_view(const Object& object) {
 
 void separate(const Entry& entry, const DataSheet& sheet, const ObjectDescription& object, const Device& device,
               ordered_json& row) {
-  const auto configured = configured_value(entry, sheet, object, device);
+  const auto configured = replaced_default(entry, sheet, object, device);
   if (!configured) return;
   ordered_json separated;
   for (auto& [key, value] : row.items()) {

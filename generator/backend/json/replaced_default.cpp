@@ -1,10 +1,10 @@
-#include "backend/json/configured_value.hpp"
+#include "backend/json/replaced_default.hpp"
 
 #include "device/types/value.hpp"
 
 namespace edsc {
 
-std::optional<ConfiguredValue> configured_value(const Entry& entry, const DataSheet& sheet,
+std::optional<ReplacedDefault> replaced_default(const Entry& entry, const DataSheet& sheet,
                                                 const ObjectDescription& object, const Device& device) {
   const bool has_sub_indices = device.find(entry.index)->has_sub_indices();
   const ValueFields fields = sheet.values_of(object, entry.sub_index, has_sub_indices);
@@ -16,7 +16,7 @@ std::optional<ConfiguredValue> configured_value(const Entry& entry, const DataSh
   }
   if (!entry.default_value || !entry.default_value->clause.empty()) return std::nullopt;
   Diagnostics ignored;
-  return ConfiguredValue{parse_value(*fields.default_value, *entry.type, device.node_id, ignored)};
+  return ReplacedDefault{parse_value(*fields.default_value, *entry.type, device.node_id, ignored)};
 }
 
 }  // namespace edsc
