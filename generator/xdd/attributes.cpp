@@ -62,16 +62,16 @@ std::string_view time(XmlDocument& xml, std::string_view text) {
       fmt::format("{:02}:{}{}", hour % 12 == 0 ? 12 : hour % 12, text.substr(3, 2), hour < 12 ? "AM" : "PM"));
 }
 
-std::string_view respelled(XmlDocument& xml, std::string_view text, Spelling spelling) {
-  switch (spelling) {
-    case Spelling::text: return text;
-    case Spelling::decimal: return decimal(text);
-    case Spelling::hexadecimal: return hexadecimal(xml, text);
-    case Spelling::identity: return identity(xml, text);
-    case Spelling::flag: return flag(text);
-    case Spelling::baud_rate: return baud_rate(text);
-    case Spelling::date: return date(xml, text);
-    case Spelling::time: return time(xml, text);
+std::string_view respelled(XmlDocument& xml, std::string_view text, AttributeForm form) {
+  switch (form) {
+    case AttributeForm::text: return text;
+    case AttributeForm::decimal: return decimal(text);
+    case AttributeForm::hexadecimal: return hexadecimal(xml, text);
+    case AttributeForm::identity: return identity(xml, text);
+    case AttributeForm::flag: return flag(text);
+    case AttributeForm::baud_rate: return baud_rate(text);
+    case AttributeForm::date: return date(xml, text);
+    case AttributeForm::time: return time(xml, text);
   }
   return text;
 }
@@ -82,9 +82,9 @@ std::string path_of(pugi::xml_node element) {
 
 }  // namespace
 
-Field respell(XmlDocument& xml, const Field& field, Spelling spelling) {
+Field respell(XmlDocument& xml, const Field& field, AttributeForm form) {
   Field result = field;
-  result.text = respelled(xml, field.text, spelling);
+  result.text = respelled(xml, field.text, form);
   return result;
 }
 

@@ -11,8 +11,8 @@
 
 namespace edsc {
 
-/// Spellings of values that differ between CiA 311 and CiA 306.
-enum class Spelling : std::uint8_t {
+/// Forms of values that differ between CiA 311 and CiA 306.
+enum class AttributeForm : std::uint8_t {
   text,         ///< the same
   decimal,      ///< `04`, which is octal in CiA 306
   hexadecimal,  ///< `0007` for 0x0007
@@ -23,15 +23,15 @@ enum class Spelling : std::uint8_t {
   time,         ///< `14:05:00+02:00` for 02:05PM
 };
 
-/// The value in the spelling of CiA 306; an invalid value is unchanged, and reported later.
-[[nodiscard]] Field respell(XmlDocument& xml, const Field& field, Spelling spelling);
+/// The value in the form of CiA 306; an invalid value is unchanged, and reported later.
+[[nodiscard]] Field respell(XmlDocument& xml, const Field& field, AttributeForm form);
 
 /// An attribute and its destination; null for a known attribute without effect on the device.
 template <typename Struct>
 struct AttributeRow {
   std::string_view name;
   Field Struct::*field;
-  Spelling spelling = Spelling::text;
+  AttributeForm form = AttributeForm::text;
   bool is_structure = false;  ///< describes the structure of the file, not the device
 };
 
@@ -70,7 +70,7 @@ void read_attributes(XmlDocument& xml, pugi::xml_node element, std::span<const A
     } else if ((target.*known->field).present) {
       report_second(xml, attribute, (target.*known->field).position);
     } else {
-      target.*known->field = respell(xml, xml.value(attribute), known->spelling);
+      target.*known->field = respell(xml, xml.value(attribute), known->form);
     }
   }
 }

@@ -20,24 +20,24 @@ constexpr AttributeRow<FileInfo> file_info_rows[] = {
     {"fileName", &FileInfo::file_name},
     {"fileVersion", &FileInfo::file_version},
     {"fileCreator", &FileInfo::created_by},
-    {"formatName", nullptr, Spelling::text, true},
-    {"formatVersion", nullptr, Spelling::text, true},
-    {"fileCreationDate", &FileInfo::creation_date, Spelling::date},
-    {"fileCreationTime", &FileInfo::creation_time, Spelling::time},
-    {"fileModificationDate", &FileInfo::modification_date, Spelling::date},
-    {"fileModificationTime", &FileInfo::modification_time, Spelling::time},
+    {"formatName", nullptr, AttributeForm::text, true},
+    {"formatVersion", nullptr, AttributeForm::text, true},
+    {"fileCreationDate", &FileInfo::creation_date, AttributeForm::date},
+    {"fileCreationTime", &FileInfo::creation_time, AttributeForm::time},
+    {"fileModificationDate", &FileInfo::modification_date, AttributeForm::date},
+    {"fileModificationTime", &FileInfo::modification_time, AttributeForm::time},
     {"fileModifiedBy", &FileInfo::modified_by},
-    {"supportedLanguages", nullptr, Spelling::text, true},
+    {"supportedLanguages", nullptr, AttributeForm::text, true},
     {"deviceClass", nullptr},
 };
 
 /// Children of DeviceIdentity, whose text is the value. The versions there are texts, not the revision number of 1018h.
 constexpr AttributeRow<DeviceInfo> identity_rows[] = {
     {"vendorName", &DeviceInfo::vendor_name},
-    {"vendorID", &DeviceInfo::vendor_number, Spelling::identity},
+    {"vendorID", &DeviceInfo::vendor_number, AttributeForm::identity},
     {"productName", &DeviceInfo::product_name},
-    {"productID", &DeviceInfo::product_number, Spelling::identity},
-    {"revisionNumber", &DeviceInfo::revision_number, Spelling::identity},
+    {"productID", &DeviceInfo::product_number, AttributeForm::identity},
+    {"revisionNumber", &DeviceInfo::revision_number, AttributeForm::identity},
     {"orderNumber", &DeviceInfo::order_code},
     {"orderCode", &DeviceInfo::order_code},
     {"vendorText", nullptr},
@@ -51,37 +51,37 @@ constexpr AttributeRow<DeviceInfo> identity_rows[] = {
 };
 
 constexpr AttributeRow<DeviceInfo> general_rows[] = {
-    {"granularity", &DeviceInfo::granularity, Spelling::decimal},
-    {"nrOfRxPDO", &DeviceInfo::nr_of_rx_pdo, Spelling::decimal},
-    {"nrOfTxPDO", &DeviceInfo::nr_of_tx_pdo, Spelling::decimal},
-    {"bootUpSlave", &DeviceInfo::simple_boot_up_slave, Spelling::flag},
-    {"groupMessaging", &DeviceInfo::group_messaging, Spelling::flag},
-    {"dynamicChannels", &DeviceInfo::dynamic_channels_supported, Spelling::decimal},
-    {"layerSettingServiceSlave", &DeviceInfo::lss_supported, Spelling::flag},
+    {"granularity", &DeviceInfo::granularity, AttributeForm::decimal},
+    {"nrOfRxPDO", &DeviceInfo::nr_of_rx_pdo, AttributeForm::decimal},
+    {"nrOfTxPDO", &DeviceInfo::nr_of_tx_pdo, AttributeForm::decimal},
+    {"bootUpSlave", &DeviceInfo::simple_boot_up_slave, AttributeForm::flag},
+    {"groupMessaging", &DeviceInfo::group_messaging, AttributeForm::flag},
+    {"dynamicChannels", &DeviceInfo::dynamic_channels_supported, AttributeForm::decimal},
+    {"layerSettingServiceSlave", &DeviceInfo::lss_supported, AttributeForm::flag},
     {"selfStartingDevice", nullptr},
     {"SDORequestingDevice", nullptr},
-    {"ngSlave", &DeviceInfo::ng_slave, Spelling::flag},
-    {"ngMaster", &DeviceInfo::ng_master, Spelling::flag},
-    {"NrOfNG_MonitoredNodes", &DeviceInfo::nr_of_ng_monitored_nodes, Spelling::decimal},
+    {"ngSlave", &DeviceInfo::ng_slave, AttributeForm::flag},
+    {"ngMaster", &DeviceInfo::ng_master, AttributeForm::flag},
+    {"NrOfNG_MonitoredNodes", &DeviceInfo::nr_of_ng_monitored_nodes, AttributeForm::decimal},
     {"nrOfEntriesDynamic", nullptr},
 };
 
 constexpr AttributeRow<DeviceInfo> master_rows[] = {
-    {"bootUpMaster", &DeviceInfo::simple_boot_up_master, Spelling::flag},
+    {"bootUpMaster", &DeviceInfo::simple_boot_up_master, AttributeForm::flag},
     {"flyingMaster", nullptr},
     {"SDOManager", nullptr},
     {"configurationManager", nullptr},
-    {"layerSettingServiceMaster", &DeviceInfo::lss_master, Spelling::flag},
-    {"ngMaster", &DeviceInfo::ng_master, Spelling::flag},
+    {"layerSettingServiceMaster", &DeviceInfo::lss_master, AttributeForm::flag},
+    {"ngMaster", &DeviceInfo::ng_master, AttributeForm::flag},
 };
 
 constexpr AttributeRow<DeviceCommissioning> commissioning_rows[] = {
-    {"nodeID", &DeviceCommissioning::node_id, Spelling::decimal},
+    {"nodeID", &DeviceCommissioning::node_id, AttributeForm::decimal},
     {"nodeName", &DeviceCommissioning::node_name},
-    {"actualBaudRate", &DeviceCommissioning::baudrate, Spelling::baud_rate},
-    {"networkNumber", &DeviceCommissioning::net_number, Spelling::decimal},
+    {"actualBaudRate", &DeviceCommissioning::baudrate, AttributeForm::baud_rate},
+    {"networkNumber", &DeviceCommissioning::net_number, AttributeForm::decimal},
     {"networkName", &DeviceCommissioning::network_name},
-    {"CANopenManager", &DeviceCommissioning::canopen_manager, Spelling::flag},
+    {"CANopenManager", &DeviceCommissioning::canopen_manager, AttributeForm::flag},
     {"LSS_SerialNumber", &DeviceCommissioning::lss_serial_number},
 };
 
@@ -107,7 +107,7 @@ void read_identity(XmlDocument& xml, pugi::xml_node identity, DeviceInfo& info) 
     } else if (row->field == nullptr) {
       if (row->name != "productText") note_silent(xml, child);  // its description is that of [FileInfo]
     } else if (!(info.*row->field).present) {
-      info.*row->field = respell(xml, xml.text(child), row->spelling);
+      info.*row->field = respell(xml, xml.text(child), row->form);
     }
   });
 }
@@ -115,7 +115,7 @@ void read_identity(XmlDocument& xml, pugi::xml_node identity, DeviceInfo& info) 
 void read_baud_rates(XmlDocument& xml, pugi::xml_node baud_rate, std::vector<DeviceInfo::BaudRate>& rates) {
   for_each_element(baud_rate, [&](pugi::xml_node child) {
     const Field value = xml.value(find_attribute(child, "value"));
-    const auto rate = parse_unsigned(respell(xml, value, Spelling::baud_rate).text);
+    const auto rate = parse_unsigned(respell(xml, value, AttributeForm::baud_rate).text);
     if (local_name(child) != "supportedBaudRate") {
       report_unknown_element(xml, child);
     } else if (rate && *rate <= 0xFFFF) {

@@ -23,13 +23,13 @@ using canopen::Mappable;
 
 /// Attributes of CANopenObject and CANopenSubObject.
 constexpr AttributeRow<EntryDescription> entry_rows[] = {
-    {"index", nullptr, Spelling::text, true},
-    {"subIndex", nullptr, Spelling::text, true},
-    {"subNumber", nullptr, Spelling::text, true},
-    {"uniqueIDRef", nullptr, Spelling::text, true},
+    {"index", nullptr, AttributeForm::text, true},
+    {"subIndex", nullptr, AttributeForm::text, true},
+    {"subNumber", nullptr, AttributeForm::text, true},
+    {"uniqueIDRef", nullptr, AttributeForm::text, true},
     {"name", &EntryDescription::parameter_name},
-    {"objectType", &EntryDescription::object_type, Spelling::decimal},
-    {"dataType", &EntryDescription::data_type, Spelling::hexadecimal},
+    {"objectType", &EntryDescription::object_type, AttributeForm::decimal},
+    {"dataType", &EntryDescription::data_type, AttributeForm::hexadecimal},
     {"accessType", &EntryDescription::access_type},
     {"PDOmapping", &EntryDescription::pdo_mapping},
     {"defaultValue", &EntryDescription::default_value},
@@ -37,7 +37,7 @@ constexpr AttributeRow<EntryDescription> entry_rows[] = {
     {"lowLimit", &EntryDescription::low_limit},
     {"highLimit", &EntryDescription::high_limit},
     {"denotation", &EntryDescription::denotation},
-    {"objFlags", &EntryDescription::obj_flags, Spelling::hexadecimal},
+    {"objFlags", &EntryDescription::obj_flags, AttributeForm::hexadecimal},
 };
 
 constexpr std::span<const AttributeRow<EntryDescription>> entry_attributes = entry_rows;
@@ -130,7 +130,7 @@ class ObjectListReader {
       return;
     }
     const Field sub_number = xml_.value(find_attribute(element, "subNumber"));
-    object.sub_number = respell(xml_, sub_number, Spelling::decimal);
+    object.sub_number = respell(xml_, sub_number, AttributeForm::decimal);
     read_sub_objects(element, parameter, object);
     report_complex_value(parameter, object);
     objects.push_back(std::move(object));
@@ -213,7 +213,7 @@ class ObjectListReader {
     map_to_access(entry);
     if (parse_unsigned(entry.data_type.text) != 1) return;
     for (Field EntryDescription::*const field : value_fields) {
-      entry.*field = respell(xml_, entry.*field, Spelling::flag);
+      entry.*field = respell(xml_, entry.*field, AttributeForm::flag);
     }
   }
 
