@@ -25,7 +25,7 @@ using value_detail::to_bits;
 using Data = std::array<std::uint8_t, 8>;
 
 /// Whether the processor loads and stores words at any address, or only at aligned ones. A project may define
-/// it: 1 or 0.
+/// it for all its files: 1 or 0.
 #ifdef CANOPEN_UNALIGNED_WORDS
 inline constexpr bool unaligned_words = CANOPEN_UNALIGNED_WORDS != 0;
 #elif defined(__x86_64__) || defined(__i386__) || defined(__ARM_FEATURE_UNALIGNED)
