@@ -192,7 +192,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   /// Reports an error of the application (CiA 301, 7.2.7.1): its emergency error code, the bits of 1001h that it sets
   /// (the generic one is set automatically), and the manufacturer-specific bytes. As with `set`, the EMCY is sent with
   /// the next `on_time` or `on_frame`: `next_deadline` is due at once.
-  void emergency(std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info = {}) {
+  void emergency(std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info = no_emergency_info) {
     emergencies().report(host(), code, bits, info);
   }
 
@@ -368,7 +368,10 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
     attention_ = false;
     idle_.end();
     if (services_.silent()) return;
-    if (!services_.serve(host())) attention_ = true;
+    if (!services_.serve(host())) {
+      attention_ = true;
+      services_.keep_deadlines(host());
+    }
     if constexpr (calls_handlers) {
       if (!handler_calls_.has_deferred() || services_.template get<Sdo>().has_reply()) return;
       carry_out(handler_calls_.deferred());

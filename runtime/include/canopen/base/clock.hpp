@@ -21,6 +21,9 @@ class TimePoint {
   friend constexpr TimePoint operator+(TimePoint time, Duration span) {
     return TimePoint{Duration{time.microseconds_ + span.count()}};
   }
+  friend constexpr TimePoint operator-(TimePoint time, Duration span) {
+    return TimePoint{Duration{time.microseconds_ - span.count()}};
+  }
   /// Returns the time from `earlier` to `later`.
   friend constexpr Duration operator-(TimePoint later, TimePoint earlier) {
     return Duration{later.microseconds_ - earlier.microseconds_};
@@ -30,6 +33,11 @@ class TimePoint {
   friend constexpr bool operator>(TimePoint a, TimePoint b) { return ahead(a, b) > 0; }
   friend constexpr bool operator<=(TimePoint a, TimePoint b) { return ahead(a, b) <= 0; }
   friend constexpr bool operator>=(TimePoint a, TimePoint b) { return ahead(a, b) >= 0; }
+
+  /// Whether `time` was more than this span ago, and not more than 35 minutes.
+  friend constexpr bool is_before(TimePoint time, Duration span, TimePoint now) {
+    return ahead(now, time) > static_cast<std::int32_t>(span.count());
+  }
 
  private:
   static constexpr std::int32_t ahead(TimePoint a, TimePoint b) {

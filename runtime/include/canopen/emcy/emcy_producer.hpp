@@ -12,6 +12,7 @@
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
+#include "canopen/base/deadline.hpp"
 #include "canopen/can/cob_id.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/emcy/error_register.hpp"
@@ -23,6 +24,8 @@ namespace canopen {
 
 /// The manufacturer-specific bytes of an EMCY.
 using EmergencyInfo = std::array<std::uint8_t, 5>;
+/// No such bytes.
+inline constexpr EmergencyInfo no_emergency_info{};
 
 /// The errors of one device. Each error that appears is sent once, with the present register, and recorded in the
 /// history; each one that disappears is sent as code 0000h with the remaining register. Messages wait, in order, while
@@ -133,6 +136,9 @@ class EmergencyProducer {
     waiting_ = 1;
   }
 
+  /// Ends the inhibit time if it has elapsed, in each NMT state and whether or not a message is waiting.
+  void end_inhibit_time(TimePoint now) { static_cast<void>(is_inhibited(now)); }
+
   /// Sends waiting messages. Returns false if the bus had no room; they keep waiting.
   template <Bus B>
   bool serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
@@ -149,23 +155,22 @@ class EmergencyProducer {
     return true;
   }
 
-  /// Returns when the next message is to be sent; not later than `now` if one can already be sent.
-  [[nodiscard]] std::optional<TimePoint> next_deadline(TimePoint now) const {
-    if (waiting_ == 0) return std::nullopt;
+  /// Returns when the inhibit time ends, or when the next message is to be sent, if the NMT state allows it: not later
+  /// than `now` if it can already be sent.
+  [[nodiscard]] std::optional<TimePoint> next_deadline(TimePoint now, bool may_send) const {
     if constexpr (has_inhibit_time) {
-      if (inhibit_.runs && is_ahead(inhibit_.end, inhibit_unit, now)) return inhibit_.end;
+      if (inhibit_.runs) return inhibit_.end.at();
     }
-    return now;
+    return may_send && waiting_ != 0 ? std::optional{now} : std::nullopt;
   }
 
  private:
   struct Inhibit {
-    TimePoint end;
+    Deadline end;
     bool runs;
   };
   struct Nothing {};
 
-  static constexpr std::uint32_t inhibit_unit = from_hundred_microseconds(1).count();
   static constexpr bool has_register = Device::dictionary.has(0x1001, 0);
   static constexpr bool has_cob_id = Device::dictionary.has(0x1014, 0);
   static constexpr bool has_inhibit_time = Device::dictionary.has(0x1015, 0);
@@ -275,7 +280,7 @@ class EmergencyProducer {
   /// Whether the inhibit time is running; ends it if it has elapsed.
   [[nodiscard]] bool is_inhibited([[maybe_unused]] TimePoint now) {
     if constexpr (has_inhibit_time) {
-      inhibit_.runs = inhibit_.runs && is_ahead(inhibit_.end, inhibit_unit, now);
+      inhibit_.runs = inhibit_.runs && inhibit_.end.is_ahead(now);
       return inhibit_.runs;
     }
     return false;

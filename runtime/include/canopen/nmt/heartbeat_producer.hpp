@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "canopen/base/clock.hpp"
+#include "canopen/base/deadline.hpp"
 #include "canopen/can/cob_id.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/can/node_id.hpp"
@@ -33,15 +34,15 @@ class HeartbeatProducer {
     if (boot_up_due_) {
       state = NmtState::initialisation;
       due_ = now;
-    } else if (!running_ || is_within(due_, period, now)) {
+    } else if (!running_ || due_.is_ahead(now)) {
       return true;
     }
     const std::uint32_t cob_id = function_code::error_control + std::uint32_t{node_id.value()};
     if (!send_words(bus, cob_id, 1, static_cast<std::uint8_t>(state))) return false;
     boot_up_due_ = false;
     running_ = period.count() != 0;
-    due_ = due_ + period;
-    if (!is_within(due_, period, now)) due_ = now + period;  // called so late that whole periods are missing
+    due_ = due_.at() + period;
+    if (due_.has_passed(now)) due_ = now + period;  // called so late that whole periods are missing
     return true;
   }
 
@@ -49,10 +50,15 @@ class HeartbeatProducer {
   [[nodiscard]] bool boot_up_due() const { return boot_up_due_; }
 
   /// Returns when the next heartbeat is due.
-  [[nodiscard]] std::optional<TimePoint> next_deadline() const { return running_ ? std::optional{due_} : std::nullopt; }
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    return running_ ? std::optional{due_.at()} : std::nullopt;
+  }
+
+  /// Keeps the deadline while the bus has no room.
+  void keep_deadline(TimePoint now) { due_.keep(now); }
 
  private:
-  TimePoint due_{};
+  Deadline due_{};
   bool boot_up_due_ = false;
   bool running_ = false;
 };

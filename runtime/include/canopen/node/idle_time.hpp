@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "canopen/base/clock.hpp"
+#include "canopen/base/deadline.hpp"
 #include "canopen/base/optimization.hpp"
 
 namespace canopen {
@@ -35,8 +36,8 @@ class IdleTime {
   }
 
  private:
-  /// Services must see the time at least every half hour.
-  static constexpr Duration longest{0x4000'0000};
+  /// Services must see the time at least every half hour; the node may be called that much later.
+  static constexpr Duration longest = Deadline::longest_past;
 
   enum class State : std::uint8_t { unknown, begun, known };
 

@@ -12,6 +12,7 @@
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
+#include "canopen/base/deadline.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/emcy/service_error.hpp"
 #include "canopen/nmt/nmt.hpp"
@@ -80,6 +81,9 @@ struct ServiceDefaults {
   static std::optional<TimePoint> deadline(Host&) {
     return std::nullopt;
   }
+  /// Keeps the deadlines that `serve` leaves as they are while the bus has no room.
+  template <class Host>
+  static void keep_deadlines(Host&) {}
   /// Whether the node may not send anything now.
   static constexpr bool silent() { return false; }
 
@@ -218,6 +222,10 @@ class ServiceSet : private service_detail::Present<Services>... {
   [[nodiscard]] bool serve_without_node_id(Host& host) {
     return ((!Present<Services>::runs_without_node_id || present<Services>().serve(host)) && ...);
   }
+  template <class Host>
+  void keep_deadlines(Host& host) {
+    (present<Services>().keep_deadlines(host), ...);
+  }
   /// Returns the earliest deadline; of those services only that work without node-ID if `all` is not set.
   template <class Host>
   [[nodiscard]] std::optional<TimePoint> deadline(Host& host, bool all) const {
@@ -294,7 +302,7 @@ class ServiceSet : private service_detail::Present<Services>... {
   void consider(std::optional<TimePoint>& next, Host& host, bool all) const {
     if (!all && !Present<S>::runs_without_node_id) return;
     const std::optional<TimePoint> other = present<S>().deadline(host);
-    if (other && (!next || *other < *next)) next = other;
+    if (other) next = next ? earlier_deadline(*next, *other, host.now()) : *other;
   }
 
   /// Not a fold: with one return for each service, an image is smaller.

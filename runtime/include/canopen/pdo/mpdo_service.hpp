@@ -10,6 +10,7 @@
 #include <type_traits>
 
 #include "canopen/base/clock.hpp"
+#include "canopen/base/deadline.hpp"
 #include "canopen/can/cob_id.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/can/node_id.hpp"
@@ -124,7 +125,7 @@ class MpdoService {
   template <Bus B>
   bool serve([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] NodeId own, [[maybe_unused]] B& bus,
              [[maybe_unused]] TimePoint now) {
-    // Inhibit times end here even if no MPDO is waiting: later, the end would seem to be ahead again.
+    // Inhibit times end here even if no MPDO is waiting.
     if constexpr (sends_destination) {
       if (destination_.inhibit.over(now) && destination_.waiting != 0 && !serve_destination(entries, bus, now))
         return false;
@@ -135,14 +136,20 @@ class MpdoService {
     return true;
   }
 
-  /// Returns when the next MPDO is to be sent; not later than `now` if one is already waiting.
+  /// Ends the inhibit times that have elapsed.
+  void keep_deadlines([[maybe_unused]] TimePoint now) {
+    if constexpr (sends_destination) static_cast<void>(destination_.inhibit.over(now));
+    if constexpr (sends_source) static_cast<void>(source_.inhibit.over(now));
+  }
+
+  /// Returns when the next MPDO is to be sent, or an inhibit time ends; not later than `now` if one can already be
+  /// sent.
   [[nodiscard]] std::optional<TimePoint> next_deadline([[maybe_unused]] TimePoint now) const {
     std::optional<TimePoint> next;
-    if constexpr (sends_destination) {
-      if (destination_.waiting != 0) next = destination_.inhibit.earliest(now);
-    }
+    if constexpr (sends_destination) next = destination_.inhibit.next_deadline(destination_.waiting != 0, now);
     if constexpr (sends_source) {
-      if (any_pending() && (!next || source_.inhibit.earliest(now) < *next)) next = source_.inhibit.earliest(now);
+      const std::optional<TimePoint> other = source_.inhibit.next_deadline(any_pending(), now);
+      if (other) next = next ? earlier_deadline(*next, *other, now) : *other;
     }
     return next;
   }
@@ -150,12 +157,12 @@ class MpdoService {
  private:
   /// The inhibit time of a TPDO.
   struct Inhibit {
-    TimePoint end{};
+    Deadline end{};
     bool runs = false;
 
     /// Whether an MPDO may be sent now.
     [[nodiscard]] bool over(TimePoint now) {
-      if (runs && !is_ahead(end, Device::options.inhibit_time_unit, now)) runs = false;
+      runs = runs && end.is_ahead(now);
       return !runs;
     }
     void start(EntryAccess<Device> entries, entry::Word word, TimePoint now) {
@@ -164,8 +171,9 @@ class MpdoService {
       runs = time.count() != 0;
       end = now + time;
     }
-    [[nodiscard]] TimePoint earliest(TimePoint now) const {
-      return runs && is_ahead(end, Device::options.inhibit_time_unit, now) ? end : now;
+    [[nodiscard]] std::optional<TimePoint> next_deadline(bool waiting, TimePoint now) const {
+      if (runs) return end.at();
+      return waiting ? std::optional{now} : std::nullopt;
     }
   };
 

@@ -3,11 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 #include <type_traits>
 #include <utility>
 
 #include "canopen/base/clock.hpp"
+#include "canopen/base/deadline.hpp"
 #include "canopen/base/optimization.hpp"
 #include "canopen/can/cob_id.hpp"
 #include "canopen/can/frame.hpp"
@@ -176,16 +178,30 @@ class TpdoService {
     return true;
   }
 
-  /// Returns when the next TPDO is to be sent; not later than `now` if one is already waiting.
+  /// Keeps the deadlines of TPDOs that the bus has no room for.
+  void keep_deadlines([[maybe_unused]] TimePoint now) {
+    if constexpr (has_event_timer || has_inhibit_time) {
+      for (Slot& slot : slots_) {
+        if (has_samples && (slot.flags & event_driven) == 0) continue;
+        slot.times.event_due.keep(now);
+        slot.times.inhibit_end.keep(now);
+      }
+    }
+  }
+
+  /// Returns when the next TPDO is to be sent, or an inhibit time ends; not later than `now` if one can already be
+  /// sent.
   [[nodiscard]] std::optional<TimePoint> next_deadline(TimePoint now) const {
     std::optional<TimePoint> next;
     for (const Slot& slot : slots_) {
-      if (!wanted(slot) && (slot.flags & timed) == 0) continue;
-      TimePoint at = wanted(slot) || event_timer_expired(slot, now) ? now : slot.times.event_due;
-      if ((slot.flags & inhibited) != 0 && is_ahead(slot.times.inhibit_end, inhibit_unit, now) &&
-          slot.times.inhibit_end > at)
-        at = slot.times.inhibit_end;
-      if (!next || at < *next) next = at;
+      if (!wanted(slot) && (slot.flags & (timed | inhibited)) == 0) continue;
+      TimePoint at = now;
+      if ((slot.flags & inhibited) != 0 && slot.times.inhibit_end.is_ahead(now)) {
+        at = slot.times.inhibit_end.at();
+      } else if (!wanted(slot) && (slot.flags & timed) != 0) {
+        at = slot.times.event_due.at();
+      }
+      next = next ? earlier_deadline(*next, at, now) : at;
     }
     return next;
   }
@@ -203,9 +219,6 @@ class TpdoService {
   static constexpr bool has_event_timer = Column<pdo_parameter::event_timer>::exists;
   static constexpr bool has_sync_start = Column<pdo_parameter::sync_start>::exists;
   static constexpr bool has_samples = Device::options.tpdo_remote_frames && SyncConsumer<Device>::exists;
-
-  static constexpr std::uint32_t event_unit = from_milliseconds(1).count();
-  static constexpr std::uint32_t inhibit_unit = Device::options.inhibit_time_unit;
 
   using Data = std::array<std::uint8_t, 8>;
   using Slot = TpdoSlot;
@@ -292,8 +305,8 @@ class TpdoService {
                                                        [[maybe_unused]] TimePoint now) {
     if constexpr (has_event_timer) {
       const Duration period = from_milliseconds(parameter<pdo_parameter::event_timer>(i, entries));
-      TimePoint next = slot.times.event_due + period;
-      if ((slot.flags & timed) == 0 || !is_within(next, period, now)) next = now + period;
+      Deadline next = slot.times.event_due.at() + period;
+      if ((slot.flags & timed) == 0 || next.has_passed(now)) next = now + period;
       slot.times.event_due = next;
       slot.flags &= static_cast<std::uint8_t>(~timed);
       if (period.count() != 0) slot.flags |= timed;
@@ -301,13 +314,13 @@ class TpdoService {
   }
 
   [[nodiscard]] static bool event_timer_expired(const Slot& slot, TimePoint now) {
-    return has_event_timer && (slot.flags & timed) != 0 && !is_ahead(slot.times.event_due, event_unit, now);
+    return has_event_timer && (slot.flags & timed) != 0 && slot.times.event_due.has_passed(now);
   }
 
   /// Whether the inhibit time is running; ends it if it has elapsed.
   [[nodiscard]] static bool is_inhibited(Slot& slot, TimePoint now) {
     if ((slot.flags & inhibited) == 0) return false;
-    if (is_ahead(slot.times.inhibit_end, inhibit_unit, now)) return true;
+    if (slot.times.inhibit_end.is_ahead(now)) return true;
     slot.flags &= static_cast<std::uint8_t>(~inhibited);
     return false;
   }
@@ -333,8 +346,9 @@ class TpdoService {
   /// Sends the data of the last SYNC.
   template <Bus B>
   [[nodiscard]] bool send_sample(const Slot& slot, std::size_t which, ObjectStore<Device>& store, B& bus) {
-    return send_configured(bus, cob_id_of(which, store.entries()), slot.size,
-                           slot.times.event_due.since_start().count(), slot.times.inhibit_end.since_start().count());
+    FrameWords sampled;
+    std::memcpy(&sampled, &slot.times, sizeof sampled);
+    return send_configured(bus, cob_id_of(which, store.entries()), slot.size, sampled.first, sampled.second);
   }
 
   void sample([[maybe_unused]] std::size_t which, [[maybe_unused]] ObjectStore<Device>& store) {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "canopen/base/clock.hpp"
+#include "canopen/base/deadline.hpp"
 
 namespace canopen {
 
@@ -20,8 +20,8 @@ struct TpdoSlot {
   };
 
   struct Times {
-    TimePoint event_due;
-    TimePoint inhibit_end;
+    Deadline event_due;
+    Deadline inhibit_end;
   };
 
   Times times;  ///< for type 252, which does not use them, the data of the last SYNC

@@ -9,6 +9,7 @@
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
+#include "canopen/base/deadline.hpp"
 #include "canopen/can/cob_id.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/od/device_options.hpp"
@@ -94,16 +95,18 @@ class SyncProducer {
   /// Sends a SYNC that is due; a producer consumes its own. Returns false if none is due or the bus had no room.
   template <Bus B>
   [[nodiscard]] bool serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
-    if (!running_ || is_within(due_, period_of(store), now)) return false;
+    if (!running_ || due_.is_ahead(now)) return false;
     const std::uint8_t overflow = SyncConsumer<Device>::overflow_of(store);
     const std::uint8_t counter = counter_ < overflow ? static_cast<std::uint8_t>(counter_ + 1) : std::uint8_t{1};
     const std::uint32_t cob_id = store.template number<0x1005, 0>();
-    if (!send_configured(bus, cob_id & CobId::identifier, overflow != 0 ? 1 : 0, overflow != 0 ? counter : 0u))
+    if (!send_configured(bus, cob_id & CobId::identifier, overflow != 0 ? 1 : 0, overflow != 0 ? counter : 0u)) {
+      due_.keep(now);
       return false;
+    }
     counter_ = counter;
     const Duration period = period_of(store);
-    due_ = due_ + period;
-    if (!is_within(due_, period, now)) due_ = now + period;  // called so late that whole periods are missing
+    due_ = due_.at() + period;
+    if (due_.has_passed(now)) due_ = now + period;  // called so late that whole periods are missing
     return true;
   }
 
@@ -112,10 +115,9 @@ class SyncProducer {
     return Sync{SyncConsumer<Device>::overflow_of(store) != 0 ? counter_ : std::uint8_t{0}, true};
   }
 
-  /// Returns when the next SYNC is due; not later than `now` if it is already due, for however long.
-  [[nodiscard]] std::optional<TimePoint> next_deadline(const ObjectStore<Device>& store, TimePoint now) const {
-    if (!running_) return std::nullopt;
-    return is_within(due_, period_of(store), now) ? due_ : now;
+  /// Returns when the next SYNC is due.
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    return running_ ? std::optional{due_.at()} : std::nullopt;
   }
 
  private:
@@ -123,7 +125,7 @@ class SyncProducer {
     return Duration{store.template number<0x1006, 0>()};
   }
 
-  TimePoint due_{};
+  Deadline due_{};
   std::uint8_t counter_ = 0;  ///< of the last SYNC
   bool running_ = false;
 };
@@ -141,18 +143,30 @@ class SyncWindow {
     }
   }
 
-  /// Whether the window of the last SYNC has elapsed. It remains so until the next SYNC, for half an hour at most.
+  /// Whether the window of the last SYNC has elapsed. It remains so until the next SYNC.
   [[nodiscard]] bool over([[maybe_unused]] TimePoint now) const {
     if constexpr (exists) {
-      return window_.limited && now > window_.end;
+      return window_.limited && now > window_.end.at();
     } else {
       return false;
     }
   }
 
+  /// Keeps the end of the window.
+  void keep_deadline([[maybe_unused]] TimePoint now) {
+    if constexpr (exists) window_.end.keep(now);
+  }
+  /// The time by which `keep_deadline` must be called.
+  [[nodiscard]] std::optional<TimePoint> next_deadline([[maybe_unused]] TimePoint now) const {
+    if constexpr (exists) {
+      if (window_.limited) return now + longest_sleep;
+    }
+    return std::nullopt;
+  }
+
  private:
   struct Window {
-    TimePoint end;
+    Deadline end;
     bool limited;
   };
   struct Nothing {};

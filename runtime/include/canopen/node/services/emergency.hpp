@@ -29,12 +29,16 @@ class Emergency : public ServiceDefaults<Emergency<Device>> {
   }
 
   template <class Host>
+  void on_time(Host& host) {
+    producer_.end_inhibit_time(host.now());
+  }
+  template <class Host>
   bool serve(Host& host) {
     return !serves_emcy(host.state()) || producer_.serve(host.store(), host.bus(), host.now());
   }
   template <class Host>
   std::optional<TimePoint> deadline(Host& host) const {
-    return serves_emcy(host.state()) ? producer_.next_deadline(host.now()) : std::nullopt;
+    return producer_.next_deadline(host.now(), serves_emcy(host.state()));
   }
 
   static constexpr bool checks(std::uint16_t index, std::uint8_t) {

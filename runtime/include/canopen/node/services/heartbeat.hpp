@@ -35,6 +35,10 @@ class BootUp : public ServiceDefaults<BootUp<Device>> {
   }
 
   template <class Host>
+  void keep_deadlines(Host& host) {
+    if constexpr (Device::dictionary.has(0x1017, 0)) producer_.keep_deadline(host.now());
+  }
+  template <class Host>
   std::optional<TimePoint> deadline(Host& host) const {
     return producer_.boot_up_due() ? host.now() : producer_.next_deadline();
   }

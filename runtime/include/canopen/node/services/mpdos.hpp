@@ -38,6 +38,10 @@ class Mpdos : public ServiceDefaults<Mpdos<Device>> {
     return !serves_pdo(host.state()) || mpdos_.serve(host.entries(), host.node_id(), host.bus(), host.now());
   }
   template <class Host>
+  void keep_deadlines(Host& host) {
+    mpdos_.keep_deadlines(host.now());
+  }
+  template <class Host>
   std::optional<TimePoint> deadline(Host& host) const {
     return serves_pdo(host.state()) ? mpdos_.next_deadline(host.now()) : std::nullopt;
   }

@@ -52,9 +52,17 @@ class Sync : public ServiceDefaults<Sync<Device>> {
   }
 
   template <class Host>
+  void on_time([[maybe_unused]] Host& host) {
+    window_.keep_deadline(host.now());
+  }
+  template <class Host>
   std::optional<TimePoint> deadline([[maybe_unused]] Host& host) const {
-    if constexpr (Producer::exists) return producer_.next_deadline(host.store(), host.now());
-    return std::nullopt;
+    std::optional<TimePoint> next = window_.next_deadline(host.now());
+    if constexpr (Producer::exists) {
+      if (const auto due = producer_.next_deadline(); due)
+        next = next ? earlier_deadline(*next, *due, host.now()) : due;
+    }
+    return next;
   }
 
   /// Whether the synchronous window has elapsed.

@@ -46,6 +46,10 @@ class Tpdos : public ServiceDefaults<Tpdos<Device>> {
     return !serves_pdo(host.state()) || tpdos_.serve(host.store(), host.bus(), host.now(), Refresh<Host>{host});
   }
   template <class Host>
+  void keep_deadlines(Host& host) {
+    tpdos_.keep_deadlines(host.now());
+  }
+  template <class Host>
   std::optional<TimePoint> deadline(Host& host) const {
     return serves_pdo(host.state()) ? tpdos_.next_deadline(host.now()) : std::nullopt;
   }
