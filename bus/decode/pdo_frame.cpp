@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "device/scaled_unit.hpp"
 #include "device/types/little_endian.hpp"
 #include "text/counted.hpp"
 #include "values/append.hpp"
@@ -33,7 +34,7 @@ void append_field(std::string& text, const PdoField& field, std::uint64_t word, 
   } else if (field.type->kind == canopen::DataClass::string) {
     append_value(text, *field.type, bytes_of(value.number, std::min<std::size_t>(bytes_for(field.bits), 8)));
   } else {
-    if (field.entry != nullptr) value.unit = field.entry->unit;
+    if (field.entry != nullptr) value.unit = raw_unit(*field.entry);
     append_number(text, *field.type, value.number, field.bits, value.unit);
   }
   value.text_end = text.size();

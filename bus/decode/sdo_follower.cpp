@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "device/index_range.hpp"
+#include "device/scaled_unit.hpp"
 #include "device/types/little_endian.hpp"
 #include "text/counted.hpp"
 #include "values/append.hpp"
@@ -91,7 +92,7 @@ void SdoFollower::put_value(Message& message) const {
   value.sub_index = sub_index_;
   value.name = name_;
   value.type = entry_ != nullptr ? entry_->type : nullptr;
-  value.unit = entry_ != nullptr ? entry_->unit : std::string_view{};
+  value.unit = entry_ != nullptr ? raw_unit(*entry_) : std::string_view{};
   value.bytes = kept_;
   value.text_begin = message.text.size();
   const bool maps = model_ != nullptr && contains(mapping_parameters, index_) && sub_index_ != 0 && kept_.size() == 4;

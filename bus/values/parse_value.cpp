@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "device/scaled_unit.hpp"
 #include "device/types/little_endian.hpp"
 #include "device/types/value.hpp"
 #include "eds/ini.hpp"
@@ -235,6 +236,12 @@ ParsedValue parse_value_text(const Entry& entry, std::string_view text) {
   const std::string_view unit = entry.unit;
   if (!unit.empty() && text.size() > unit.size() && text.ends_with(unit) &&
       text[text.size() - unit.size() - 1] == ' ') {
+    if (is_scaled(entry)) {
+      return problem(fmt::format(
+          "\"{}\" has a unit, but {} \"{}\" is in steps of {} (Factor of the EDS); give the number of steps, without a "
+          "unit",
+          text, entry_label(entry.index, entry.sub_index), entry.name, physical_unit(entry)));
+    }
     text = trim_right(text.substr(0, text.size() - unit.size()));
   }
   ParsedValue result = parse_value_text(type, text);

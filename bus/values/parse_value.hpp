@@ -24,7 +24,7 @@ struct ParsedValue {
 /// is -1 as INTEGER16. Quotation marks around a string are removed, and escapes in it are resolved; a string without
 /// them is used unchanged. A DOMAIN is given as hexadecimal digits.
 [[nodiscard]] ParsedValue parse_value_text(const canopen::DataTypeRow& type, std::string_view text);
-/// Checks the limits of the entry; its unit may follow the number.
+/// Checks the limits of the entry; its unit may follow the number, unless the entry has a Factor other than 1.
 [[nodiscard]] ParsedValue parse_value_text(const Entry& entry, std::string_view text);
 
 /// The days from 1984-01-01, as in TIME_OF_DAY and 1020h; nothing for an invalid date, or one before.

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <iterator>
 
+#include "device/scaled_unit.hpp"
 #include "device/types/little_endian.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
@@ -179,7 +180,7 @@ void append_value(std::string& text, const Entry& entry, Bytes bytes) {
   const bool communication =
       entry.index >= 0x1000 && entry.index < 0x2000 && entry.index != cycle_period && entry.index != window_length;
   if (!communication || entry.type->type != DataType::unsigned32 || bytes.size() != sizeof(std::uint32_t)) {
-    return append_value(text, *entry.type, bytes, entry.unit);
+    return append_value(text, *entry.type, bytes, raw_unit(entry));
   }
   append_hex_number(text, number_of(bytes), 8);
 }
@@ -208,7 +209,7 @@ std::string limits_text(const Entry& entry) {
   if (entry.low_limit) text += limit_text(*entry.low_limit, *entry.type);
   text += "..";
   if (entry.high_limit) text += limit_text(*entry.high_limit, *entry.type);
-  append_unit(text, entry.unit);
+  append_unit(text, raw_unit(entry));
   return text;
 }
 

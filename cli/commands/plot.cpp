@@ -7,6 +7,7 @@
 #include "decode/log/log_decoder.hpp"
 #include "decode/log/ordered_time.hpp"
 #include "decode/log/value_number.hpp"
+#include "device/scaled_unit.hpp"
 #include "load/find_entry.hpp"
 #include "monitor/progress_line.hpp"
 #include "plot/plot_svg.hpp"
@@ -49,10 +50,10 @@ PlotLine line_of(std::uint8_t node_id, const NodeLabels& labels, const Object& o
   line.name =
       fmt::format("node {} {}{}{} ", node_id, node_name, node_name.empty() ? "" : " ", display_name(object, entry));
   append_entry_label(line.name, object.index, entry.sub_index);
-  line.unit = entry.unit;
-  line.panel = entry.unit.empty() ? fmt::format("{:04X}:{:02X}", object.index, entry.sub_index) : "unit " + entry.unit;
+  line.unit = raw_unit(entry);
+  line.panel = line.unit.empty() ? fmt::format("{:04X}:{:02X}", object.index, entry.sub_index) : "unit " + line.unit;
   line.whole = entry.type->kind != DataClass::real;
-  line.steps = entry.type->kind == DataClass::boolean || (line.whole && entry.unit.empty());
+  line.steps = entry.type->kind == DataClass::boolean || (line.whole && line.unit.empty());
   return line;
 }
 

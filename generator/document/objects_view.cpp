@@ -12,6 +12,7 @@
 #include "backend/cpp/cpp_name.hpp"
 #include "backend/json/replaced_default.hpp"
 #include "compare/compare_parts.hpp"
+#include "device/scaled_unit.hpp"
 #include "document/views.hpp"
 #include "text/counted.hpp"
 
@@ -75,8 +76,7 @@ std::string limits_text(const Entry& entry) {
 }
 
 std::string unit_text(const Entry& entry) {
-  if (entry.factor.empty() || entry.factor == "1") return entry.unit;
-  return fmt::format("\u00D7 {}{}{}", entry.factor, entry.unit.empty() ? "" : " ", entry.unit);
+  return is_scaled(entry) ? "\u00D7 " + physical_unit(entry) : entry.unit;
 }
 
 class ObjectRows {

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "device/scaled_unit.hpp"
 #include "network/checks/check_groups.hpp"
 #include "network/checks/merged_note.hpp"
 
@@ -84,10 +85,12 @@ class PdoLink {
                                                named(sender_), named(from), from.type->name),
                                    {{same->entry->place, named(sender_)}});
     }
-    if (!from.unit.empty() && !to.unit.empty() && from.unit != to.unit) {
+    const std::string sent_unit = physical_unit(from);
+    const std::string unit = physical_unit(to);
+    if (!from.unit.empty() && !to.unit.empty() && sent_unit != unit) {
       context_.diagnostics.warning("network-pdo-unit", entry.place,
-                                   fmt::format("{} is in {}, but {} sends {} in {}", title(received), to.unit,
-                                               named(sender_), named(from), from.unit),
+                                   fmt::format("{} is in {}, but {} sends {} in {}", title(received), unit,
+                                               named(sender_), named(from), sent_unit),
                                    {{same->entry->place, named(sender_)}});
     }
   }

@@ -15,6 +15,7 @@
 #include "backend/cpp/identifier.hpp"
 #include "backend/cpp/views.hpp"
 #include "backend/render.hpp"
+#include "device/scaled_unit.hpp"
 #include "format/dcf/concise_dcf.hpp"
 #include "network/cob_id_use.hpp"
 #include "network/communication_objects.hpp"
@@ -213,7 +214,7 @@ class PlantHeader {
 
   [[nodiscard]] ordered_json signal_row(const NetworkNode& node, const PdoLink& link, const LinkedValue& value,
                                         const PdoEntry& entry, const std::string& name) const {
-    const std::string unit = entry.object->unit.empty() ? "" : fmt::format(" in {}", entry.object->unit);
+    const std::string unit = entry.object->unit.empty() ? "" : " in " + physical_unit(*entry.object);
     const bool is_limited = entry.object->low_limit || entry.object->high_limit;
     return {{"name", name},
             {"type", fmt::format("::{}::signals::{}::{}", name_, identifier(node), name)},

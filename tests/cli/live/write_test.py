@@ -6,16 +6,53 @@
 
 from __future__ import annotations
 
-from live import FAILED, FINE, PATIENCE_MS, WRONG_USAGE, LiveTest, run
+import json
+import subprocess
+
+from live import EDSC, FAILED, FINE, PATIENCE_MS, WRONG_USAGE, LiveTest, run
 
 
 class Write(LiveTest):
+    def without_bus(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([EDSC, *arguments], cwd=self.folder, capture_output=True, text=True, timeout=600)
+
     def test_with_the_unit_and_read_back(self) -> None:
         self.expect(self.edsc("write", 5, "speed", "1500 rpm", "--eds", "device.eds", "--verify"), FINE,
                     "2004h:00 Speed = 1500 rpm, verified\n")
         self.expect(self.edsc("write", 5, "label", "left axis", "--eds", "device.eds"), FINE, '2002h:00 Label = "left axis"\n')
         self.expect(self.edsc("read", 5, "label", "speed", "--eds", "device.eds"), FINE,
                     '2002h:00 Label = "left axis"\n2004h:00 Speed = 1500 rpm\n')
+
+    def test_the_unit_of_a_scaled_entry_is_refused(self) -> None:
+        """One step of 2004h is 0.1 rpm, one of 60FFh is 100 inc/s: no command reads or prints a raw value in the unit."""
+        text = (self.folder / "device.eds").read_text()
+        scaled = text.replace("DefaultValue=1000\nPDOMapping=0\nUnit=rpm", "DefaultValue=1000\nPDOMapping=0\nUnit=rpm\nFactor=0.1")
+        scaled = scaled.replace("Unit=inc/s", "Unit=inc/s\nFactor=100")
+        self.assertEqual(scaled.count("Factor="), 2)
+        (self.folder / "device.eds").write_text(scaled)
+        why = ('"{}" has a unit, but {} is in steps of {} (Factor of the EDS); give the number of steps, without a unit\n')
+        self.expect(self.edsc("write", 5, "speed", "150 rpm", "--eds", "device.eds", "--verify"), WRONG_USAGE,
+                    stderr="edsc: " + why.format("150 rpm", '2004h:00 "Speed"', "0.1 rpm"))
+        self.expect(self.edsc("send", "pdo", "5=device.eds", 1, "60FFh=2 inc/s", "6040h=0"), WRONG_USAGE,
+                    stderr="edsc: 60FFh:00 Target velocity: " + why.format("2 inc/s", '60FFh:00 "Target velocity"', "100 inc/s"))
+        self.assertEqual(self.network.frames("605", "205"), [])
+        self.expect(self.edsc("write", 5, "speed", "1500", "--eds", "device.eds", "--verify"), FINE,
+                    "2004h:00 Speed = 1500 (05DCh), verified\n")
+        self.expect(self.edsc("read", 5, "speed", "--eds", "device.eds"), FINE, "2004h:00 Speed = 1500 (05DCh)\n")
+        read = self.expect_json(self.edsc("read", 5, "speed", "--eds", "device.eds", "--format", "json"), "read.schema.json")
+        self.assertNotIn("rpm", json.dumps(read))
+        (self.folder / "bus.log").write_text("(1.0) can0 205#0F00FEFFFFFF\n(2.0) can0 605#2B042000E8030000\n")
+        for arguments in (("decode",), ("decode", "--format", "json"), ("decode", "--format", "csv")):
+            with self.subTest(arguments):
+                shown = self.without_bus(*arguments, "--node", "5=device.eds", "bus.log").stdout
+                self.assertIn("Target velocity = -2", shown)
+                self.assertIn("Speed = 1000 (03E8h)", shown)
+                self.assertNotRegex(shown, "rpm|inc/s")
+        plot = self.without_bus("plot", "bus.log", "60FFh", "--node", "5=device.eds").stdout
+        self.assertIn("Target velocity", plot)
+        self.assertNotIn("inc/s", plot)
+        (self.folder / "set.dcf").write_text(scaled.replace("DefaultValue=1000\n", "DefaultValue=1000\nParameterValue=5 rpm\n"))
+        self.assertNotEqual(self.without_bus("check", "set.dcf").returncode, FINE)
 
     def test_a_value_in_brackets_is_no_list(self) -> None:
         self.expect(self.edsc("write", 5, "label", "--eds", "device.eds", "--timeout", PATIENCE_MS, "--", "[a,b]"), FINE, '2002h:00 Label = "[a,b]"\n')
