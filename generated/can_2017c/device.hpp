@@ -24,9 +24,9 @@ static_assert(canopen::checked_cob_ids<
 struct Device {
   static constexpr auto name = "CAN-2017C";
 
-  using Values = can_2017c::Values;
-  using Objects = can_2017c::Objects;
-  static constexpr const canopen::Dictionary& dictionary = can_2017c::dictionary;
+  using Values = ::can_2017c::Values;
+  using Objects = ::can_2017c::Objects;
+  static constexpr const canopen::Dictionary& dictionary = ::can_2017c::dictionary;
 
   /// The PDOs that the runtime serves, by number.
   using Rpdos = canopen::PdoList<
@@ -90,7 +90,7 @@ struct Device {
   }
 
   static void reset_communication([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.communication_preset, &can_2017c::communication_preset, sizeof values.communication_preset);
+    canopen::copy_bytes(&values.communication_preset, &::can_2017c::communication_preset, sizeof values.communication_preset);
     canopen::clear_bytes(&values.communication_cleared, sizeof values.communication_cleared);
   }
   static void reset_application([[maybe_unused]] Values& values) {

@@ -24,9 +24,9 @@ static_assert(canopen::checked_cob_ids<
 struct Device {
   static constexpr auto name = "CAN-2053C";
 
-  using Values = can_2053c::Values;
-  using Objects = can_2053c::Objects;
-  static constexpr const canopen::Dictionary& dictionary = can_2053c::dictionary;
+  using Values = ::can_2053c::Values;
+  using Objects = ::can_2053c::Objects;
+  static constexpr const canopen::Dictionary& dictionary = ::can_2053c::dictionary;
 
   /// The PDOs that the runtime serves, by number.
   using Rpdos = canopen::PdoList<
@@ -91,7 +91,7 @@ struct Device {
   }
 
   static void reset_communication([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.communication_preset, &can_2053c::communication_preset, sizeof values.communication_preset);
+    canopen::copy_bytes(&values.communication_preset, &::can_2053c::communication_preset, sizeof values.communication_preset);
     canopen::clear_bytes(&values.communication_cleared, sizeof values.communication_cleared);
   }
   static void reset_application([[maybe_unused]] Values& values) {

@@ -2354,7 +2354,16 @@ inline constexpr Constants constants{
 /// Tables for the search by index and sub-index; canopen/od/dictionary.hpp describes their format.
 namespace table {
 
-using namespace canopen::entry;
+// Each by its name: a name that another namespace brings into the global one is then hidden.
+using canopen::entry::u8, canopen::entry::u16, canopen::entry::u24, canopen::entry::u32, canopen::entry::u40,
+    canopen::entry::u48, canopen::entry::u56, canopen::entry::u64, canopen::entry::i8, canopen::entry::i16,
+    canopen::entry::i24, canopen::entry::i32, canopen::entry::i40, canopen::entry::i48, canopen::entry::i56,
+    canopen::entry::i64, canopen::entry::r32, canopen::entry::r64, canopen::entry::time48,
+    canopen::entry::visible_string, canopen::entry::octet_string, canopen::entry::domain, canopen::entry::boolean,
+    canopen::entry::ro, canopen::entry::wo, canopen::entry::rw, canopen::entry::tpdo, canopen::entry::rpdo,
+    canopen::entry::limited, canopen::entry::ram, canopen::entry::rom, canopen::entry::immediate,
+    canopen::entry::immediate_plus_node_id, canopen::entry::array, canopen::entry::record, canopen::entry::shape,
+    canopen::entry::gap;
 
 inline constexpr canopen::Run runs[] = {
     {0x1000, 0},

@@ -24,9 +24,9 @@ static_assert(canopen::checked_cob_ids<
 struct Device {
   static constexpr auto name = "CAN-2057C";
 
-  using Values = can_2057c::Values;
-  using Objects = can_2057c::Objects;
-  static constexpr const canopen::Dictionary& dictionary = can_2057c::dictionary;
+  using Values = ::can_2057c::Values;
+  using Objects = ::can_2057c::Objects;
+  static constexpr const canopen::Dictionary& dictionary = ::can_2057c::dictionary;
 
   /// The PDOs that the runtime serves, by number.
   using Rpdos = canopen::PdoList<
@@ -90,11 +90,11 @@ struct Device {
   }
 
   static void reset_communication([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.communication_preset, &can_2057c::communication_preset, sizeof values.communication_preset);
+    canopen::copy_bytes(&values.communication_preset, &::can_2057c::communication_preset, sizeof values.communication_preset);
     canopen::clear_bytes(&values.communication_cleared, sizeof values.communication_cleared);
   }
   static void reset_application([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.application_preset, &can_2057c::application_preset, sizeof values.application_preset);
+    canopen::copy_bytes(&values.application_preset, &::can_2057c::application_preset, sizeof values.application_preset);
     canopen::clear_bytes(&values.application_cleared, sizeof values.application_cleared);
   }
 

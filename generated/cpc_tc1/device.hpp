@@ -25,9 +25,9 @@ static_assert(canopen::checked_cob_ids<
 struct Device {
   static constexpr auto name = "TC1/TC1-B servo drive";
 
-  using Values = cpc_tc1::Values;
-  using Objects = cpc_tc1::Objects;
-  static constexpr const canopen::Dictionary& dictionary = cpc_tc1::dictionary;
+  using Values = ::cpc_tc1::Values;
+  using Objects = ::cpc_tc1::Objects;
+  static constexpr const canopen::Dictionary& dictionary = ::cpc_tc1::dictionary;
 
   /// The PDOs that the runtime serves, by number.
   using Rpdos = canopen::PdoList<
@@ -62,7 +62,7 @@ struct Device {
       .bit_rates = 0x01DF};
 
   /// The value of 1021h.
-  static constexpr std::span<const std::uint8_t> stored_eds = cpc_tc1::stored_eds;
+  static constexpr std::span<const std::uint8_t> stored_eds = ::cpc_tc1::stored_eds;
 
   /// Bit n is set if an RPDO may map data type n as a dummy.
   static constexpr std::uint32_t dummies = 0x01FC;
@@ -78,7 +78,7 @@ struct Device {
   static constexpr std::array<std::uint8_t, 5> emergency_info([[maybe_unused]] std::uint16_t code) { return {}; }
 
   static void reset_communication([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.communication_preset, &cpc_tc1::communication_preset, sizeof values.communication_preset);
+    canopen::copy_bytes(&values.communication_preset, &::cpc_tc1::communication_preset, sizeof values.communication_preset);
     canopen::clear_bytes(&values.communication_cleared, sizeof values.communication_cleared);
   }
   static void reset_application([[maybe_unused]] Values& values) {

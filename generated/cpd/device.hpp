@@ -24,9 +24,9 @@ static_assert(canopen::checked_cob_ids<
 struct Device {
   static constexpr auto name = "CPD";
 
-  using Values = cpd::Values;
-  using Objects = cpd::Objects;
-  static constexpr const canopen::Dictionary& dictionary = cpd::dictionary;
+  using Values = ::cpd::Values;
+  using Objects = ::cpd::Objects;
+  static constexpr const canopen::Dictionary& dictionary = ::cpd::dictionary;
 
   /// The PDOs that the runtime serves, by number.
   using Rpdos = canopen::PdoList<
@@ -67,11 +67,11 @@ struct Device {
   static constexpr std::array<std::uint8_t, 5> emergency_info([[maybe_unused]] std::uint16_t code) { return {}; }
 
   static void reset_communication([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.communication_preset, &cpd::communication_preset, sizeof values.communication_preset);
+    canopen::copy_bytes(&values.communication_preset, &::cpd::communication_preset, sizeof values.communication_preset);
     canopen::clear_bytes(&values.communication_cleared, sizeof values.communication_cleared);
   }
   static void reset_application([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.application_preset, &cpd::application_preset, sizeof values.application_preset);
+    canopen::copy_bytes(&values.application_preset, &::cpd::application_preset, sizeof values.application_preset);
     canopen::clear_bytes(&values.application_cleared, sizeof values.application_cleared);
   }
 

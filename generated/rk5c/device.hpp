@@ -25,9 +25,9 @@ static_assert(canopen::checked_cob_ids<
 struct Device {
   static constexpr auto name = "RK5C";
 
-  using Values = rk5c::Values;
-  using Objects = rk5c::Objects;
-  static constexpr const canopen::Dictionary& dictionary = rk5c::dictionary;
+  using Values = ::rk5c::Values;
+  using Objects = ::rk5c::Objects;
+  static constexpr const canopen::Dictionary& dictionary = ::rk5c::dictionary;
 
   /// The PDOs that the runtime serves, by number.
   using Rpdos = canopen::PdoList<>;
@@ -81,11 +81,11 @@ struct Device {
   }
 
   static void reset_communication([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.communication_preset, &rk5c::communication_preset, sizeof values.communication_preset);
+    canopen::copy_bytes(&values.communication_preset, &::rk5c::communication_preset, sizeof values.communication_preset);
     canopen::clear_bytes(&values.communication_cleared, sizeof values.communication_cleared);
   }
   static void reset_application([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.application_preset, &rk5c::application_preset, sizeof values.application_preset);
+    canopen::copy_bytes(&values.application_preset, &::rk5c::application_preset, sizeof values.application_preset);
     canopen::clear_bytes(&values.application_cleared, sizeof values.application_cleared);
   }
 

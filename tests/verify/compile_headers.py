@@ -5,7 +5,8 @@
 
 Tests the headers of the runtime and those that edsc generates for the reference devices and the fixtures. Whether a generated
 header includes all that it needs is tested with g++, where it is the main file. The other compilers read all headers of a device
-twice, after those of the runtime, which they compile once.
+twice, after those of the runtime, which they compile once. All headers also compile after `using namespace std;`: g++ reads those
+of the runtime and of all devices in one file, the other compilers those of each device.
 """
 
 from __future__ import annotations
@@ -26,6 +27,12 @@ HOSTED_ONLY = ("host/descriptor.hpp", "host/event_descriptor.hpp", "host/file_st
                "host/host_loop.hpp", "host/network_simulation/network_simulation.hpp", "host/simulated_device.hpp",
                "host/slcan.hpp", "host/socketcan.hpp", "host/socketcan_frame.hpp", "host/socketcand.hpp",
                "host/stream_port.hpp")
+
+# The names of many headers of the standard library, without `std::`.
+USING_STD = "".join(f"#include <{header}>\n" for header in (
+    "algorithm", "array", "bit", "chrono", "concepts", "functional", "iterator", "limits", "memory", "numeric", "optional",
+    "ranges", "span", "string", "string_view", "tuple", "type_traits", "utility", "variant", "vector")) + "using namespace std;\n"
+NAMED_LIKE_STD = "ranges"  # a device whose namespace has the name of one in `std`
 
 
 @dataclass(frozen=True)
@@ -53,6 +60,7 @@ def generate(edsc: Path, sheets: list[Path], output: Path) -> list[Path]:
     """Returns the folder of each device."""
     for sheet in sheets:
         subprocess.run([edsc, "generate", sheet, "-o", output, "--color", "never"], check=True, capture_output=True)
+    subprocess.run([edsc, "generate", sheets[-1], "-o", output, "--name", NAMED_LIKE_STD], check=True, capture_output=True)
     return sorted(path for path in output.iterdir() if path.is_dir())
 
 
@@ -60,9 +68,9 @@ def headers_below(root: Path) -> list[str]:
     return [str(path.relative_to(root)) for path in sorted(root.glob("**/*.hpp"))]
 
 
-def source_of(headers: list[str], path: Path) -> Path:
-    """A source that includes each of the headers twice."""
-    path.write_text("".join(f"#include <{header}>\n" for header in headers) * 2)
+def source_of(headers: list[str], path: Path, first: str = "") -> Path:
+    """A source that includes each of the headers twice, after the text `first`."""
+    path.write_text(first + "".join(f"#include <{header}>\n" for header in headers) * 2)
     return path
 
 
@@ -83,6 +91,12 @@ def jobs_of_main_files(device: Path, runtime: Path) -> list[Job]:
             for header in sorted(device.glob("*.hpp"))]
 
 
+def job_after_using_std(devices: list[Path], runtime: Path, scratch: Path) -> Job:
+    headers = headers_below(runtime) + [str(path.relative_to(device.parent)) for device in devices for path in sorted(device.glob("*.hpp"))]
+    return Job(GCC, "all headers after using namespace std", source_of(headers, scratch / "using_std.cpp", USING_STD),
+               (devices[0].parent, runtime), ("-fexceptions",))
+
+
 def jobs_of_devices(devices: list[Path], compiler: Compiler, runtime: Path, scratch: Path) -> list[Job]:
     folder = scratch / compiler.name
     folder.mkdir()
@@ -93,7 +107,7 @@ def jobs_of_devices(devices: list[Path], compiler: Compiler, runtime: Path, scra
     for device in devices:
         headers = [f"{device.name}/{path.name}" for path in sorted(device.glob("*.hpp"))]
         jobs.append(Job(compiler, f"all headers of {device.name}, included twice",
-                        source_of(headers, folder / f"{device.name}.cpp"), (device.parent, runtime), flags))
+                        source_of(headers, folder / f"{device.name}.cpp", USING_STD), (device.parent, runtime), flags))
     return jobs
 
 
@@ -108,6 +122,7 @@ def main() -> int:
         for compiler in compilers:
             if compiler == GCC:
                 jobs += [job for device in devices for job in jobs_of_main_files(device, runtime)]
+                jobs.append(job_after_using_std(devices, runtime, scratch))
             else:
                 jobs += jobs_of_devices(devices, compiler, runtime, scratch)
         problems = [problem for problem in in_parallel(Job.run, jobs) if problem]
