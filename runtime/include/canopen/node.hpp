@@ -65,11 +65,20 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
 
-  /// Power-on: sets default and stored values, sends the boot-up message, enters Pre-operational (CiA 301, 7.3.2.1).
+  /// Power-on: sets default and stored values, calls `start` of the application, sends the boot-up message, enters
+  /// Pre-operational (CiA 301, 7.3.2.1).
   void start(TimePoint now) {
     now_ = now;
     services_.on_start(host());
-    reset_node();
+    if constexpr (HandlerTypes::template has_event_function<function::Start>) {
+      services_.reset_application(host());
+      services_.reset_communication(host());
+      state_ = NmtState::initialisation;
+      handlers_.template notify<function::Start>(*this);
+      initialise();
+    } else {
+      reset_node();
+    }
     serve();
   }
 
@@ -121,6 +130,8 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
 
   [[nodiscard]] NmtState state() const { return state_; }
   [[nodiscard]] NodeId node_id() const { return node_id_; }
+  /// Returns the time that was passed to the function of the node that runs, or ran last.
+  [[nodiscard]] TimePoint now() const { return now_; }
 
   /// Executes an NMT command by local control (CiA 301, 7.3.2). Has no effect before `start` or without a node-ID. In a
   /// read or write handler, the command is executed after the response of the SDO server has been sent.
@@ -319,6 +330,11 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
 
   void reset_communication() {
     services_.reset_communication(host());
+    initialise();
+  }
+
+  /// Initialisation after the values have been set (CiA 301, 7.3.2.2.1).
+  void initialise() {
     enter(NmtState::initialisation);
     service::BootUp<Device>& boot_up = services_.template get<service::BootUp<Device>>();
     boot_up.reset();
@@ -381,7 +397,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
 
   /// The whole function of a node without node-ID.
   void serve_without_node_id() {
-    if constexpr (Services::has_any_without_node_id) {
+    if constexpr (Services::sends_without_node_id) {
       attention_ = !services_.serve_without_node_id(host());
       if (state_ != NmtState::initialisation) serve();
     }

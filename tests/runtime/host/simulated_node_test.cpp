@@ -42,8 +42,8 @@ struct Switched {
 };
 
 struct CountingApplication {
-  void tick(auto& node, TimePoint) { node.set(od::byte{}, static_cast<std::uint8_t>(++ticks)); }
-  int ticks = 0;
+  void every(canopen::Milliseconds<1>, auto& node) { node.set(od::byte{}, static_cast<std::uint8_t>(++calls)); }
+  int calls = 0;
 };
 
 struct CarefulApplication {
@@ -54,8 +54,11 @@ struct CarefulApplication {
 };
 
 struct ApplicationWithHandlers {
+  void start(auto& node) { node.set(od::byte{}, 3); }
   auto handlers() {
-    return std::tuple{canopen::on_write<od::word>([](std::uint16_t) { return AbortCode::device_state; })};
+    return std::tuple{canopen::application_at(*this),
+                      canopen::on_write<od::word>([](std::uint16_t) { return AbortCode::device_state; }),
+                      canopen::every<canopen::Milliseconds<5>>([](auto& node) { node.set(od::byte{}, 5); })};
   }
 };
 
@@ -78,7 +81,7 @@ TEST(SimulatedNode, IsDueWhenItsNodeIs) {
   EXPECT_EQ(device.bus.log.take(), "705 7F");
 }
 
-TEST(SimulatedNode, IsDueEachMillisecondWhereItsApplicationHasATick) {
+TEST(SimulatedNode, IsDueAtThePeriodOfItsApplication) {
   SimulatedMemory memory{NodeId{5}};
   Switched<CountingApplication> device{memory};
   device.ask("605 2B 17 10 00 64 00 00 00");
@@ -104,6 +107,11 @@ TEST(SimulatedNode, AsksTheHandlersOfItsApplication) {
   Switched<ApplicationWithHandlers> device{memory};
   device.bus.log.take();
   EXPECT_EQ(device.ask("605 2B 01 20 00 E9 03 00 00"), "585 80 01 20 00 22 00 00 08") << "0800 0022h: device state";
+  EXPECT_EQ(device.ask("605 40 00 20 00 00 00 00 00"), "585 4F 00 20 00 03 00 00 00") << "start of the class itself";
+  device.node->on_time(TimePoint{});
+  EXPECT_EQ(device.node->next_deadline(), TimePoint{5ms});
+  device.node->on_time(TimePoint{5ms});
+  EXPECT_EQ(device.ask("605 40 00 20 00 00 00 00 00"), "585 4F 00 20 00 05 00 00 00");
 }
 
 TEST(SimulatedNode, DoesWhatTheApplicationDoesByItself) {

@@ -14,8 +14,7 @@
 ///
 ///     struct Pump {
 ///       void written(od::speed_setpoint, std::uint16_t speed) { speed_ = speed; }  // node/application.hpp has them
-///       void start(auto& node) { node.set(od::pressure{}, 0); }                    // optional: after power-on
-///       void tick(auto& node, canopen::TimePoint) {                                // optional: each millisecond
+///       void every(canopen::Milliseconds<1>, auto& node) {
 ///         node.set(od::pressure{}, static_cast<std::uint16_t>(speed_ / 4));
 ///       }
 ///       std::uint16_t speed_ = 0;

@@ -10,6 +10,7 @@
 #include <span>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -114,16 +115,28 @@ template <class Device, class Handlers>
   return std::tuple_cat(storage(), lss(), std::move(handlers));
 }
 
+/// Whether the handlers of a tuple have the functions of an application class.
+template <class Application, class Tuple>
+inline constexpr bool has_application = false;
+template <class Application, class... Handlers>
+inline constexpr bool has_application<Application, std::tuple<Handlers...>> =
+    (std::is_same_v<ApplicationAt<Application>, Handlers> || ...);
+
 /// The handlers of an application: those that `handlers()` returns, or the application itself, if it is a class with
-/// functions that a node calls.
+/// functions that a node calls. The node on a real bus has the same ones.
 template <class Application>
 [[nodiscard]] auto handlers_of(Application& application) {
   if constexpr (requires { application.handlers(); }) {
+    using Handlers = decltype(application.handlers());
+    static_assert(!handler_detail::is_application<Application> || has_application<Application, Handlers>,
+                  "application: of a class with handlers(), the node calls the functions of the class itself only if "
+                  "application_at(*this) is one of these handlers");
+    static_assert(!handler_detail::has_uncalled_tick<Application>());
     return application.handlers();
-  } else if constexpr (handler_detail::is_application<Application>) {
-    return std::tuple{application_at(application)};
-  } else {
+  } else if constexpr (std::is_same_v<Application, NoApplication>) {
     return std::tuple<>{};
+  } else {
+    return std::tuple{application_at(application)};
   }
 }
 
@@ -135,25 +148,16 @@ class NodeOf final : public SimulatedNode {
 
   void start(TimePoint now) override {
     node_.start(now);
-    if constexpr (requires { application_.start(node_); }) application_.start(node_);
-    next_tick_ = now + tick_period;
     serve_until_ = now + longest_pause;
   }
   void on_frame(const Frame& frame, TimePoint now) override { node_.on_frame(frame, now); }
   void on_time(TimePoint now) override {
-    if constexpr (has_tick) {
-      if (now >= next_tick_) {
-        application_.tick(node_, now);
-        next_tick_ = next_tick_ + tick_period;
-      }
-    }
     serve_until_ = now + longest_pause;
     node_.on_time(now);
   }
   [[nodiscard]] std::optional<TimePoint> next_deadline() const override {
-    TimePoint next = has_tick ? next_tick_ : serve_until_;
-    if (const auto of_node = node_.next_deadline(); of_node && *of_node < next) next = *of_node;
-    return next;
+    const std::optional<TimePoint> of_node = node_.next_deadline();
+    return of_node && *of_node < serve_until_ ? of_node : serve_until_;
   }
 
   [[nodiscard]] NmtState state() const override { return node_.state(); }
@@ -172,16 +176,11 @@ class NodeOf final : public SimulatedNode {
       std::declval<SimulatedBus&>(), NodeId{},
       complete<Device>(std::declval<SimulatedMemory&>(), handlers_of(std::declval<Application&>()))));
 
-  static constexpr bool has_tick = requires(Application & application, Node& node) {
-    application.tick(node, TimePoint{});
-  };
-  static constexpr Duration tick_period{1'000};
   /// A node has to be served every half hour at least.
   static constexpr Duration longest_pause{1'000'000'000};
 
   Application application_{};
   Node node_;
-  TimePoint next_tick_{};
   TimePoint serve_until_{};
 };
 

@@ -9,6 +9,8 @@
 ///       }
 ///       std::uint16_t read(od::temperature) { return measure(); }               // before it is sent
 ///       void on_state(canopen::NmtState state) { show(state); }
+///       void start(auto& node) { node.set(od::pressure{}, 0); }                 // at power-on
+///       void every(canopen::Milliseconds<10>, auto& node) { regulate(node); }   // each 10 ms
 ///     };
 ///     canopen::Node<pump::Device, Bus, Pump> node{bus, canopen::NodeId{5}};
 ///
@@ -29,6 +31,7 @@
 #include "canopen/node/handled.hpp"
 #include "canopen/node/handlers.hpp"
 #include "canopen/node/mailbox.hpp"
+#include "canopen/node/periodic_functions.hpp"
 #include "canopen/od/object_list.hpp"
 #include "canopen/sdo/domain_handlers.hpp"
 #include "canopen/storage/storage.hpp"
@@ -57,6 +60,11 @@ template <class O, class F>
 inline constexpr bool is_access_handler<ReadHandler<O, F>> = true;
 
 template <class H>
+inline constexpr bool is_periodic_handler = false;
+template <class P, class F>
+inline constexpr bool is_periodic_handler<PeriodicHandler<P, F>> = true;
+
+template <class H>
 inline constexpr bool is_event_handler = false;
 template <class Event, class F>
 inline constexpr bool is_event_handler<EventHandler<Event, F>> = true;
@@ -64,8 +72,9 @@ inline constexpr bool is_event_handler<EventHandler<Event, F>> = true;
 /// Whether a type is one of the handlers with a template of their own.
 template <class H>
 inline constexpr bool is_handler =
-    is_access_handler<H> || is_event_handler<H> || domain_detail::is_reader<H> || domain_detail::is_writer<H> ||
-    storage_detail::is_stored_in<H> || lss_detail::is_handler<H> || mailbox_detail::is_values_from<H>;
+    is_access_handler<H> || is_event_handler<H> || is_periodic_handler<H> || domain_detail::is_reader<H> ||
+    domain_detail::is_writer<H> || storage_detail::is_stored_in<H> || lss_detail::is_handler<H> ||
+    mailbox_detail::is_values_from<H>;
 
 /// The class of an application, which a node has as a handler; any other type for a handler.
 template <class H>
@@ -87,9 +96,24 @@ template <class A, bool may_be = std::is_class_v<A> && !std::is_final_v<A> && !i
 inline constexpr bool is_application = false;
 template <class A>
 inline constexpr bool is_application<A, true> =
-    declares_any<A, function::Write, function::Written, function::Read, function::OnState, function::OnSync,
-                 function::OnTimeOfDay, function::OnHeartbeat, function::OnLifeGuarding, function::OnEmergency,
-                 function::OnError, function::OnRpdo>;
+    declares_any<A, function::Write, function::Written, function::Read, function::Start, function::Every,
+                 function::OnState, function::OnSync, function::OnTimeOfDay, function::OnHeartbeat,
+                 function::OnLifeGuarding, function::OnEmergency, function::OnError, function::OnRpdo>;
+
+/// The periods of a handler.
+template <class H>
+struct PeriodsOf {
+  using type = PeriodList<>;
+};
+template <class P, class F>
+struct PeriodsOf<PeriodicHandler<P, F>> {
+  using type = PeriodList<P>;
+};
+template <class H>
+requires is_application<typename ApplicationOf<H>::type>
+struct PeriodsOf<H> {
+  using type = decltype(periods_of_application<typename ApplicationOf<H>::type>());
+};
 
 /// Whether an application has a function for these arguments, with or without the node after them.
 template <class Function, class A, class Node, class... Values>
@@ -161,6 +185,8 @@ struct Handled<Device, Node, H> {
   using BeforeWrite = typename ObjectsWith<Device, Node, Application, function::Write>::type;
   using AfterWrite = typename ObjectsWith<Device, Node, Application, function::Written>::type;
   using Read = typename ObjectsWith<Device, Node, Application, function::Read>::type;
+  template <class Event>
+  static constexpr bool has_event_function = has_event<Event, Application, Node>;
 
   template <DictionaryObject O>
   static constexpr AbortCode before_write(H& handler, Node& node, const typename O::type& value) {
@@ -183,6 +209,10 @@ struct Handled<Device, Node, H> {
                                [[maybe_unused]] const Arguments&... arguments) {
     if constexpr (has_function<Event, Application, Node, Exactly<Arguments>...>)
       call_function<Event>(ApplicationOf<H>::get(handler), node, arguments...);
+  }
+  template <class P>
+  static constexpr void every(H& handler, Node& node) {
+    call_function<function::Every>(ApplicationOf<H>::get(handler), node, P{});
   }
 };
 

@@ -10,10 +10,13 @@
 #include <utility>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/base/clock.hpp"
 #include "canopen/base/label.hpp"
 #include "canopen/base/result.hpp"
 #include "canopen/node/application.hpp"
 #include "canopen/node/functions.hpp"
+#include "canopen/node/period.hpp"
+#include "canopen/node/periodic_functions.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/object_list.hpp"
 
@@ -98,18 +101,6 @@ struct NamesUncalledObject {
   requires((is_in<T, typename Device::Objects> || is_element_in<T, typename Device::Objects>)&&!is_listed<T, Called> &&
            UncalledFunction<Application, Function, T>::is_good)
   operator T() const;  // NOLINT(google-explicit-constructor): stands for an object
-};
-
-/// Converts to each type and to references: fits each parameter except `T&&`.
-struct AnyReference {
-  template <class T>
-  operator T&() const;  // NOLINT(google-explicit-constructor): stands for a value or the node
-};
-
-/// Whether no function of an application fits; more than one may.
-template <class Function, class A, class... Values>
-inline constexpr bool none_fits = requires(typename Function::template OrNone<A>& application, Values... values) {
-  { Function::call(application, values...) } -> std::same_as<function::NoneFits>;
 };
 
 /// The same for up to three further arguments of any type.
@@ -261,8 +252,12 @@ template <class Event, class A, class Node, class... Arguments>
 [[nodiscard]] constexpr bool is_only(function::ArgumentList<Arguments...> arguments) {
   using Order = std::index_sequence_for<Arguments...>;
   constexpr std::size_t count = sizeof...(Arguments);
-  if constexpr (!none_fits<Event, A, Repeated<NoObject, sizeof(Arguments)>...> ||
-                !none_fits<Event, A, Repeated<NoObject, sizeof(Arguments)>..., NoObject>) {
+  if constexpr (count == 0) {
+    constexpr bool without_node = requires(A & application) { Event::call(application); };
+    constexpr bool with_any = !none_fits<Event, A, AnyReference>;
+    return !(with_any && without_node) && none_with<Event, A>(std::make_index_sequence<2>{});
+  } else if constexpr (!none_fits<Event, A, Repeated<NoObject, sizeof(Arguments)>...> ||
+                       !none_fits<Event, A, Repeated<NoObject, sizeof(Arguments)>..., NoObject>) {
     return true;
   } else {
     constexpr bool with_node = requires(A & application, Node & node) {
@@ -292,6 +287,57 @@ template <class Device, class Node, class A, class Event>
   }
 }
 
+/// The functions `every` of an application: whether each of them has a period as its first parameter.
+template <class Application, bool HavePeriods>
+struct PeriodicFunctions {
+  static_assert(HavePeriods,
+                "application: the first parameter of every is a period such as canopen::Milliseconds<10>, and the node "
+                "is the only other one");
+  static constexpr bool is_good = true;
+};
+
+/// One of them.
+template <class Application, class Period, bool Fits, bool Single, bool ReturnsNothing>
+struct PeriodicFunction {
+  static_assert(Fits, "application: the node calls every with (period) or (period, node); it is auto& node");
+  static_assert(!Fits || Single, "application: a second function every of this period can never be called");
+  static_assert(!Fits || !Single || ReturnsNothing, "application: every returns nothing");
+  static constexpr bool is_good = true;
+};
+
+template <class A, class Node, class P>
+[[nodiscard]] constexpr bool check_period() {
+  constexpr bool without_node = !none_fits<function::Every, A, P>;
+  constexpr bool with_any = !none_fits<function::Every, A, P, AnyReference>;
+  constexpr bool fits = has_function<function::Every, A, Node, P>;
+  constexpr bool returns_nothing = [] {
+    if constexpr (fits) {
+      return std::is_void_v<decltype(call_function<function::Every>(std::declval<A&>(), std::declval<Node&>(),
+                                                                    std::declval<P>()))>;
+    } else {
+      return false;
+    }
+  }();
+  return PeriodicFunction<A, P, fits, !(with_any && without_node), returns_nothing>::is_good;
+}
+
+template <class A, class Node>
+[[nodiscard]] constexpr bool check_periods() {
+  using function::Every;
+  if constexpr (!Every::template is_declared<A>) {
+    return true;
+  } else {
+    constexpr bool without_period = requires(A & application) { Every::call(application); };
+    constexpr bool others = without_period || takes_first<Every, A, NoPeriod> ||
+                            !none_fits<Every, A, AnyReference, AnyReference, AnyReference>;
+    constexpr bool have_periods = takes_first<Every, A, AnyPeriod> && !others;
+    constexpr auto check_each = []<class... P>(PeriodList<P...>) {
+      return (true && ... && check_period<A, Node, P>());
+    };
+    return PeriodicFunctions<A, have_periods>::is_good && check_each(periods_of_application<A>());
+  }
+}
+
 /// A function with a name that the node does not call, but that resembles one that it calls.
 template <class Application, class Meant>
 struct MisspeltFunction {
@@ -301,6 +347,42 @@ struct MisspeltFunction {
   static constexpr bool is_good = true;
 };
 
+/// The same for names that an application may use for something else: its function has a period, or the parameters
+/// `(node, TimePoint)` of a function that was called each millisecond.
+template <class Application, class Name, bool IsPeriodic>
+struct MisspeltPeriodicFunction {
+  static_assert(
+      !IsPeriodic,
+      "application: the node does not call a function of this name; write void every(canopen::Milliseconds<1>, "
+      "auto& node), with its period");
+  static constexpr bool is_good = true;
+};
+
+template <class A, class Name>
+[[nodiscard]] constexpr bool is_periodic() {
+  if constexpr (Name::template is_declared<A>) {
+    constexpr bool has_period = takes_first<Name, A, AnyPeriod> && !takes_first<Name, A, NoPeriod>;
+    return has_period || (std::is_same_v<Name, function::Tick> && !none_fits<Name, A, AnyReference, TimePoint>);
+  } else {
+    return false;
+  }
+}
+
+template <class A, class... Names>
+[[nodiscard]] constexpr bool check_periodic_names() {
+  return (MisspeltPeriodicFunction<A, Names, is_periodic<A, Names>()>::is_good && ...);
+}
+
+/// Whether a class has the function `tick(node, TimePoint)`, which no node calls; does not compile if it has.
+template <class A>
+[[nodiscard]] constexpr bool has_uncalled_tick() {
+  if constexpr (std::is_class_v<A> && !std::is_final_v<A>) {
+    return !check_periodic_names<A, function::Tick>();
+  } else {
+    return false;
+  }
+}
+
 template <class A, class... Names>
 [[nodiscard]] constexpr bool check_names() {
   return (MisspeltFunction<A, Names>::is_good && ...);
@@ -309,13 +391,15 @@ template <class A, class... Names>
 template <class Device, class Node, class A>
 [[nodiscard]] constexpr bool check_application() {
   using namespace function;
-  return check_names<A, Writen, OnWrite, OnWritten, OnRead, OnNmtState, OnEmcy, OnPdo>() &&
-         check_objects<Device, Node, A, Write>() && check_objects<Device, Node, A, Written>() &&
-         check_objects<Device, Node, A, Read>() && check_event<Device, Node, A, OnState>() &&
-         check_event<Device, Node, A, OnSync>() && check_event<Device, Node, A, OnTimeOfDay>() &&
-         check_event<Device, Node, A, OnHeartbeat>() && check_event<Device, Node, A, OnLifeGuarding>() &&
-         check_event<Device, Node, A, OnEmergency>() && check_event<Device, Node, A, OnError>() &&
-         check_event<Device, Node, A, OnRpdo>();
+  return check_names<A, Writen, OnWrite, OnWritten, OnRead, OnNmtState, OnEmcy, OnPdo, OnStart, OnEvery, OnTick,
+                     OnTimer>() &&
+         check_periodic_names<A, Tick, Evry, Each, Periodic, OnTime>() && check_periods<A, Node>() &&
+         check_event<Device, Node, A, Start>() && check_objects<Device, Node, A, Write>() &&
+         check_objects<Device, Node, A, Written>() && check_objects<Device, Node, A, Read>() &&
+         check_event<Device, Node, A, OnState>() && check_event<Device, Node, A, OnSync>() &&
+         check_event<Device, Node, A, OnTimeOfDay>() && check_event<Device, Node, A, OnHeartbeat>() &&
+         check_event<Device, Node, A, OnLifeGuarding>() && check_event<Device, Node, A, OnEmergency>() &&
+         check_event<Device, Node, A, OnError>() && check_event<Device, Node, A, OnRpdo>();
 }
 
 }  // namespace canopen::handler_detail

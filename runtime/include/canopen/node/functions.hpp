@@ -53,6 +53,12 @@ CANOPEN_FUNCTION(Written, written, 0, );
 /// it, an AbortCode, or nothing: the value in the node is sent. A value for a TPDO does not send other TPDOs.
 CANOPEN_FUNCTION(Read, read, 0, );
 
+/// Power-on, the first call that an application gets: default and stored values have been set, the boot-up message
+/// follows. A reset by NMT does not call it again: it enters Initialisation.
+CANOPEN_FUNCTION(Start, start, 0, );
+/// `every(Milliseconds<10>)`: a function with a period, in each NMT state. Returns nothing.
+CANOPEN_FUNCTION(Every, every, 0, );
+
 /// The node has entered an NMT state. Initialisation is reported at start and at each reset, after the default values
 /// have been set. A state that an application leaves in this function is not reported to those after it.
 CANOPEN_FUNCTION(OnState, on_state, 0, NmtState);
@@ -81,6 +87,16 @@ CANOPEN_FUNCTION(OnRead, on_read, 0, );
 CANOPEN_FUNCTION(OnNmtState, on_nmt_state, 0, );
 CANOPEN_FUNCTION(OnEmcy, on_emcy, 0, );
 CANOPEN_FUNCTION(OnPdo, on_pdo, 0, );
+CANOPEN_FUNCTION(OnStart, on_start, 0, );
+CANOPEN_FUNCTION(OnEvery, on_every, 0, );
+CANOPEN_FUNCTION(OnTick, on_tick, 0, );
+CANOPEN_FUNCTION(OnTimer, on_timer, 0, );
+// The same if they have the parameters of a periodic function.
+CANOPEN_FUNCTION(Tick, tick, 0, );
+CANOPEN_FUNCTION(Evry, evry, 0, );
+CANOPEN_FUNCTION(Each, each, 0, );
+CANOPEN_FUNCTION(Periodic, periodic, 0, );
+CANOPEN_FUNCTION(OnTime, on_time, 0, );
 // clang-format on
 #undef CANOPEN_FUNCTION
 

@@ -55,6 +55,9 @@ struct HandlesNothing {
   using BeforeWrite = ObjectList<>;  ///< objects, before a received value is stored
   using AfterWrite = ObjectList<>;   ///< the same, after it has been stored
   using Read = ObjectList<>;         ///< objects, before they are sent
+  /// Whether the handler has the function of an event.
+  template <class Event>
+  static constexpr bool has_event_function = false;
 
   template <DictionaryObject O, class H, class Node>
   static constexpr AbortCode before_write(H&, Node&, const typename O::type&) {
@@ -69,6 +72,9 @@ struct HandlesNothing {
   /// Calls the function of an event, if the handler has it.
   template <class Event, class H, class Node, class... Arguments>
   static constexpr void notify(H&, Node&, const Arguments&...) {}
+  /// Calls the function of one of its periods.
+  template <class P, class H, class Node>
+  static constexpr void every(H&, Node&) {}
 };
 
 /// `Node` may be incomplete.
@@ -104,9 +110,19 @@ struct Handled<Device, Node, ReadHandler<O, F>> : HandlesNothing {
 
 template <class Device, class Node, class Event, class F>
 struct Handled<Device, Node, EventHandler<Event, F>> : HandlesNothing {
+  template <class Asked>
+  static constexpr bool has_event_function = std::is_same_v<Asked, Event>;
   template <class Notified, class... Arguments>
   static constexpr void notify(EventHandler<Event, F>& handler, Node& node, const Arguments&... arguments) {
     if constexpr (std::is_same_v<Notified, Event>) call(handler.call, node, arguments...);
+  }
+};
+
+template <class Device, class Node, class P, class F>
+struct Handled<Device, Node, PeriodicHandler<P, F>> : HandlesNothing {
+  template <class>
+  static constexpr void every(PeriodicHandler<P, F>& handler, Node& node) {
+    call(handler.call, node);
   }
 };
 

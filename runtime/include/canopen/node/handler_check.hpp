@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 
 #include "canopen/base/label.hpp"
 #include "canopen/lss/lss_handler.hpp"
@@ -25,8 +26,9 @@ struct KnownHandler {
   static constexpr bool is_final = std::is_final_v<typename ApplicationOf<H>::type>;
   static_assert(is_handler<H> || !is_final,
                 "application: the class is final; without `final` it can be one: a derived class finds its functions");
+  static constexpr bool has_tick = has_uncalled_tick<typename ApplicationOf<H>::type>();
   static_assert(
-      is_handler<H> || is_final || is_application<typename ApplicationOf<H>::type>,
+      has_tick || is_handler<H> || is_final || is_application<typename ApplicationOf<H>::type>,
       "not a handler: pass on_write(object, ...), on_read(object, ...), on_state(...) or another on_...(), or "
       "an application, a class with functions of canopen/node/functions.hpp; a node-ID is NodeId{n}");
   static constexpr bool is_good = true;
@@ -142,12 +144,27 @@ template <class Node, class O, class F>
 inline constexpr bool parameters_fit<Node, WrittenHandler<O, F>> = takes<F, Node, typename O::type>;
 template <class Node, class O, class F>
 inline constexpr bool parameters_fit<Node, ReadHandler<O, F>> = takes<F, Node>;
+template <class Node, class P, class F>
+inline constexpr bool parameters_fit<Node, PeriodicHandler<P, F>> = takes<F, Node>;
 template <class F, class Node, class List>
 inline constexpr bool takes_all = false;
 template <class F, class Node, class... Arguments>
 inline constexpr bool takes_all<F, Node, function::ArgumentList<Arguments...>> = takes<F, Node, Arguments...>;
 template <class Node, class Event, class F>
 inline constexpr bool parameters_fit<Node, EventHandler<Event, F>> = takes_all<F, Node, typename Event::Arguments>;
+
+/// The result of a periodic handler.
+template <class H, bool IsNothing>
+struct PeriodicHandlerResult {
+  static_assert(IsNothing, "every: the handler returns nothing");
+  static constexpr bool is_good = true;
+};
+
+template <class Node, class H>
+inline constexpr bool result_fits = true;
+template <class Node, class P, class F>
+requires(takes<F, Node>) inline constexpr bool result_fits<Node, PeriodicHandler<P, F>> =
+    std::is_void_v<decltype(call(std::declval<F&>(), std::declval<Node&>()))>;
 
 }  // namespace handler_detail
 
@@ -156,7 +173,8 @@ inline constexpr bool parameters_fit<Node, EventHandler<Event, F>> = takes_all<F
 template <class Node, class... Handlers>
 [[nodiscard]] constexpr bool checked_parameters() {
   return (true && ... &&
-          handler_detail::HandlerParameters<Handlers, handler_detail::parameters_fit<Node, Handlers>>::is_good);
+          (handler_detail::HandlerParameters<Handlers, handler_detail::parameters_fit<Node, Handlers>>::is_good &&
+           handler_detail::PeriodicHandlerResult<Handlers, handler_detail::result_fits<Node, Handlers>>::is_good));
 }
 
 }  // namespace canopen

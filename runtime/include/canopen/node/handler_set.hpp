@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/node/application.hpp"
 #include "canopen/node/handled.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object.hpp"
@@ -117,6 +118,20 @@ class HandlerSet {
       });
     });
     return code;
+  }
+
+  /// Whether any handler has the function of an event.
+  template <class Event>
+  static constexpr bool has_event_function = (Handled<Handlers>::template has_event_function<Event> || ...);
+
+  /// Calls `visit(period, call)` for each periodic function; `call()` calls it.
+  template <class Visit>
+  void for_each_period([[maybe_unused]] Node& node, [[maybe_unused]] Visit&& visit) {
+    for_each([&]<class H>([[maybe_unused]] H& handler) {
+      [&]<class... P>(handler_detail::PeriodList<P...>) {
+        (visit(P::duration, [&] { Handled<H>::template every<P>(handler, node); }), ...);
+      }(typename handler_detail::PeriodsOf<H>::type{});
+    });
   }
 
   [[nodiscard]] auto& storage() const requires(storage_detail::has_storage<Handlers...>) {

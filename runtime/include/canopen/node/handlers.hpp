@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "canopen/node/functions.hpp"
+#include "canopen/node/period.hpp"
 #include "canopen/od/object.hpp"
 
 namespace canopen {
@@ -41,6 +42,8 @@ struct EventHandler {
   [[no_unique_address]] F call;
 };
 template <class F>
+using StartHandler = EventHandler<function::Start, F>;
+template <class F>
 using StateHandler = EventHandler<function::OnState, F>;
 template <class F>
 using SyncHandler = EventHandler<function::OnSync, F>;
@@ -56,6 +59,31 @@ template <class F>
 using ErrorHandler = EventHandler<function::OnError, F>;
 template <class F>
 using RpdoHandler = EventHandler<function::OnRpdo, F>;
+
+/// The handler of a period.
+template <Period P, class F>
+struct PeriodicHandler {
+  using period = P;
+  [[no_unique_address]] F call;
+};
+
+/// Calls `handler()` or `handler(node)` at power-on, before all other handlers: default and stored values have been
+/// set, the boot-up message follows. A reset by NMT does not call it again.
+template <class F>
+[[nodiscard]] constexpr StartHandler<F> on_start(F handler) {
+  return {std::move(handler)};
+}
+
+/// Calls `handler()` or `handler(node)` with a period such as `Milliseconds<10>`, in each NMT state; the first time one
+/// period after power-on.
+template <Period P, class F>
+[[nodiscard]] constexpr PeriodicHandler<P, F> every(F handler) {
+  return {std::move(handler)};
+}
+template <Period P, class F>
+[[nodiscard]] constexpr PeriodicHandler<P, F> every(P, F handler) {
+  return {std::move(handler)};
+}
 
 /// Calls `handler(value)` or `handler(node, value)` with a value received by SDO or an RPDO, before it is stored. An
 /// AbortCode other than `ok`, or such a Result, rejects the value; a handler that returns void accepts it. For a DOMAIN

@@ -29,6 +29,8 @@ struct ServiceDefaults {
   static constexpr bool exists = true;
   /// Whether it works in Initialisation and while the bit rate is switched. No other service is called there.
   static constexpr bool runs_without_node_id = false;
+  /// Whether it sends there, or ends Initialisation.
+  static constexpr bool sends_without_node_id = false;
   /// Whether `on_frame` may receive frames with restricted CAN-IDs: those that no COB-ID can be set to.
   static constexpr bool has_fixed_can_id = false;
 
@@ -148,6 +150,7 @@ class ServiceSet : private service_detail::Present<Services>... {
  public:
   /// Whether a service works without node-ID.
   static constexpr bool has_any_without_node_id = (Present<Services>::runs_without_node_id || ...);
+  static constexpr bool sends_without_node_id = (Present<Services>::sends_without_node_id || ...);
 
   /// Returns a service that the device has.
   template <class S>

@@ -12,6 +12,7 @@
 #include "canopen/node/services/lss.hpp"
 #include "canopen/node/services/mpdos.hpp"
 #include "canopen/node/services/pdo_parameters.hpp"
+#include "canopen/node/services/periodic.hpp"
 #include "canopen/node/services/posted_values.hpp"
 #include "canopen/node/services/rpdos.hpp"
 #include "canopen/node/services/sdo.hpp"
@@ -24,12 +25,14 @@
 namespace canopen {
 
 /// One row per service. The order is that of importance: of frames that are due at the same time, the first service
-/// sends first. Posted values are set before anything is sent. A reset needs the node-ID of LSS before the values, and
+/// sends first. Posted values are set before periodic functions
+/// use them and before anything is sent. A reset needs the node-ID of LSS before the values, and
 /// those before the services that read them.
 // clang-format off
 template <class Device, class... Handlers>
 using NodeServices = ServiceSet<
     service::PostedValues<Device, Handlers...>,
+    service::Periodic<Device, Handlers...>,
     service::PdoCommunication<Device>,
     service::PdoMapping<Device>,
     service::Sync<Device>,

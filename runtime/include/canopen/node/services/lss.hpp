@@ -19,6 +19,7 @@ class Lss : public ServiceDefaults<Lss<Handlers...>> {
  public:
   static constexpr bool exists = !std::is_void_v<Handler>;
   static constexpr bool runs_without_node_id = true;
+  static constexpr bool sends_without_node_id = true;
 
   template <class Host>
   void on_start(Host& host) {

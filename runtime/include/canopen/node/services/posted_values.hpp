@@ -14,6 +14,8 @@ template <class Device, class... Handlers>
 class PostedValues : public ServiceDefaults<PostedValues<Device, Handlers...>> {
  public:
   static constexpr bool exists = (mailbox_detail::is_values_from<Handlers> || ...);
+  /// A posted value makes the node due at once, in each state, and periodic functions get it.
+  static constexpr bool runs_without_node_id = true;
 
   template <class Host>
   static void on_time(Host& host) {
