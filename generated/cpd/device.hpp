@@ -46,6 +46,7 @@ struct Device {
   /// Deviations of the device from CiA 301.
   static constexpr canopen::DeviceOptions options = [] {
     canopen::DeviceOptions departures;
+    departures.drive_additional_modes = 0x00010000;
     departures.emcy_cob_id_writable = 0x00000780;
     departures.emcy_cob_id_writable_while_valid = true;
     departures.pdo_cob_id_writable = 0x80000780;

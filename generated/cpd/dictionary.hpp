@@ -1121,6 +1121,7 @@ struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::r
   static constexpr std::uint16_t index = 0x6060;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Modes of operation";
+  static constexpr canopen::ValueRange accepted[] = {{-128, 1}, {3, 3}, {6, 6}};
 };
 
 /// Modes of operation display.  6061h:00  INTEGER8  ro  TPDO                       cpd.eds:1335
@@ -1842,7 +1843,7 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, application_cleared.error_code) | u16 | ro,  // 603Fh:00
     ram | offsetof(Values, application_cleared.controlword) | u16 | rw | rpdo,  // 6040h:00
     ram | offsetof(Values, application_cleared.statusword) | u16 | ro | tpdo,  // 6041h:00
-    ram | offsetof(Values, application_cleared.modes_of_operation) | i8 | rw,  // 6060h:00
+    ram | offsetof(Values, application_cleared.modes_of_operation) | i8 | rw | limited,  // 6060h:00
     ram | offsetof(Values, application_cleared.modes_of_operation_display) | i8 | ro | tpdo,  // 6061h:00
     ram | offsetof(Values, application_cleared.position_actual_value) | i32 | ro | tpdo,  // 6064h:00
     ram | offsetof(Values, application_cleared.following_error_window) | u32 | rw,  // 6065h:00
@@ -2074,6 +2075,12 @@ inline constexpr canopen::Limits limits[] = {
     {canopen::object_key(0x3006, 0x10), 0x0, 0x2},  // 0..2
 };
 
+inline constexpr canopen::AcceptedRange accepted[] = {
+    {0x6060, {-128, 1}},
+    {0x6060, {3, 3}},
+    {0x6060, {6, 6}},
+};
+
 inline constexpr canopen::NodeIdRelative node_id_relative_communication[] = {
     {offsetof(Values, communication_preset.cob_id_emcy), 4},  // 1014h:00
     {offsetof(Values, communication_preset.rpdo_communication_parameter_1.cob_id_used_by_rpdo), 4},  // 1400h:01
@@ -2098,6 +2105,7 @@ inline constexpr canopen::Dictionary dictionary{
     .limits = table::limits,
     .wide_limits = {},
     .constants = &constants,
+    .accepted = table::accepted,
 };
 static_assert(dictionary.well_formed());
 

@@ -46,6 +46,7 @@ struct Device {
   /// Deviations of the device from CiA 301.
   static constexpr canopen::DeviceOptions options = [] {
     canopen::DeviceOptions departures;
+    departures.drive_additional_modes = 0x00000080;
     departures.inhibit_time_writable_while_valid = true;
     departures.pdo_cob_id_writable = 0xFFFFFF80;
     departures.pdo_extended_ids = false;

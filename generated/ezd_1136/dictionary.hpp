@@ -1369,6 +1369,7 @@ struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::r
   static constexpr auto name = "Modes of operation";
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
+  static constexpr canopen::ValueRange accepted[] = {{0, 1}, {3, 3}, {6, 6}, {8, 8}};
 };
 
 /// Modes of operation display.  6061h:00  INTEGER8  ro  TPDO                       ezd-1136.eds:1459
@@ -2282,6 +2283,13 @@ inline constexpr canopen::Limits limits[] = {
     {canopen::object_key(0x6060, 0x00), 0x1, 0x8},  // 1..8
 };
 
+inline constexpr canopen::AcceptedRange accepted[] = {
+    {0x6060, {0, 1}},
+    {0x6060, {3, 3}},
+    {0x6060, {6, 6}},
+    {0x6060, {8, 8}},
+};
+
 inline constexpr canopen::NodeIdRelative node_id_relative_communication[] = {
     {offsetof(Values, communication_preset.cob_id_emcy), 4},  // 1014h:00
     {offsetof(Values, communication_preset.rpdo_communication_parameter_1.cob_id_used_by_rpdo), 4},  // 1400h:01
@@ -2306,6 +2314,7 @@ inline constexpr canopen::Dictionary dictionary{
     .limits = table::limits,
     .wide_limits = {},
     .constants = &constants,
+    .accepted = table::accepted,
 };
 static_assert(dictionary.well_formed());
 

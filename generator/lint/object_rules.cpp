@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "device/drive_modes.hpp"
 #include "device/types/value.hpp"
 #include "lint/rule_groups.hpp"
 
@@ -15,6 +16,10 @@ void check_default(const RuleContext& context, const Entry& entry) {
   const std::uint64_t value = entry.default_value->bits;
   const bool below = entry.low_limit && is_less(*entry.type, value, entry.low_limit->bits);
   const bool above = entry.high_limit && is_less(*entry.type, entry.high_limit->bits, value);
+  if (!accepts_mode(context.device, context.options, entry, value)) {
+    context.report("default-outside-limits", entry.default_value->position,
+                   fmt::format("the default value of {} is not one of the supported drive modes", named(entry)));
+  }
   if (!below && !above) return;
   context.report("default-outside-limits", entry.default_value->position,
                  fmt::format("the default value of {} is {} its limit", named(entry), below ? "below" : "above"));

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "device/drive_modes.hpp"
 #include "device/index_range.hpp"
 #include "device/pdo/fixed_mapping.hpp"
 #include "device/pdo/resolve_pdos.hpp"
@@ -48,6 +49,9 @@ void set_value(NetworkNode& node, Entry& entry, Value value, Diagnostics& diagno
     return error("cannot be changed: sub-index 0 of the mapping cannot be written");
   }
   if (is_outside_limits(entry, value)) return error("is outside its limits");
+  if (value.bytes.empty() && !accepts_mode(node.device, node.loaded->options, entry, value.bits)) {
+    return error("is not one of the supported drive modes");
+  }
   if (const std::string_view why = why_reserved(entry.index, entry.sub_index, value.bits); !why.empty()) {
     return error(fmt::format("must not be {}: {}", value.bits, why));
   }

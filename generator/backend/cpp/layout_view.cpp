@@ -147,6 +147,10 @@ ordered_json limit_view(const LimitRow& row) {
                   fmt::format("{}..{}", text(entry.low_limit), text(entry.high_limit)));
 }
 
+ordered_json accepted_view(const AcceptedRow& row) {
+  return row_view(fmt::format("{{0x{:04X}, {{{}, {}}}}}", row.entry->index, row.values.low, row.values.high));
+}
+
 ordered_json node_id_view(const NodeIdRow& row) {
   std::string offset = offset_text(row.location);
   if (row.offset) offset += fmt::format(" + {}", *row.offset);
@@ -157,15 +161,16 @@ ordered_json node_id_view(const NodeIdRow& row) {
 }  // namespace
 
 ordered_json layout_view(const MemoryLayout& layout) {
-  return json_object(
-      "record_types", views_of(layout.record_types, record_type_view), "values", views_of(layout.values, section_view),
-      "any_values", !layout.values.empty(), "constants", struct_view(layout.constants, member_view), "any_constants",
-      !layout.constants.members.empty(), "runs", table_view(layout.runs, run_view), "entries",
-      table_view(layout.entries, entry_view), "shapes", table_view(layout.shapes, shape_view), "subs",
-      table_view(layout.subs, sub_view), "limits", table_view(layout.limits, limit_view), "wide_limits",
-      table_view(layout.wide_limits, limit_view), "node_id_relative_communication",
-      table_view(layout.node_id_relative_communication, node_id_view), "node_id_relative_application",
-      table_view(layout.node_id_relative_application, node_id_view), "longest_download", layout.longest_download);
+  return json_object("record_types", views_of(layout.record_types, record_type_view), "values",
+                     views_of(layout.values, section_view), "any_values", !layout.values.empty(), "constants",
+                     struct_view(layout.constants, member_view), "any_constants", !layout.constants.members.empty(),
+                     "runs", table_view(layout.runs, run_view), "entries", table_view(layout.entries, entry_view),
+                     "shapes", table_view(layout.shapes, shape_view), "subs", table_view(layout.subs, sub_view),
+                     "limits", table_view(layout.limits, limit_view), "wide_limits",
+                     table_view(layout.wide_limits, limit_view), "accepted", table_view(layout.accepted, accepted_view),
+                     "node_id_relative_communication", table_view(layout.node_id_relative_communication, node_id_view),
+                     "node_id_relative_application", table_view(layout.node_id_relative_application, node_id_view),
+                     "longest_download", layout.longest_download);
 }
 
 }  // namespace edsc

@@ -10,6 +10,7 @@
 
 #include "backend/cpp/cpp_text.hpp"
 #include "backend/cpp/identifier.hpp"
+#include "device/drive_modes.hpp"
 #include "device/types/value_bytes.hpp"
 
 namespace edsc {
@@ -116,11 +117,12 @@ class Builder {
     word.access = access_of(canopen::row_of(placement_.is_static_mapping(entry.index) ? Access::ro : entry.access));
     word.tpdo = canopen::allows(entry.mappable(), canopen::Mappable::tpdo);
     word.rpdo = canopen::allows(entry.mappable(), canopen::Mappable::rpdo) && !placement_.is_constant(object, entry);
-    word.limited = placement_.has_limits(object, entry);
+    word.limited = placement_.is_limited(object, entry);
     return word;
   }
 
   void add_limits(const Object& object, const Entry& entry) {
+    for (const ModeRange& range : accepted_modes(device_, options_, entry)) layout_.accepted.push_back({&entry, range});
     if (!placement_.has_limits(object, entry)) return;
     if (entry.type->kind == DataClass::string) {
       const std::uint32_t capacity = string_capacity(entry, options_);

@@ -12,6 +12,7 @@
 
 #include "backend/cpp/placement.hpp"
 #include "device/device.hpp"
+#include "device/drive_modes.hpp"
 #include "device/options/options.hpp"
 
 namespace edsc {
@@ -90,6 +91,12 @@ struct LimitRow {
   std::uint64_t low, high;
 };
 
+/// Values that a mode of operation accepts.
+struct AcceptedRow {
+  const Entry* entry;
+  ModeRange values;
+};
+
 /// A value to which the node-ID is added.
 struct NodeIdRow {
   const Entry* entry;
@@ -106,6 +113,7 @@ struct MemoryLayout {
   std::vector<ShapeRow> shapes;
   std::vector<SubRow> subs;
   std::vector<LimitRow> limits, wide_limits;  ///< ascending
+  std::vector<AcceptedRow> accepted;          ///< ascending
   std::vector<NodeIdRow> node_id_relative_communication, node_id_relative_application;
   std::uint32_t longest_download = 4;
 };

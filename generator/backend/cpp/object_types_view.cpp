@@ -11,6 +11,7 @@
 #include "backend/cpp/identifier.hpp"
 #include "backend/cpp/json_object.hpp"
 #include "backend/cpp/placement.hpp"
+#include "device/drive_modes.hpp"
 #include "text/source_file.hpp"
 #include "text/utf8.hpp"
 
@@ -138,7 +139,18 @@ class ObjectTypes {
     return json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)), "identifier",
                        entry.identifier, "name", cpp_string(entry.name), "base",
                        fmt::format("canopen::TypedObject<{}>", attributes(entry)), "index", index_of(entry),
-                       "sub_index", fmt::format("0x{:02X}", entry.sub_index), "constants", constants(entry));
+                       "sub_index", fmt::format("0x{:02X}", entry.sub_index), "constants", constants(entry),
+                       "accepted_modes", modes(entry));
+  }
+
+  /// `{{0, 1}, {3, 3}}`: the modes of operation that an entry accepts; null if it accepts all values.
+  [[nodiscard]] ordered_json modes(const Entry& entry) const {
+    std::string ranges;
+    for (const ModeRange& range : accepted_modes(device_, options_, entry)) {
+      ranges += fmt::format("{}{{{}, {}}}", ranges.empty() ? "" : ", ", range.low, range.high);
+    }
+    if (ranges.empty()) return nullptr;
+    return json_object("ranges", "{" + ranges + "}");
   }
 
   [[nodiscard]] static ordered_json constants(const Entry& entry) {

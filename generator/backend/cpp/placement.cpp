@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "device/drive_modes.hpp"
 #include "device/index_range.hpp"
 #include "device/stored_eds.hpp"
 #include "device/types/value_bytes.hpp"
@@ -52,7 +53,8 @@ std::uint64_t default_bits(const Entry& entry) { return entry.default_value ? en
 
 }  // namespace
 
-Placement::Placement(const Device& device, const Options& options) : options_{options}, settable_{options.settable} {
+Placement::Placement(const Device& device, const Options& options)
+    : device_{device}, options_{options}, settable_{options.settable} {
   std::ranges::sort(settable_);
   for (const Pdo& pdo : device.pdos) {
     if (!pdo.dynamic) continue;
@@ -102,6 +104,11 @@ bool Placement::has_limits(const Object& object, const Entry& entry) const {
   if (entry.type->kind == DataClass::string) return place(object, entry) == MemoryPlace::ram;
   return canopen::writable(entry.access) && !contains(mapping_parameters, entry.index) &&
          (entry.low_limit || entry.high_limit);
+}
+
+bool Placement::is_limited(const Object& object, const Entry& entry) const {
+  if (has_limits(object, entry)) return true;
+  return canopen::writable(entry.access) && !accepted_modes(device_, options_, entry).empty();
 }
 
 bool Placement::is_uniform_array(const Object& object) const {

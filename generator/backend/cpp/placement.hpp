@@ -32,12 +32,16 @@ class Placement {
   /// mapping entry, which is checked against the dictionary; and the capacity of each string that can change.
   [[nodiscard]] bool has_limits(const Object& object, const Entry& entry) const;
 
+  /// Whether a received value is checked: against limits, or against the modes of operation of a drive.
+  [[nodiscard]] bool is_limited(const Object& object, const Entry& entry) const;
+
   /// Elements of the same numeric type and access in the same memory, without gaps: they share one word.
   [[nodiscard]] bool is_uniform_array(const Object& object) const;
 
  private:
   [[nodiscard]] bool needs_address(const Entry& entry) const;
 
+  const Device& device_;
   const Options& options_;
   std::vector<EntryKey> settable_;               ///< ascending
   std::vector<std::uint16_t> dynamic_mappings_;  ///< indices, ascending

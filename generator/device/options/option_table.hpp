@@ -62,6 +62,7 @@ inline constexpr OptionGroup sync{"sync", "SYNC"};
 inline constexpr OptionGroup emcy{"emcy", "EMCY"};
 inline constexpr OptionGroup storage{"storage", "storage"};
 inline constexpr OptionGroup sdo{"sdo", "SDO"};
+inline constexpr OptionGroup drive{"drive", "drive"};
 inline constexpr OptionGroup lss{"lss", "LSS", "a device with this group, even if it is empty, supports LSS"};
 
 inline constexpr OptionRow rows[] = {
@@ -160,6 +161,10 @@ inline constexpr OptionRow rows[] = {
      "", "1000 with `sdo.block_transfer`, else 0", 0, 65535},
     {sdo, "zero_terminated_strings", "zero_terminated_strings", structured,
      "VISIBLE_STRINGs are transmitted with a terminating 00h", "false"},
+    {drive, "additional_modes", "drive_additional_modes", mask,
+     "modes of CiA 402 that 6060h accepts in addition to the supported drive modes of 6502h, as bits of 6502h; bits 16 to 31 "
+     "stand for all negative values; other modes are rejected with 0609 0030h",
+     "\"0x00000000\""},
     {lss, "bit_rates", "", structured,
      "bit rates in kbit/s that configure bit timing accepts, `\"auto\"` for automatic detection: `[125, 500, \"auto\"]`; "
      "`\"fixed\"`: none",

@@ -27,9 +27,9 @@ inline constexpr bool can_be_refused = [] {
   using T = typename O::type;
   if (!std::is_arithmetic_v<T>) return false;
   if (std::is_integral_v<T> && is_communication_index(O::index)) return true;
-  return !std::is_same_v<T, bool> &&
-         (
-             requires { O::low_limit; } || requires { O::high_limit; } || O::bits < sizeof(T) * 8);
+  return !std::is_same_v<T, bool> && (
+                                         requires { O::low_limit; } || requires { O::high_limit; } ||
+                                         requires { O::accepted; } || O::bits < sizeof(T) * 8);
 }();
 
 /// Returns value_too_high or value_too_low for a value outside the limits of its object, invalid_value for NaN.

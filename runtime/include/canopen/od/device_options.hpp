@@ -75,6 +75,8 @@ struct DeviceOptions {
   std::optional<std::uint16_t> sdo_timeout = std::nullopt;
   /// Abort code for a write of anything but "save" to 1010h or "load" to 1011h.
   std::uint32_t storage_signature_abort_code = 0x0800'0020;
+  /// Bits of 6502h for modes that 6060h accepts in addition to those of 6502h in the EDS (CiA 402).
+  std::uint32_t drive_additional_modes = 0;
   /// After "load" the values in use survive NMT resets: the default values take effect at the next power-on.
   bool restore_needs_power_cycle = false;
 };

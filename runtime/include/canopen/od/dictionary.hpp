@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <span>
 
+#include "canopen/od/accepted_values.hpp"
+
 namespace canopen {
 
 namespace entry {
@@ -190,8 +192,9 @@ struct Dictionary {
   std::span<const entry::Word> subs;
   std::span<const Limits> limits;
   std::span<const WideLimits> wide_limits;
-  const void* constants;                 ///< base of `rom` offsets
-  bool zero_terminated_strings = false;  ///< VISIBLE_STRINGs are sent with a trailing 00h, as in manual 003
+  const void* constants;                      ///< base of `rom` offsets
+  bool zero_terminated_strings = false;       ///< VISIBLE_STRINGs are sent with a trailing 00h, as in manual 003
+  std::span<const AcceptedRange> accepted{};  ///< of an index without rows: all values
 
   static constexpr entry::Word no_object = 0;
   static constexpr entry::Word no_sub_index = 1;
@@ -275,6 +278,17 @@ struct Dictionary {
   }
   [[nodiscard]] constexpr const WideLimits* find_wide_limits(std::uint32_t key) const {
     return dictionary_detail::find_by_key(wide_limits, key);
+  }
+
+  /// Whether an object accepts a value of 8 bits.
+  [[nodiscard]] constexpr bool accepts(std::uint16_t index, std::int8_t value) const {
+    bool all = true;
+    for (const AcceptedRange& row : accepted) {
+      if (row.index != index) continue;
+      if (row.values.has(value)) return true;
+      all = false;
+    }
+    return all;
   }
 
   /// Whether the tables are as the search requires: runs in order, without overlap, covering the entries; shapes inside

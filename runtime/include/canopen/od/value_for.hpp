@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/od/accepted_values.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/value.hpp"
 
@@ -43,13 +44,14 @@ concept ValueFor = NumberObject<O> &&(std::same_as<V, typename O::type> ||
                                       (value_for_detail::Number<V> && std::floating_point<typename O::type>));
 
 /// Checks a value against the range of the object's type and its limits: value_too_high, value_too_low, or
-/// invalid_value for a NaN written to a REAL with limits.
+/// invalid_value for a NaN written to a REAL with limits, and for a value between the limits that is not accepted.
 template <NumberObject O, ValueFor<O> V>
 [[nodiscard]] constexpr AbortCode check_value(V value) {
   using T = typename O::type;
   if constexpr (value_for_detail::Integer<T>) {
     if (std::cmp_greater(value, high_limit<O>())) return AbortCode::value_too_high;
     if (std::cmp_less(value, low_limit<O>())) return AbortCode::value_too_low;
+    if (!accepts<O>(static_cast<T>(value))) return AbortCode::invalid_value;
   } else if constexpr (std::floating_point<T>) {
     [[maybe_unused]] const auto real = static_cast<T>(value);
     if constexpr (requires { O::high_limit; }) {
@@ -72,6 +74,8 @@ template <class O>
 void constant_is_above_the_high_limit() {}
 template <class O>
 void constant_is_below_the_low_limit() {}
+template <class O>
+void constant_is_not_an_accepted_value() {}
 
 }  // namespace value_for_detail
 
@@ -88,6 +92,9 @@ class ConstantFor {
     const AbortCode code = check_value<O>(value);
     if (code == AbortCode::value_too_high) value_for_detail::constant_is_above_the_high_limit<O>();
     if (code == AbortCode::value_too_low) value_for_detail::constant_is_below_the_low_limit<O>();
+    if constexpr (requires { O::accepted; }) {
+      if (code == AbortCode::invalid_value) value_for_detail::constant_is_not_an_accepted_value<O>();
+    }
   }
   [[nodiscard]] constexpr type value() const { return value_; }
 
