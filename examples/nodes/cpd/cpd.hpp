@@ -35,11 +35,7 @@ inline constexpr std::int8_t manual = -1;
 }  // namespace mode
 
 inline constexpr canopen::cia402::Options options = [] {
-  namespace standard = canopen::cia402::mode;
   canopen::cia402::Options result;
-  result.modes = canopen::cia402::bit_of_mode(standard::profile_position) |
-                 canopen::cia402::bit_of_mode(standard::profile_velocity) |
-                 canopen::cia402::bit_of_mode(standard::homing);
   result.lowest_mode = mode::speed;
   result.ready_without_shutdown = true;
   result.target_reached_until_motion = true;
@@ -80,11 +76,10 @@ inline constexpr std::uint16_t pulses_as_signal = 1;     ///< 3005h:02
 inline constexpr std::int32_t axis_range = 0x1000'0000;  ///< increments, in both directions
 inline constexpr std::int32_t current_step = 20;         ///< turns per minute and second for 0.01 A
 
+/// Of the negative modes, which the option of the device accepts, there are four.
 struct AcceptsMode {
   canopen::AbortCode operator()(std::int8_t wanted) const {
-    const bool known = (wanted < 0 && wanted >= mode::speed) || wanted == 0 ||
-                       (options.modes & canopen::cia402::bit_of_mode(wanted)) != 0;
-    return known ? canopen::ok : canopen::AbortCode::invalid_value;
+    return wanted >= mode::speed ? canopen::ok : canopen::AbortCode::invalid_value;
   }
 };
 struct AcceptsHomingMethod {

@@ -28,7 +28,8 @@ inline constexpr nodes::AxisData axis{.increments_per_turn = 10'000,
                                       .highest_velocity = 10'000 * 50,
                                       .highest_acceleration = 10'000 * 2'000};
 
-/// Bit 11 of the statusword reports only the limit switches. 6060h accepts CSP, although 6502h does not include it.
+/// Bit 11 of the statusword reports only the limit switches. 6060h accepts CSP, although 6502h does not include it: an
+/// option of the device.
 inline constexpr canopen::cia402::Options options = [] {
   canopen::cia402::Options result;
   result.tells_software_limits = false;
@@ -88,13 +89,6 @@ inline constexpr std::int16_t running = 3;
 inline constexpr int lowest_supply = 18;   ///< V
 inline constexpr int highest_supply = 60;  ///< V
 
-struct AcceptsMode {
-  canopen::AbortCode operator()(std::int8_t wanted) const {
-    return wanted >= 0 && (wanted == mode::none || (options.modes & canopen::cia402::bit_of_mode(wanted)) != 0)
-               ? canopen::ok
-               : canopen::AbortCode::invalid_value;
-  }
-};
 struct AcceptsHomingMethod {
   canopen::AbortCode operator()(std::int8_t method) const {
     return method == 0 || canopen::cia402::homing_method(method) != nullptr ? canopen::ok
@@ -117,8 +111,7 @@ struct AcceptsOption {
 
 template <class Self, canopen::Bus B>
 using Base =
-    nodes::DriveNode<Self, ezd_1136::Device, B, options, canopen::WriteHandler<od::modes_of_operation, AcceptsMode>,
-                     canopen::WriteHandler<od::homing_method, AcceptsHomingMethod>,
+    nodes::DriveNode<Self, ezd_1136::Device, B, options, canopen::WriteHandler<od::homing_method, AcceptsHomingMethod>,
                      canopen::WriteHandler<od::quick_stop_option_code, AcceptsQuickStopOption>,
                      canopen::WriteHandler<od::shutdown_option_code, AcceptsOption<1>>,
                      canopen::WriteHandler<od::disable_operation_option_code, AcceptsOption<1>>,
@@ -145,7 +138,7 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
       "  position N                       the shaft is turned by hand, without power\n"};
 
   Ezd1136(B& bus, nodes::Surroundings& around)
-      : Node{bus, around, around.node_id.value_or(canopen::NodeId{1}), axis, {}, {}, {}, {}, {}, {}} {}
+      : Node{bus, around, around.node_id.value_or(canopen::NodeId{1}), axis, {}, {}, {}, {}, {}} {}
 
   void restarted() {
     alarm_ = 0;

@@ -8,16 +8,18 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace nodes {
 
 /// The motor, and the units of the objects of its drive. Positions are in increments.
 struct AxisData {
   double increments_per_turn;
-  double velocity_unit;         ///< increments per second
-  double acceleration_unit;     ///< increments per second squared
-  double highest_velocity;      ///< increments per second
-  double highest_acceleration;  ///< increments per second squared; also used if a ramp is 0
+  double velocity_unit;              ///< increments per second
+  double acceleration_unit;          ///< increments per second squared
+  double highest_velocity;           ///< increments per second
+  double highest_acceleration;       ///< increments per second squared; also used if a ramp is 0
+  double torque_acceleration = 100;  ///< increments per second squared of a motor without load for 0.1 % of its torque
 };
 
 /// The trajectory is one step ahead of the motor. Without power it coasts to a stop.
@@ -53,6 +55,18 @@ class SimulatedAxis {
     course_ = Course::follow;
     target_ = position;
   }
+  void apply_torque(std::int16_t torque) {
+    course_ = Course::torque;
+    torque_ = torque;
+  }
+  [[nodiscard]] std::int16_t torque() const {
+    return enabled_ && course_ == Course::torque ? torque_ : std::int16_t{0};
+  }
+  /// Edges of the probe inputs that `probe` has simulated, and index pulses.
+  [[nodiscard]] std::optional<std::int32_t> latched(const canopen::cia402::ProbeEdge& edge) {
+    return std::exchange(edge.source <= 2 ? probed_[edge.source == 2][edge.positive] : turned_[edge.positive],
+                         std::nullopt);
+  }
   /// Shifts the target with the position.
   void set_position(std::int32_t position) {
     const double shift = position - position_;
@@ -73,18 +87,23 @@ class SimulatedAxis {
       velocity_ = 0;
     }
     if (enabled_) {
+      if (blocked_ && course_ == Course::torque) demand_velocity_ = 0;
       advance(seconds);
     } else {
       demand_velocity_ = blocked_ ? 0 : towards(demand_velocity_, 0, coasting * seconds);
       demand_ = position_ + demand_velocity_ * seconds;
     }
     const std::int64_t turns_now = turns();
-    if (turns_now != turns_ && position_ != before) index_pulse_ = true;
+    if (turns_now != turns_ && position_ != before) {
+      index_pulse_ = true;
+      turned_[true] = turned_[false] = position();
+    }
     turns_ = turns_now;
   }
 
   [[nodiscard]] bool moving() const {
-    const bool on_its_way = course_ == Course::position || (course_ == Course::velocity && wanted_ != 0);
+    const bool on_its_way = course_ == Course::position || (course_ == Course::velocity && wanted_ != 0) ||
+                            (course_ == Course::torque && torque_ != 0);
     return (enabled_ && on_its_way) || demand_velocity_ != 0 || velocity_ != 0;
   }
   [[nodiscard]] std::int32_t position() const { return rounded(position_); }
@@ -122,6 +141,8 @@ class SimulatedAxis {
     turns_ = turns();
     return true;
   }
+  /// The signal at the input of touch probe 1 or 2 changes.
+  void probe(unsigned number, bool on) { probed_[number == 2][on] = position(); }
   /// Blocks or releases the shaft.
   void block(bool blocked) { blocked_ = blocked; }
   /// Holds or releases switches.
@@ -131,7 +152,7 @@ class SimulatedAxis {
   [[nodiscard]] std::int32_t machine_position() const { return rounded(position_ + machine_); }
 
  private:
-  enum class Course : std::uint8_t { stop, position, velocity, follow };
+  enum class Course : std::uint8_t { stop, position, velocity, follow, torque };
 
   static constexpr double coasting = 50'000;  ///< increments per second squared
 
@@ -174,6 +195,10 @@ class SimulatedAxis {
         demand_velocity_ = way / seconds;
         break;
       }
+      case Course::torque:
+        demand_velocity_ = std::clamp(demand_velocity_ + torque_ * data_.torque_acceleration * seconds,
+                                      -data_.highest_velocity, data_.highest_velocity);
+        break;
     }
     demand_ += demand_velocity_ * seconds;
   }
@@ -212,8 +237,11 @@ class SimulatedAxis {
   double acceleration_ = 0;
   double deceleration_ = 0;
   std::int64_t turns_ = 0;
+  std::int16_t torque_ = 0;
+  std::optional<std::int32_t> probed_[2][2];  ///< by input and edge: the position at the last one
+  std::optional<std::int32_t> turned_[2];     ///< the same of the index pulse
 };
 
-static_assert(canopen::cia402::Axis<SimulatedAxis>);
+static_assert(canopen::cia402::TorqueAxis<SimulatedAxis> && canopen::cia402::ProbedAxis<SimulatedAxis>);
 
 }  // namespace nodes

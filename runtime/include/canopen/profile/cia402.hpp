@@ -16,6 +16,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
 #include "canopen/emcy/emcy_producer.hpp"
 #include "canopen/emcy/error_register.hpp"
@@ -33,6 +34,7 @@
 #include "canopen/profile/cia402_parameters.hpp"
 #include "canopen/profile/cia402_set_points.hpp"
 #include "canopen/profile/cia402_state_machine.hpp"
+#include "canopen/profile/cia402_touch_probe.hpp"
 #include "canopen/profile/cia402_words.hpp"
 
 namespace canopen::cia402 {
@@ -46,6 +48,8 @@ struct NoApplication {};
 
 template <class Device, Axis A, Options options = Options{}>
 class Drive {
+  using P = Parameters<Device, options>;
+
  public:
   /// The axis must outlive the drive.
   explicit constexpr Drive(A& moved_axis) : axis_{moved_axis} {}
@@ -60,6 +64,7 @@ class Drive {
     axis_.enable(false);
     modes_.restart();
     conditions_.clear();
+    if constexpr (has_probes) probes_.clear();
     controlword_ = 0;
     fault_bits_ = ErrorRegister{};
     halted_ = leaving_ = false;
@@ -73,6 +78,7 @@ class Drive {
   void on_time(Node& node, TimePoint now, Application&& application) {
     static_assert(std::remove_cvref_t<Node>::template has_handler<ErrorHandler<ErrorTaker>>,
                   "the node of a drive needs drive.error_handler() among its handlers");
+    if constexpr (has_probes) probes_.take(node, axis_);
     if (!busy()) stepped_ = now;
     watch_connection(node, application);
     take_controlword(node);
@@ -117,11 +123,25 @@ class Drive {
   void set_warning(bool there) { warning_ = there; }                      ///< bit 7
 
   /// Sets the mode of a drive without 6060h.
-  void select(std::int8_t new_mode) requires(!Device::dictionary.has(0x6060, 0)) { modes_.select(new_mode); }
+  void select(std::int8_t new_mode) requires(!P::template has<object::ModesOfOperation>) { modes_.select(new_mode); }
 
-  /// Whether 6060h accepts this value.
-  [[nodiscard]] static constexpr bool supports(std::int8_t wanted) {
-    return Modes<Device, A, options>::supports(wanted);
+  /// Whether the drive has a mode of operation. If the EDS lists the modes in 6502h, 6060h accepts only these.
+  [[nodiscard]] static constexpr bool supports(std::int8_t wanted) { return P::supports(wanted); }
+
+  /// Whether the node has to pass written data records and SYNC: the drive has interpolated position mode.
+  static constexpr bool has_interpolation = Modes<Device, A, options>::has_interpolation;
+
+  /// Takes a data record that has been received for 60C1h:01; device_state: the buffer is full or disabled (60C4h).
+  /// Call it in the write handler of 60C1h:01, and return the result.
+  template <class Node>
+  [[nodiscard]] AbortCode offer_set_point(const Node& node, std::int32_t position) requires(has_interpolation) {
+    return modes_.offer_set_point(node, position);
+  }
+  /// A SYNC has been received. If 1006h is equal to the interpolation time 60C2h, or the device does not have it, the
+  /// next period begins.
+  template <class Node>
+  void on_sync(const Node& node) requires(has_interpolation) {
+    modes_.on_sync(node);
   }
 
   [[nodiscard]] State state() const { return state_; }
@@ -139,10 +159,12 @@ class Drive {
 
  private:
   static constexpr Duration step_time{options.step};
-  using P = Parameters<Device, options>;
+  static constexpr bool has_probes = P::template has<object::TouchProbeFunction>;
+  static_assert(!has_probes || ProbedAxis<A>,
+                "this drive has touch probes, 60B8h: its axis needs latched(), profile/cia402_axis.hpp");
 
   /// Whether the axis depends on time.
-  [[nodiscard]] bool busy() const { return has_power(state_) || axis_.moving(); }
+  [[nodiscard]] bool busy() const { return has_power(state_) || axis_.moving() || probes_.enabled(); }
 
   // Loss of communication
 
@@ -274,7 +296,7 @@ class Drive {
   template <class Node>
   void brake(const Node& node, Braking braking) {
     if (braking == Braking::none) return axis_.enable(false);
-    axis_.stop(P::deceleration(node, braking));
+    axis_.stop(modes_.deceleration(node, braking));
   }
 
   // Modes of operation
@@ -288,12 +310,13 @@ class Drive {
       return false;
     }
     if (state_ == State::operation_enabled && axis_.moving()) {
-      if (!changing_) axis_.stop(P::profile(node).deceleration);
+      if (!changing_) axis_.stop(modes_.deceleration(node, Braking::slow_down_ramp));
       changing_ = true;
       modes_.interrupt_homing();
       return false;
     }
     changing_ = false;
+    if (modes_.controls_torque() && state_ == State::operation_enabled) axis_.stop(0);
     modes_.change(wanted);
     return true;
   }
@@ -305,7 +328,7 @@ class Drive {
     halted_ = halt;
     if (halt) {
       modes_.interrupt_homing();
-      axis_.stop(P::deceleration(node, P::template braking<object::HaltOptionCode>(node, option_code::halt)));
+      axis_.stop(modes_.deceleration(node, P::template braking<object::HaltOptionCode>(node, option_code::halt)));
     } else {
       resume();
     }
@@ -314,8 +337,9 @@ class Drive {
 
   template <class Node, class Application>
   void step(Node& node, Application& application) {
-    if (operates() && !changing_) modes_.operate(node, axis_, application);
+    if (operates() && !changing_) modes_.operate(node, axis_, application, step_time);
     axis_.step(step_time);
+    if constexpr (has_probes) probes_.step(node, axis_);
     modes_.step_homing(axis_);
     if (state_ == State::operation_enabled) modes_.keep_limits(node, axis_);
     if (!halted_) modes_.finish_set_point(axis_);
@@ -346,9 +370,14 @@ class Drive {
                        .stopping = state_ == State::quick_stop_active || halted_,
                        .halted = halted_,
                        .homing = modes_.homing().running(),
-                       .set_point = modes_.set_points().active()},
+                       .set_point = modes_.has_set_point(),
+                       .at_target = modes_.at_target(axis_)},
                       span);
   }
+
+  struct NoProbes {
+    static constexpr bool enabled() { return false; }
+  };
 
   // Statusword and actual values
 
@@ -359,6 +388,7 @@ class Drive {
     if (warning_) bits |= statusword::warning;
     if (remote_) bits |= statusword::remote;
     if (at_limit_switch() || (options.tells_software_limits && at_software_limit())) bits |= statusword::internal_limit;
+    if (modes_.limited()) bits |= statusword::internal_limit;
     const bool enabled = state_ == State::operation_enabled;
     if (conditions_.reached() && (enabled || state_ == State::quick_stop_active)) bits |= statusword::target_reached;
     if (enabled) bits |= modes_.status_bits(conditions_, operates());
@@ -373,6 +403,8 @@ class Drive {
     const bool changed = word != P::template value<object::Statusword>(node, 0);
     P::template set<object::Statusword>(node, word);
     P::template set<object::ModesOfOperationDisplay>(node, mode());
+    if constexpr (Modes<Device, A, options>::has_torque)
+      P::template set<object::TorqueDemand>(node, modes_.torque_demand());
     actual_values_.publish(node, axis_, now, changed);
   }
 
@@ -390,6 +422,7 @@ class Drive {
   bool leaving_ = false;   ///< decelerating to leave Operation Enabled
   bool changing_ = false;  ///< decelerating to change the mode
   Modes<Device, A, options> modes_{};
+  [[no_unique_address]] std::conditional_t<has_probes, TouchProbes<P>, NoProbes> probes_{};
   TimePoint stepped_{};  ///< the axis has moved up to this time
   ActualValues<Device, options> actual_values_{};
   [[no_unique_address]] Conditions<Device, options> conditions_{};

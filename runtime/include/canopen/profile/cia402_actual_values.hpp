@@ -8,6 +8,7 @@
 #include "canopen/profile/cia402_objects.hpp"
 #include "canopen/profile/cia402_options.hpp"
 #include "canopen/profile/cia402_parameters.hpp"
+#include "canopen/profile/cia402_velocity.hpp"
 
 namespace canopen::cia402 {
 
@@ -28,6 +29,12 @@ class ActualValues {
         node, static_cast<std::int32_t>(static_cast<std::uint32_t>(axis.position_demand()) -
                                         static_cast<std::uint32_t>(axis.position())));
     P::template set<object::DigitalInputs>(node, axis.inputs());
+    if constexpr (TorqueAxis<A>) P::template set<object::TorqueActualValue>(node, axis.torque());
+    if constexpr (P::has_mode(mode::velocity)) {
+      using V = Velocity<P, options>;
+      P::template set<object::VelocityDemand>(node, V::from_axis(node, axis.velocity_demand()));
+      P::template set<object::VelocityActual>(node, V::from_axis(node, axis.velocity()));
+    }
   }
 
  private:

@@ -3,6 +3,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <optional>
 
 #include "canopen/base/clock.hpp"
 
@@ -46,6 +47,29 @@ concept Axis = requires(T& axis, const T& state, std::int32_t number, std::uint3
   { state.velocity_demand() } -> std::same_as<std::int32_t>;
   { state.inputs() } -> std::same_as<std::uint32_t>;  ///< bits of `input`
   { axis.index_pulse() } -> std::same_as<bool>;       ///< one has occurred since the last call
+};
+
+/// Functions of an axis of a drive with a torque mode. Torque is in 0.1 % of the rated torque 6076h, as 6071h.
+template <class T>
+concept TorqueAxis = Axis<T> && requires(T& axis, const T& state, std::int16_t torque) {
+  axis.apply_torque(torque);                         ///< until the next command; limited only by the hardware
+  { state.torque() } -> std::same_as<std::int16_t>;  ///< actual
+};
+
+/// The signal of a touch probe and its edge.
+struct ProbeEdge {
+  std::uint8_t probe;   ///< 1 or 2
+  std::int16_t source;  ///< as 60D0h: 1 to 4 an input, 5 and 6 the zero impulse of the position encoder
+  bool positive;        ///< the edge
+
+  friend constexpr bool operator==(const ProbeEdge&, const ProbeEdge&) = default;
+};
+
+/// Function of an axis of a drive with touch probes (60B8h): returns the position at the last such edge since the last
+/// call. Hardware latches it; an axis that samples the signal returns the position at the step in which it has changed.
+template <class T>
+concept ProbedAxis = Axis<T> && requires(T& axis, const ProbeEdge& edge) {
+  { axis.latched(edge) } -> std::same_as<std::optional<std::int32_t>>;
 };
 
 }  // namespace canopen::cia402

@@ -19,6 +19,7 @@ struct Activity {
   bool halted;     ///< the target velocity is 0
   bool homing;     ///< a homing is running
   bool set_point;  ///< a set-point is active
+  bool at_target;  ///< the demand has reached the target of velocity or profile torque mode
 };
 
 /// Bits 10, 11, 12 (profile velocity) and 13 of the statusword.
@@ -75,6 +76,10 @@ class Conditions {
     switch (activity.mode) {
       case mode::profile_velocity: return at_speed_.lasts(P::template value<object::VelocityWindowTime>(node, 0));
       case mode::homing: return !activity.homing && !axis.moving();
+      case mode::velocity:
+      case mode::profile_torque: return P::has_mode(activity.mode) && activity.at_target;
+      case mode::cyclic_synchronous_velocity:
+      case mode::cyclic_synchronous_torque: return false;
       default: return at_target_.lasts(P::template value<object::PositionWindowTime>(node, 0));
     }
   }

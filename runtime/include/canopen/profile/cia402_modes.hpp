@@ -1,29 +1,40 @@
-/// Modes of operation of a drive: profile position, profile velocity, homing, cyclic synchronous position (CiA 402-2).
+/// Modes of operation of a drive: profile position, velocity, profile velocity, profile torque, homing, interpolated
+/// position, and cyclic synchronous position, velocity and torque (CiA 402-2).
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
+#include <type_traits>
 
+#include "canopen/base/abort_code.hpp"
+#include "canopen/base/clock.hpp"
 #include "canopen/profile/cia402_axis.hpp"
 #include "canopen/profile/cia402_conditions.hpp"
 #include "canopen/profile/cia402_homing.hpp"
+#include "canopen/profile/cia402_interpolation.hpp"
 #include "canopen/profile/cia402_objects.hpp"
+#include "canopen/profile/cia402_option_code.hpp"
 #include "canopen/profile/cia402_options.hpp"
 #include "canopen/profile/cia402_parameters.hpp"
 #include "canopen/profile/cia402_set_points.hpp"
+#include "canopen/profile/cia402_torque.hpp"
+#include "canopen/profile/cia402_velocity.hpp"
 #include "canopen/profile/cia402_words.hpp"
 
 namespace canopen::cia402 {
 
 /// The present mode, its bits of the controlword, and what it commands the axis. Device control decides when a mode
-/// operates. Modes that are not in `options.modes` are not in the image.
+/// operates. Modes that the drive does not have are not in the image.
 template <class Device, Axis A, Options options>
 class Modes {
+  using P = Parameters<Device, options>;
+
  public:
-  /// Whether 6060h accepts this value.
-  [[nodiscard]] static constexpr bool supports(std::int8_t wanted) {
-    return wanted == mode::none || P::has_mode(wanted) || (wanted < 0 && wanted >= options.lowest_mode);
-  }
+  static constexpr bool has_torque = P::has_mode(mode::profile_torque) || P::has_mode(mode::cyclic_synchronous_torque);
+  static constexpr bool has_velocity = P::has_mode(mode::velocity);
+  static constexpr bool has_interpolation = P::has_mode(mode::interpolated_position);
+  static_assert(!has_torque || TorqueAxis<A>,
+                "this drive has a torque mode: its axis needs apply_torque() and torque(), profile/cia402_axis.hpp");
 
   [[nodiscard]] std::int8_t present() const { return mode_; }
   [[nodiscard]] const Homing& homing() const { return homing_; }
@@ -42,6 +53,8 @@ class Modes {
   void restart() {
     set_points_.clear();
     homing_.interrupt();
+    interpolated_.clear();
+    torque_.clear();
     mode_ = options.initial_mode;
   }
 
@@ -49,17 +62,19 @@ class Modes {
   void change(std::int8_t wanted) {
     restart();
     mode_ = wanted;
-    velocity_told_ = false;
+    velocity_told_ = following_ = false;
   }
 
   /// The drive enters Operation Enabled.
-  void begin() { velocity_told_ = false; }
+  void begin() { velocity_told_ = following_ = false; }
 
   /// The drive leaves Operation Enabled.
   void end() {
     set_points_.clear();
     interrupt_homing();
     homing_starts_ = false;
+    interpolated_.clear();
+    torque_.clear();
   }
 
   void interrupt_homing() { homing_.interrupt_running(); }
@@ -67,7 +82,56 @@ class Modes {
   /// Continues the motion that was stopped.
   void resume() {
     set_points_.start_again();
-    velocity_told_ = false;
+    velocity_told_ = following_ = false;
+    torque_.clear();
+  }
+
+  /// Whether the mode controls the torque of the axis.
+  [[nodiscard]] bool controls_torque() const {
+    return has_torque && (mode_ == mode::profile_torque || mode_ == mode::cyclic_synchronous_torque);
+  }
+  [[nodiscard]] std::int16_t torque_demand() const { return torque_.demand(); }  ///< 6074h
+
+  /// Whether a limit of the mode is active: bit 11 of the statusword.
+  [[nodiscard]] bool limited() const { return has_torque && controls_torque() && torque_.limited(); }
+
+  /// Whether the demand has reached the target of velocity or profile torque mode.
+  [[nodiscard]] bool at_target(const A& axis) const {
+    if (has_torque && mode_ == mode::profile_torque) return torque_.reached();
+    return velocity_told_ && axis.velocity_demand() == told_velocity_;
+  }
+
+  /// Whether a set-point of profile or interpolated position mode has not been reached.
+  [[nodiscard]] bool has_set_point() const {
+    return set_points_.active() || (has_interpolation && !interpolated_.at_rest());
+  }
+
+  /// Returns the deceleration of a braking with power in this mode; 0: as hard as possible.
+  template <class Node>
+  [[nodiscard]] std::uint32_t deceleration(const Node& node, Braking braking) const {
+    const std::uint32_t usual = P::deceleration(node, braking);
+    if constexpr (has_velocity) {
+      if (mode_ != mode::velocity) return usual;
+      if (braking == Braking::slow_down_ramp) return Velocity<P, options>::ramps(node).deceleration;
+      if (braking == Braking::quick_stop_ramp) return Velocity<P, options>::quick_stop(node, usual);
+    }
+    return usual;
+  }
+
+  /// Takes a data record of interpolated position mode that has been written to 60C1h:01.
+  template <class Node>
+  AbortCode offer_set_point(const Node& node, std::int32_t position) requires(has_interpolation) {
+    return interpolated_.offer(node, position);
+  }
+  /// A SYNC has been received. It begins a period of interpolated position mode if 1006h is that period.
+  template <class Node>
+  void on_sync(const Node& node) requires(has_interpolation) {
+    bool is_clock = true;
+    if constexpr (Device::dictionary.has(0x1006, 0)) {
+      const std::uint32_t cycle = node.template get<object::CommunicationCyclePeriod>();
+      is_clock = Duration{cycle} == interpolation_period<P>(node);
+    }
+    interpolated_.on_sync(is_clock);
   }
 
   /// Processes the bits of the controlword that depend on the mode; returns whether a motion begins with them.
@@ -79,12 +143,13 @@ class Modes {
     if constexpr (P::has_mode(mode::homing)) {
       if (mode_ == mode::homing) return take_homing_bits(node, axis, word, rising, halted);
     }
+    word_ = word;
     return false;
   }
 
   /// Commands the axis before it takes a step.
   template <class Node, class Application>
-  void operate(Node& node, A& axis, Application& application) {
+  void operate(Node& node, A& axis, Application& application, Duration span) {
     if constexpr (P::has_mode(mode::profile_position)) {
       if (mode_ == mode::profile_position) return operate_profile_position(axis);
     }
@@ -92,13 +157,29 @@ class Modes {
       if (mode_ == mode::profile_velocity) return operate_profile_velocity(node, axis);
     }
     if constexpr (P::has_mode(mode::cyclic_synchronous_position)) {
-      if (mode_ == mode::cyclic_synchronous_position) return follow_target(node, axis);
+      if (mode_ == mode::cyclic_synchronous_position) return follow_target(node, axis, span);
+    }
+    if constexpr (has_velocity) {
+      if (mode_ == mode::velocity) return operate_velocity(node, axis);
+    }
+    if constexpr (has_interpolation) {
+      if (mode_ == mode::interpolated_position) return interpolate(node, axis, span);
+    }
+    if constexpr (P::has_mode(mode::cyclic_synchronous_velocity)) {
+      if (mode_ == mode::cyclic_synchronous_velocity) return follow_velocity(node, axis, span);
+    }
+    if constexpr (has_torque) {
+      if (controls_torque()) return operate_torque(node, axis, span);
     }
     if constexpr (P::has_mode(mode::homing)) {
       if (homing_starts_) return start_homing(node, axis);
     }
     if constexpr (requires { application.operate(mode_); }) {
-      if (mode_ < 0) application.operate(mode_);
+      if (mode_ != mode::none && !P::has_mode(mode_)) application.operate(mode_);
+    } else {
+      static_assert(
+          !P::leaves_modes,
+          "6060h accepts modes that the profile does not have: the application of the drive needs operate(mode)");
     }
   }
 
@@ -117,6 +198,10 @@ class Modes {
       case mode::cyclic_synchronous_position:
         return static_cast<std::uint16_t>(bit_if(operates, statusword::follows_command) |
                                           bit_if(conditions.following_error(), statusword::following_error));
+      case mode::cyclic_synchronous_velocity:
+      case mode::cyclic_synchronous_torque: return bit_if(P::has_mode(mode_) && operates, statusword::follows_command);
+      case mode::interpolated_position:
+        return bit_if(has_interpolation && operates && interpolated_.active(), statusword::interpolates);
       default: return 0;
     }
   }
@@ -136,26 +221,78 @@ class Modes {
   /// Stops an axis that moves towards a limit.
   template <class Node>
   void keep_limits(const Node& node, A& axis) {
-    const std::int32_t velocity = axis.velocity_demand();
+    const std::int32_t velocity = controls_torque() ? axis.velocity() : axis.velocity_demand();
     if (homing_.running()) return;
     const bool at_switch = limit_switch_blocks(axis.inputs(), velocity);
     if (at_switch) set_points_.clear();
-    if (at_switch ||
-        (mode_ == mode::profile_velocity && P::software_limit_blocks(node, axis.position_demand(), velocity))) {
+    if (at_switch || (keeps_software_limits() && P::software_limit_blocks(node, axis.position_demand(), velocity))) {
       axis.stop(P::quick_stop_deceleration(node));
     }
   }
 
  private:
-  using P = Parameters<Device, options>;
+  static constexpr bool has_period = P::template has<object::InterpolationTimeUnits>;
+  static constexpr bool interpolates_targets =
+      has_period && (P::has_mode(mode::cyclic_synchronous_position) || P::has_mode(mode::cyclic_synchronous_velocity));
 
-  // Cyclic synchronous position
+  /// Stands for a part that the drive does not have.
+  struct Absent {
+    static constexpr void clear() {}
+    static constexpr bool active() { return false; }
+    static constexpr bool at_rest() { return true; }
+    static constexpr std::int16_t demand() { return 0; }
+    static constexpr bool reached() { return true; }
+    static constexpr bool limited() { return false; }
+  };
+  struct NoTorque : Absent {};
+  struct NoInterpolation : Absent {};
+  struct NoMotion {};
+
+  /// Whether the mode has no target position that is clamped to the software limits.
+  [[nodiscard]] bool keeps_software_limits() const {
+    return mode_ == mode::profile_velocity || controls_torque() ||
+           (P::has_mode(mode::cyclic_synchronous_velocity) && mode_ == mode::cyclic_synchronous_velocity);
+  }
+
+  // Cyclic synchronous position and interpolated position
 
   template <class Node>
-  void follow_target(const Node& node, A& axis) {
+  void follow_target(const Node& node, A& axis, [[maybe_unused]] Duration span) {
     const auto offset = static_cast<std::uint32_t>(P::template value<object::PositionOffset>(node, 0));
-    const auto target = static_cast<std::uint32_t>(P::template value<object::TargetPosition>(node, 0)) + offset;
-    const std::int32_t allowed = P::within_software_limits(node, static_cast<std::int32_t>(target));
+    const auto target = static_cast<std::int32_t>(
+        static_cast<std::uint32_t>(P::template value<object::TargetPosition>(node, 0)) + offset);
+    follow(node, axis, on_the_way(node, target, axis.position_demand(), span));
+  }
+
+  template <class Node>
+  void interpolate(const Node& node, A& axis, Duration span) {
+    const bool enable = (word_ & controlword::interpolate) != 0;
+    const std::int32_t position = interpolated_.step(node, enable, axis.position_demand(), span);
+    if (enable) follow(node, axis, position);
+  }
+
+  /// Returns the value at the end of a step on the way from the present value to a target, which takes the time 60C2h.
+  template <class Node>
+  [[nodiscard]] std::int32_t on_the_way([[maybe_unused]] const Node& node, std::int32_t target,
+                                        [[maybe_unused]] std::int32_t present, [[maybe_unused]] Duration span) {
+    if constexpr (interpolates_targets) {
+      const Duration period = interpolation_period<P>(node);
+      if (!following_) {
+        motion_.begin(present, target);
+      } else if (motion_.target() != target) {
+        motion_.begin(motion_.value(period), target);
+      }
+      following_ = true;
+      motion_.step(span, period);
+      return motion_.value(period);
+    } else {
+      return target;
+    }
+  }
+
+  template <class Node>
+  void follow(const Node& node, A& axis, std::int32_t target) {
+    const std::int32_t allowed = P::within_software_limits(node, target);
     const std::int32_t demand = axis.position_demand();
     const std::int32_t direction = allowed == demand ? 0 : allowed > demand ? 1 : -1;
     if (!limit_switch_blocks(axis.inputs(), direction)) axis.follow(allowed);
@@ -189,7 +326,11 @@ class Modes {
   template <class Node>
   void operate_profile_velocity(Node& node, A& axis) {
     const Profile ramps = P::profile(node);
-    const std::int32_t wanted = velocity_target(node, axis);
+    run_at(axis, velocity_target(node, axis, P::template value<object::TargetVelocity>(node, 0)), ramps);
+  }
+
+  /// Passes a command to the axis if it differs from the last one.
+  void run_at(A& axis, std::int32_t wanted, const Profile& ramps) {
     if (velocity_told_ && wanted == told_velocity_ && ramps == told_ramps_) return;
     velocity_told_ = true;
     told_velocity_ = wanted;
@@ -197,16 +338,55 @@ class Modes {
     axis.run_at(wanted, ramps);
   }
 
-  /// Returns 60FFh limited to 607Fh; 0 if a limit switch or software limit blocks the motion.
+  /// Returns a velocity limited to 607Fh; 0 if a limit switch or software limit blocks the motion.
   template <class Node>
-  [[nodiscard]] static std::int32_t velocity_target(const Node& node, const A& axis) {
-    std::int32_t wanted = P::template value<object::TargetVelocity>(node, 0);
+  [[nodiscard]] static std::int32_t velocity_target(const Node& node, const A& axis, std::int32_t wanted) {
     const std::uint32_t allowed = std::min<std::uint32_t>(P::at_most_allowed(node, 0x7FFF'FFFF), 0x7FFF'FFFF);
     const auto most = static_cast<std::int32_t>(allowed);
     wanted = std::clamp(wanted, -most, most);
     return limit_switch_blocks(axis.inputs(), wanted) || P::software_limit_blocks(node, axis.position_demand(), wanted)
                ? 0
                : wanted;
+  }
+
+  // Cyclic synchronous velocity: the ramps are those of the master.
+
+  template <class Node>
+  void follow_velocity(const Node& node, A& axis, Duration span) {
+    const std::int64_t sum = std::int64_t{P::template value<object::TargetVelocity>(node, 0)} +
+                             P::template value<object::VelocityOffset>(node, 0);
+    const auto target = static_cast<std::int32_t>(std::clamp<std::int64_t>(sum, -0x7FFF'FFFF, 0x7FFF'FFFF));
+    run_at(axis, velocity_target(node, axis, on_the_way(node, target, axis.velocity_demand(), span)), Profile{});
+  }
+
+  // Velocity
+
+  template <class Node>
+  void operate_velocity(const Node& node, A& axis) {
+    using V = Velocity<P, options>;
+    std::int32_t wanted = (word_ & controlword::use_reference) != 0 ? V::target(node) : 0;
+    if ((word_ & controlword::unlock_ramp) == 0) wanted = locked_ ? told_velocity_ : axis.velocity_demand();
+    locked_ = (word_ & controlword::unlock_ramp) == 0;
+    if ((word_ & controlword::enable_ramp) == 0 || limit_switch_blocks(axis.inputs(), wanted)) wanted = 0;
+    run_at(axis, wanted, V::ramps(node));
+  }
+
+  // Torque
+
+  template <class Node>
+  void operate_torque(const Node& node, A& axis, Duration span) {
+    if (mode_ == mode::profile_torque) {
+      torque_.approach(node, span);
+    } else {
+      torque_.follow(node);
+    }
+    const std::int32_t direction = torque_.demand();
+    if (limit_switch_blocks(axis.inputs(), direction) || P::software_limit_blocks(node, axis.position(), direction)) {
+      torque_.block();
+      axis.stop(P::quick_stop_deceleration(node));
+    } else {
+      axis.apply_torque(torque_.demand());
+    }
   }
 
   // Homing
@@ -243,10 +423,17 @@ class Modes {
   std::int8_t selected_ = options.initial_mode;
   bool homing_starts_ = false;  ///< with the next step
   bool velocity_told_ = false;
+  bool following_ = false;  ///< `motion_` is in use
+  bool locked_ = false;     ///< the ramp of velocity mode was locked at the last step
+  std::uint16_t word_ = 0;  ///< the controlword
   std::int32_t told_velocity_ = 0;
   Profile told_ramps_{};
   SetPoints set_points_{};
   Homing homing_{};
+  [[no_unique_address]] std::conditional_t<has_torque, Torque<P>, NoTorque> torque_{};
+  [[no_unique_address]] std::conditional_t<has_interpolation, InterpolatedPosition<P, options>, NoInterpolation>
+      interpolated_{};
+  [[no_unique_address]] std::conditional_t<interpolates_targets, LinearMotion, NoMotion> motion_{};
 };
 
 }  // namespace canopen::cia402

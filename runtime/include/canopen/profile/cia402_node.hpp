@@ -8,14 +8,17 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
+#include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
 #include "canopen/can/node_id.hpp"
 #include "canopen/emcy/emcy_producer.hpp"
 #include "canopen/emcy/error_register.hpp"
 #include "canopen/nmt/nmt.hpp"
 #include "canopen/node.hpp"
+#include "canopen/od/object.hpp"
 #include "canopen/profile/cia402.hpp"
 #include "canopen/profile/cia402_axis.hpp"
 #include "canopen/profile/cia402_options.hpp"
@@ -31,7 +34,7 @@ class DriveNode : public ProfileNode<DriveNode<Device, B, A, options, Handlers..
 
  public:
   constexpr DriveNode(B& bus, NodeId node_id, Handlers... handlers)
-      : node_{bus, node_id, drive_.error_handler(), Restart{&drive_}, std::move(handlers)...} {}
+      : node_{bus, node_id, drive_.error_handler(), restart(), std::move(handlers)...} {}
 
   /// Moves the axis and sends what is due. Call it at `next_deadline`, and after the axis has changed by itself.
   void on_time(TimePoint now) {
@@ -63,12 +66,33 @@ class DriveNode : public ProfileNode<DriveNode<Device, B, A, options, Handlers..
   using Control = Drive<Device, A, options>;
 
   /// Starts device control again at power-on and at each NMT reset.
-  struct Restart {
+  struct Restarting {
     Control* drive;
     void on_state(NmtState state) {
       if (state == NmtState::initialisation) drive->start();
     }
   };
+
+  // Interpolated position mode: data records, and SYNC as the clock.
+
+  struct Interpolating : Restarting {
+    template <DictionaryObject O>
+    requires(O::index == 0x60C1 + options.axis * axis_distance && O::sub_index == 1) AbortCode
+        write(O, const typename O::type& value, auto& node) {
+      return this->drive->offer_set_point(node, static_cast<std::int32_t>(value));
+    }
+  };
+  struct Synchronous : Interpolating {
+    void on_sync(std::uint8_t, auto& node) { this->drive->on_sync(node); }
+  };
+  using Restart = std::conditional_t<!Control::has_interpolation, Restarting,
+                                     std::conditional_t<Device::dictionary.has(0x1005, 0), Synchronous, Interpolating>>;
+
+  [[nodiscard]] constexpr Restart restart() {
+    Restart application{};
+    application.drive = &drive_;
+    return application;
+  }
 
   A axis_{};
   Control drive_{axis_};

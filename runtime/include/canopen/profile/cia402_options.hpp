@@ -11,9 +11,14 @@ namespace canopen::cia402 {
 namespace mode {
 inline constexpr std::int8_t none = 0;
 inline constexpr std::int8_t profile_position = 1;
+inline constexpr std::int8_t velocity = 2;
 inline constexpr std::int8_t profile_velocity = 3;
+inline constexpr std::int8_t profile_torque = 4;
 inline constexpr std::int8_t homing = 6;
+inline constexpr std::int8_t interpolated_position = 7;
 inline constexpr std::int8_t cyclic_synchronous_position = 8;
+inline constexpr std::int8_t cyclic_synchronous_velocity = 9;
+inline constexpr std::int8_t cyclic_synchronous_torque = 10;
 }  // namespace mode
 
 /// Returns the bit of a mode in 6502h.
@@ -21,12 +26,31 @@ inline constexpr std::int8_t cyclic_synchronous_position = 8;
   return mode >= 1 && mode <= 16 ? 1u << (mode - 1) : 0;
 }
 
+/// The modes of the profile, as bits of 6502h.
+inline constexpr std::uint32_t implemented_modes =
+    bit_of_mode(mode::profile_position) | bit_of_mode(mode::velocity) | bit_of_mode(mode::profile_velocity) |
+    bit_of_mode(mode::profile_torque) | bit_of_mode(mode::homing) | bit_of_mode(mode::interpolated_position) |
+    bit_of_mode(mode::cyclic_synchronous_position) | bit_of_mode(mode::cyclic_synchronous_velocity) |
+    bit_of_mode(mode::cyclic_synchronous_torque);
+
+/// The modes of a drive whose EDS does not list them in 6502h.
+inline constexpr std::uint32_t usual_modes = bit_of_mode(mode::profile_position) | bit_of_mode(mode::profile_velocity) |
+                                             bit_of_mode(mode::homing) | bit_of_mode(mode::cyclic_synchronous_position);
+
+/// A conversion factor.
+struct Ratio {
+  std::int32_t numerator = 1;
+  std::int32_t denominator = 1;
+};
+
 struct Options {
-  /// Supported modes, as bits of 6502h. Code for other modes is not in the image.
-  std::uint32_t modes = bit_of_mode(mode::profile_position) | bit_of_mode(mode::profile_velocity) |
-                        bit_of_mode(mode::homing) | bit_of_mode(mode::cyclic_synchronous_position);
-  /// Manufacturer-specific modes: from this one to -1. 0: none.
+  /// Supported modes, as bits of 6502h. 0: those of 6502h in the EDS; `usual_modes` if the EDS does not list them. Code
+  /// for other modes is not in the image.
+  std::uint32_t modes = 0;
+  /// Manufacturer-specific modes: from this one to -1. 0: those that 6060h accepts by the EDS.
   std::int8_t lowest_mode = 0;
+  /// The axis of a device with several ones, 0 to 7: its objects are 800h after those of the axis before it.
+  std::uint8_t axis = 0;
   /// The mode of a drive without 6060h.
   std::int8_t initial_mode = mode::none;
   /// The drive goes from Switch On Disabled to Ready To Switch On automatically.
@@ -52,6 +76,11 @@ struct Options {
   Profile profile{};
   /// For a drive without 609Ah.
   std::uint32_t homing_acceleration = 0;
+  /// Velocity and acceleration of the axis for 1 rpm and 1 rpm/s, the units of velocity mode (6042h, 6048h).
+  Ratio velocity_of_rpm{};
+  Ratio acceleration_of_rpm{};
+  /// Data records that interpolated position mode can buffer, if the device has 60C4h: 4 bytes of RAM each.
+  std::uint8_t interpolation_buffer = 8;
 };
 
 }  // namespace canopen::cia402

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "canopen/od/accepted_values.hpp"
+#include "canopen/od/access.hpp"
+#include "canopen/od/object.hpp"
 #include "canopen/profile/cia402_axis.hpp"
 #include "canopen/profile/cia402_objects.hpp"
 #include "canopen/profile/cia402_option_code.hpp"
@@ -11,21 +14,65 @@
 
 namespace canopen::cia402 {
 
+/// Between the objects of two axes of a device.
+inline constexpr unsigned axis_distance = 0x800;
+
 template <class Device, Options options>
 struct Parameters {
+  /// The object of this axis.
   template <class O>
-  static constexpr bool has = Device::dictionary.has(O::index, O::sub_index);
+  using At = Object<O::index + options.axis * axis_distance, O::sub_index, typename O::type, Access::rw>;
+
+  template <class O>
+  static constexpr bool has = Device::dictionary.has(At<O>::index, O::sub_index);
+
+  /// The modes that 6060h accepts by the EDS, as bits of 6502h; 0: the EDS does not list them.
+  static constexpr std::uint32_t listed_modes = [] {
+    std::uint32_t modes = 0;
+    for (const AcceptedRange& row : Device::dictionary.accepted) {
+      if (row.index != At<object::ModesOfOperation>::index) continue;
+      for (int number = row.values.low; number <= row.values.high; ++number) {
+        modes |= bit_of_mode(static_cast<std::int8_t>(number));
+      }
+    }
+    return modes;
+  }();
+  static_assert(
+      options.modes == 0 || listed_modes == 0 || options.modes == (listed_modes & implemented_modes),
+      "options.modes of a drive differs from 6502h: leave it out, or change the EDS or drive.additional_modes");
+
+  static constexpr std::uint32_t modes = options.modes != 0  ? options.modes
+                                         : listed_modes != 0 ? listed_modes & implemented_modes
+                                                             : usual_modes;
+
+  /// The lowest manufacturer-specific mode; 0: none.
+  static constexpr std::int8_t lowest_mode = [] {
+    std::int8_t lowest = options.lowest_mode;
+    if (lowest != 0) return lowest;
+    for (const AcceptedRange& row : Device::dictionary.accepted) {
+      if (row.index == At<object::ModesOfOperation>::index) lowest = std::min(lowest, row.values.low);
+    }
+    return lowest;
+  }();
 
   /// Whether the drive has a mode of the standard.
-  [[nodiscard]] static constexpr bool has_mode(std::int8_t wanted) {
-    return (options.modes & bit_of_mode(wanted)) != 0;
+  [[nodiscard]] static constexpr bool has_mode(std::int8_t wanted) { return (modes & bit_of_mode(wanted)) != 0; }
+
+  /// Whether 6060h accepts a value, and the drive has this mode.
+  [[nodiscard]] static constexpr bool supports(std::int8_t wanted) {
+    return wanted == mode::none || has_mode(wanted) || (wanted < 0 && wanted >= lowest_mode) ||
+           (listed_modes & ~implemented_modes & bit_of_mode(wanted)) != 0;
   }
+
+  /// Whether the application operates modes: manufacturer-specific ones, and those of 6502h that the profile lacks.
+  static constexpr bool leaves_modes =
+      (listed_modes & ~implemented_modes) != 0 || (lowest_mode < 0 && listed_modes != 0);
 
   /// Returns the value of an object; `otherwise` if the device does not have it.
   template <class O, class Node>
   [[nodiscard]] static typename O::type value(const Node& node, typename O::type otherwise) {
     if constexpr (has<O>) {
-      return node.template get<O>();
+      return node.template get<At<O>>();
     } else {
       return otherwise;
     }
@@ -34,7 +81,7 @@ struct Parameters {
   /// Sets an object, if the device has it.
   template <class O, class Node>
   static void set([[maybe_unused]] Node& node, [[maybe_unused]] const typename O::type& new_value) {
-    if constexpr (has<O>) static_cast<void>(node.template set<O>(new_value));
+    if constexpr (has<O>) static_cast<void>(node.template set<At<O>>(new_value));
   }
 
   /// Returns the braking that an option code selects, whose default is `otherwise`.
