@@ -33,13 +33,14 @@ def address_of(symbol: str) -> int:
     return next(int(line.split()[0], 16) for line in symbols.splitlines() if line.split()[-1] == symbol)
 
 
-class Tickless(unittest.TestCase):
+class SleepingMachine(unittest.TestCase):
+    """A firmware that counts in `wake_ups` how often its core has slept."""
+
     @classmethod
     def setUpClass(cls) -> None:
         cls.folder = tempfile.TemporaryDirectory()
         cls.machine = Machine("mps2-an385", IMAGE, Path(cls.folder.name))
         cls.machine.power_on()
-        cls.counter = address_of("wake_ups")
         cls.text = b""
         tty.setraw(cls.machine.line)
 
@@ -81,8 +82,14 @@ class Tickless(unittest.TestCase):
                     return
         self.fail(f"no response {response}")
 
+    def word(self, symbol: str) -> int:
+        """Returns the 32 bits of a variable of the firmware."""
+        return int.from_bytes(self.machine.save(address_of(symbol), 4, Path(self.folder.name) / "word"), "little")
+
+
+class Tickless(SleepingMachine):
     def wake_ups(self) -> int:
-        return int.from_bytes(self.machine.save(self.counter, 4, Path(self.folder.name) / "counter"), "little")
+        return self.word("wake_ups")
 
     def setUp(self) -> None:
         self.send(ENTER_PRE_OPERATIONAL)

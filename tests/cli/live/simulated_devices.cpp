@@ -15,17 +15,20 @@ namespace {
 class Motor {
  public:
   auto handlers() {
-    return std::tuple{canopen::on_write<od::target_velocity>([this](auto& node, std::int32_t velocity) {
-      if (velocity > node.template get<od::maximum_speed>()) return canopen::AbortCode::value_too_high;
-      std::printf("velocity %d\n", static_cast<int>(velocity));  // not on the standard output of the protocol
-      velocity_ = velocity;
-      return canopen::ok;
-    })};
+    return std::tuple{canopen::application_at(*this),
+                      canopen::on_write<od::target_velocity>([this](auto& node, std::int32_t velocity) {
+                        if (velocity > node.template get<od::maximum_speed>())
+                          return canopen::AbortCode::value_too_high;
+                        std::printf("velocity %d\n",
+                                    static_cast<int>(velocity));  // not on the standard output of the protocol
+                        velocity_ = velocity;
+                        return canopen::ok;
+                      })};
   }
   void start(auto& node) { static_cast<void>(node.template set<od::producer_heartbeat_time>(500)); }
-  void tick(auto& node, canopen::TimePoint now) {
-    if (now.since_start().count() % 1000 != 0)
-      std::printf("tick at %u\n", static_cast<unsigned>(now.since_start().count()));
+  void every(canopen::Milliseconds<1>, auto& node) {
+    if (node.now().since_start().count() % 1000 != 0)
+      std::printf("called at %u\n", static_cast<unsigned>(node.now().since_start().count()));
     const std::int32_t position = node.template get<od::position_actual_value>();
     static_cast<void>(node.template set<od::position_actual_value>(position + velocity_));
   }

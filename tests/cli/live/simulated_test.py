@@ -74,7 +74,7 @@ class Protocol(unittest.TestCase):
         self.assertEqual(answers, [
             "ok", "55 705 00", "110 705 7F",  # start() sets 1017h
             "268 185 500240E20100", "1268",
-            "2095 185 50024AE20100", "3095 185 500254E20100",  # tick() moves the axis by 10 in each millisecond
+            "2095 185 50024AE20100", "3095 185 500254E20100",  # every() moves the axis by 10 in each millisecond
             "4095 185 50020CEE0100",                             # and by 3000
             "4295", "4317 585 80FF600031000906",                 # 3001 is above 2005h
             "5095 185 5002C4F90100"])

@@ -8,8 +8,10 @@
 #include <atomic>
 #include <canopen/host/host_bus.hpp>
 #include <optional>
+#include <sample/device.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "runtime/host/stream_bench.hpp"
 
@@ -100,6 +102,53 @@ TEST(SocketcandPort, SendsAndReceivesFrames) {
   server.say("10F00 >< frame 705 1.5 05 >");
   EXPECT_EQ(text_of(bus.receive(60s)), "585 43 00 10 00 91 01 0F 00");
   EXPECT_EQ(text_of(bus.receive(60s)), "705 05");
+}
+
+/// The start of a node and the times of a periodic function, until it has been called five times.
+struct Application {
+  void start(auto& node) {
+    ++starts;
+    started = node.now();
+  }
+  void every(canopen::Milliseconds<10>, auto& node) {
+    calls.push_back(node.now() - started);
+    if (calls.size() == 5) *stop = true;
+  }
+  std::atomic<bool>* stop;
+  int starts = 0;
+  canopen::TimePoint started{};
+  std::vector<canopen::Duration> calls{};
+};
+
+void check(const Application& application) {
+  EXPECT_EQ(application.starts, 1);
+  ASSERT_EQ(application.calls.size(), 5u);
+  canopen::Duration period{0};
+  for (const canopen::Duration call : application.calls) {
+    EXPECT_GE(call, period + 10ms) << "a busy computer may delay calls and leave some out";
+    period += 10ms;
+  }
+}
+
+TEST(SocketcandPort, CallsStartAndPeriodicFunctions) {
+  std::atomic<bool> stop = false;
+  Server server;
+  std::thread greeting{[&] { server.greet(); }};
+  HostBus bus{server.address("vcan0")};
+  greeting.join();
+  canopen::Node<sample::Device, HostBus, Application> node{bus, canopen::NodeId{5}, Application{&stop}};
+  bus.run(node, stop);
+  check(node.application<Application>());
+
+  Application lambdas{&stop};
+  stop = false;
+  auto other = canopen::make_node<sample::Device>(bus, canopen::NodeId{6},
+                                                  canopen::on_start([&](auto& starting) { lambdas.start(starting); }),
+                                                  canopen::every<canopen::Milliseconds<10>>([&](auto& running) {
+                                                    lambdas.every(canopen::Milliseconds<10>{}, running);
+                                                  }));
+  bus.run(other, stop);
+  check(lambdas);
 }
 
 TEST(SocketcandPort, WaitsForAServerThatIsStartedTogetherWithIt) {

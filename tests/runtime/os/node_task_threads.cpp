@@ -36,25 +36,37 @@ void wake_from_interrupt(System& system) {
   }
 }
 
+/// Of the task that runs a node: its start, and the calls of a function with a period of 20 ms.
+struct Application {
+  void start() { ++starts; }
+  void every(canopen::Milliseconds<20>) { ++calls; }
+  std::uint32_t starts = 0;
+  std::uint32_t calls = 0;
+};
+
 /// Returns whether all is well.
 template <class System>
 bool run(const char* name, std::uint32_t requests) {
   QueuePort port;
   canopen::Mailbox<od::unsigned64_value> mailbox;
-  auto node = canopen::make_node<sample::Device>(port, canopen::NodeId{5}, canopen::values_from(mailbox));
+  auto node =
+      canopen::make_node<sample::Device>(port, canopen::NodeId{5}, Application{}, canopen::values_from(mailbox));
   System system;
   std::atomic<bool> started = false;
   std::atomic<bool> stops = false;
   std::uint32_t passes = 0;
+  std::uint32_t periods = 0;  // that have ended while the task ran
 
   std::thread task{[&] {
     if constexpr (requires { system.adopt_this_task(); }) system.adopt_this_task();
+    const auto before = std::chrono::steady_clock::now();
     node.start(system.now());
     const std::uint8_t heartbeat[] = {20, 0};  // ms
     (void)node.set(0x1017, 0, heartbeat);
     canopen::NodeTask loop{node, port, system};
     started = true;
     for (; !stops; ++passes) loop.run_once();
+    periods = static_cast<std::uint32_t>((std::chrono::steady_clock::now() - before) / 20ms);
   }};
   while (!started) std::this_thread::yield();
 
@@ -99,11 +111,14 @@ bool run(const char* name, std::uint32_t requests) {
   const bool last_arrived = node.template get<od::unsigned64_value>() == (std::uint64_t{requests} << 32 | requests);
   const bool busy = passes > 3 * requests + 1'000;  // at most one pass for each request, post and deadline
   const bool asleep = quiet_heartbeats < 5;
-  std::printf("%s: %u requests, %u responses, %u heartbeats, %u passes%s%s%s%s\n", name, requests, responses,
-              heartbeats, passes, wrong ? ", a response is wrong" : "",
+  const Application& application = node.template application<Application>();
+  const bool is_periodic =
+      application.starts == 1 && application.calls >= periods / 3 && application.calls <= periods + 1;
+  std::printf("%s: %u requests, %u responses, %u heartbeats, %u passes, %u calls in %u periods%s%s%s%s%s\n", name,
+              requests, responses, heartbeats, passes, application.calls, periods, wrong ? ", a response is wrong" : "",
               last_arrived ? "" : ", the last value is missing", busy ? ", the task does not sleep" : "",
-              asleep ? ", heartbeats are missing" : "");
-  return responses == requests && !wrong && last_arrived && !busy && !asleep;
+              asleep ? ", heartbeats are missing" : "", is_periodic ? "" : ", calls of the application are wrong");
+  return responses == requests && !wrong && last_arrived && !busy && !asleep && is_periodic;
 }
 
 }  // namespace
