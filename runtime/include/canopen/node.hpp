@@ -118,6 +118,17 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
     return services_.deadline(static_cast<const Host&>(*this), all);
   }
 
+  /// Returns when a periodic function of the application is next due, which is also a `next_deadline`: a loop that
+  /// waits for a bus without room does not delay it. Empty: the application has none, or the node has not been started.
+  [[nodiscard]] std::optional<TimePoint> next_periodic_call() const {
+    using Periodic = service::Periodic<Device, Handlers...>;
+    if constexpr (Periodic::exists) {
+      return services_.template get<Periodic>().deadline(static_cast<const Host&>(*this));
+    } else {
+      return std::nullopt;
+    }
+  }
+
   /// Whether a handler of this type was given to the node.
   template <class Handler>
   static constexpr bool has_handler = (std::is_same_v<Handler, Handlers> || ...);

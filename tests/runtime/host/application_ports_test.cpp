@@ -2,6 +2,7 @@
 /// period.
 #include <gtest/gtest.h>
 
+#include <canopen/host/host_loop.hpp>
 #include <canopen/host/simulated_node.hpp>
 #include <canopen/host/virtual_bus.hpp>
 #include <canopen/os/node_task.hpp>
@@ -128,6 +129,24 @@ TYPED_TEST(ApplicationOn, NodeTask) {
   canopen::NodeTask task{node, port, system};
   node.start(system.now());
   for (int i = 0; i <= 10; ++i) task.run_once();
+}
+
+/// A port of a host whose bus has no room, for a long time because it is off.
+struct PortWithoutRoom {
+  static std::optional<TimePoint> next_deadline() { return std::nullopt; }
+  static Duration hold_off() { return 100ms; }
+};
+
+TYPED_TEST(ApplicationOn, HostWhoseBusHasNoRoom) {
+  bench::RecordingBus bus;
+  bus.room = 0;
+  auto node = canopen::make_node<sample::Device>(bus, NodeId{5}, TypeParam::handlers());
+  node.start(TimePoint{});
+  EXPECT_EQ(canopen::host_loop::next_deadline(PortWithoutRoom{}, node, TimePoint{}), TimePoint{10ms});
+  for (TimePoint now{10ms}; now <= TimePoint{100ms};
+       now = *canopen::host_loop::next_deadline(PortWithoutRoom{}, node, now)) {
+    node.on_time(now);
+  }
 }
 
 /// As `edsc` and the conformance test in CMake run it.

@@ -55,13 +55,17 @@ TimePoint serve_once(Port& port, Node& node) {
   return now;
 }
 
-/// Returns the next event that does not make a descriptor readable.
+/// Returns the next event that does not make a descriptor readable. A bus without room delays what is to be sent, but
+/// not the periodic functions of the application.
 template <class Port, class Node>
 [[nodiscard]] std::optional<TimePoint> next_deadline(const Port& port, const Node& node, TimePoint now) {
   std::optional<TimePoint> next = node.next_deadline();
   if (next) next = std::max(*next, now + port.hold_off());
-  const std::optional<TimePoint> own = port.next_deadline();
-  if (own && (!next || *own < *next)) next = own;
+  const auto consider = [&next](std::optional<TimePoint> time) {
+    if (time && (!next || *time < *next)) next = time;
+  };
+  consider(port.next_deadline());
+  if constexpr (requires { node.next_periodic_call(); }) consider(node.next_periodic_call());
   return next;
 }
 

@@ -59,6 +59,9 @@ class Locked {
   [[nodiscard]] std::optional<TimePoint> next_deadline() {
     return with([](Node& node) { return node.next_deadline(); });
   }
+  [[nodiscard]] std::optional<TimePoint> next_periodic_call() {
+    return with([](Node& node) { return node.next_periodic_call(); });
+  }
   [[nodiscard]] NmtState state() {
     return with([](Node& node) { return node.state(); });
   }

@@ -35,6 +35,9 @@ class ProfileNode {
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     return static_cast<const Profile&>(*this).node().next_deadline();
   }
+  [[nodiscard]] std::optional<TimePoint> next_periodic_call() const {
+    return static_cast<const Profile&>(*this).node().next_periodic_call();
+  }
 
  protected:
   constexpr ProfileNode() = default;
