@@ -8,10 +8,15 @@
 #include "tickless_firmware/interrupt_serial_bus.hpp"
 #include "tickless_firmware/mps2_interrupts.hpp"
 
-/// For the test: number of times that the core has slept, and of calls of the slow function.
+/// For the test.
 extern "C" {
-volatile std::uint32_t wake_ups = 0;
-volatile std::uint32_t seconds = 0;
+struct Counters {
+  std::uint32_t starts;    ///< calls of `start`
+  std::uint32_t wake_ups;  ///< how often the core has slept
+  std::uint32_t calls;     ///< of the function with 20 ms
+  std::uint32_t seconds;   ///< calls of the function with 1 s
+};
+volatile Counters counters{};
 }
 
 namespace {
@@ -20,14 +25,21 @@ namespace od = pump::od;
 
 constinit InterruptSerialBus bus;
 
+/// In place of an ADC.
+void start_measuring() { counters.starts = counters.starts + 1; }
+std::uint16_t measured() {
+  counters.calls = counters.calls + 1;
+  return static_cast<std::uint16_t>(100 + counters.calls);
+}
+/// In place of a LED.
+void blink() { counters.seconds = counters.seconds + 1; }
+
 struct Sensor {
   /// At power-on.
-  void start(auto& node) { node.set(od::pressure{}, 100); }
-  /// The pressure rises by 1 mbar each 20 ms: TPDO 1 is sent.
-  void every(canopen::Milliseconds<20>, auto& node) {
-    node.set(od::pressure{}, static_cast<std::uint16_t>(node.get(od::pressure{}) + 1));
-  }
-  void every(canopen::Seconds<1>) { seconds = seconds + 1; }
+  void start() { start_measuring(); }
+  /// TPDO 1 is sent when the pressure has changed.
+  void every(canopen::Milliseconds<20>, auto& node) { node.set(od::pressure{}, measured()); }
+  void every(canopen::Seconds<1>) { blink(); }
 };
 
 canopen::Node<pump::Device, InterruptSerialBus, Sensor> node{bus};
@@ -55,6 +67,6 @@ int main() {
     bus.flush();
     const bool slept =
         canopen::sleep_unless([] { return !bus.idle() || !interrupts::set_alarm(node.next_deadline()); });
-    if (slept) wake_ups = wake_ups + 1;
+    if (slept) counters.wake_ups = counters.wake_ups + 1;
   }
 }

@@ -82,14 +82,15 @@ class SleepingMachine(unittest.TestCase):
                     return
         self.fail(f"no response {response}")
 
-    def word(self, symbol: str) -> int:
-        """Returns the 32 bits of a variable of the firmware."""
-        return int.from_bytes(self.machine.save(address_of(symbol), 4, Path(self.folder.name) / "word"), "little")
+    def words(self, symbol: str, count: int) -> list[int]:
+        """Returns the values of a variable of the firmware that has this number of words of 32 bits."""
+        read = self.machine.save(address_of(symbol), 4 * count, Path(self.folder.name) / "words")
+        return [int.from_bytes(read[i : i + 4], "little") for i in range(0, 4 * count, 4)]
 
 
 class Tickless(SleepingMachine):
     def wake_ups(self) -> int:
-        return self.word("wake_ups")
+        return self.words("wake_ups", 1)[0]
 
     def setUp(self) -> None:
         self.send(ENTER_PRE_OPERATIONAL)

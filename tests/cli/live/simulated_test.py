@@ -72,12 +72,12 @@ class Protocol(unittest.TestCase):
                             "send 205 00000A000000", "run 2000", "run 2000", "send 205 0000B80B0000", "run 2000",
                             "send 605 23FF6000B90B0000", "run 200", "run 1000", "run 1000")
         self.assertEqual(answers, [
-            "ok", "55 705 00", "110 705 7F",  # start() sets 1017h
-            "268 185 500240E20100", "1268",
-            "2095 185 50024AE20100", "3095 185 500254E20100",  # every() moves the axis by 10 in each millisecond
-            "4095 185 50020CEE0100",                             # and by 3000
-            "4295", "4317 585 80FF600031000906",                 # 3001 is above 2005h
-            "5095 185 5002C4F90100"])
+            "ok", "55 705 00", "1055",  # start() has set 1017h to 500 ms before the boot-up message
+            "1213 185 500240E20100", "2213",
+            "3095 185 50024AE20100", "4095 185 500254E20100",  # every() moves the axis by 10 in each millisecond
+            "5095 185 50020CEE0100",                             # and by 3000
+            "5295", "5317 585 80FF600031000906",                 # 3001 is above 2005h
+            "6095 185 5002C4F90100"])
         self.assertEqual(self.stderr, "velocity 10\nvelocity 3000\n")
 
     def test_frames_of_all_kinds(self) -> None:
