@@ -70,12 +70,10 @@ edsc_add_conformance_test(other_conforms axis LEVEL read NODE_ID 8)
 
 
 APPLICATION = """#include <canopen/node.hpp>
-#include <tuple>
 #include <valve/device.hpp>
 
 namespace shop {
 struct Valve {
-  auto handlers() { return std::tuple<>{}; }
   void start(auto& node) { static_cast<void>(node.template set<valve::od::opening>(17)); }
 };
 }  // namespace shop
