@@ -346,9 +346,9 @@ class TpdoService {
   /// Sends the data of the last SYNC.
   template <Bus B>
   [[nodiscard]] bool send_sample(const Slot& slot, std::size_t which, ObjectStore<Device>& store, B& bus) {
-    FrameWords sampled;
-    std::memcpy(&sampled, &slot.times, sizeof sampled);
-    return send_configured(bus, cob_id_of(which, store.entries()), slot.size, sampled.first, sampled.second);
+    std::array<std::uint32_t, 2> sampled;
+    std::memcpy(sampled.data(), &slot.times, sizeof sampled);
+    return send_configured(bus, cob_id_of(which, store.entries()), slot.size, sampled[0], sampled[1]);
   }
 
   void sample([[maybe_unused]] std::size_t which, [[maybe_unused]] ObjectStore<Device>& store) {
