@@ -198,7 +198,7 @@ class TpdoService {
       TimePoint at = now;
       if ((slot.flags & inhibited) != 0 && slot.times.inhibit_end.is_ahead(now)) {
         at = slot.times.inhibit_end.at();
-      } else if (!wanted(slot) && (slot.flags & timed) != 0) {
+      } else if (!wanted(slot) && !event_timer_expired(slot, now) && (slot.flags & timed) != 0) {
         at = slot.times.event_due.at();
       }
       next = next ? earlier_deadline(*next, at, now) : at;
