@@ -31,7 +31,7 @@ struct FakeSystem {
   static Duration shortest_wait() { return 1ms; }
 };
 
-struct Port : bench::RecordingBus {
+struct PolledPort : bench::RecordingBus {
   std::deque<Frame> received;
   std::optional<canopen::BusStatus> status;
 
@@ -44,6 +44,11 @@ struct Port : bench::RecordingBus {
   std::optional<canopen::BusStatus> status_change() { return std::exchange(status, std::nullopt); }
 };
 
+struct Port : PolledPort {
+  static constexpr bool has_status_interrupt = true;
+};
+
+template <class Port>
 struct Task {
   Task() { node.start(system.now()); }
   Port port;
@@ -53,7 +58,7 @@ struct Task {
 };
 
 TEST(NodeTask, WaitsUntilTheNextDeadline) {
-  Task it;
+  Task<Port> it;
   it.port.take();
   ASSERT_EQ(it.node.set<od::producer_heartbeat_time>(100), canopen::ok);
   it.task.run_once();
@@ -64,13 +69,42 @@ TEST(NodeTask, WaitsUntilTheNextDeadline) {
 }
 
 TEST(NodeTask, WaitsAQuarterOfAnHourWithoutADeadline) {
-  Task it;
+  Task<Port> it;
   it.task.run_once();
   EXPECT_EQ(it.system.waits, (std::vector<Duration>{15min}));
 }
 
+/// 1029h = 0: a communication error ends Operational.
+TEST(NodeTask, BusOffEndsOperationalThoughNothingIsDue) {
+  Task<Port> it;
+  it.port.received = {frame(bench::start)};
+  it.task.run_once();
+  ASSERT_EQ(it.node.state(), canopen::NmtState::operational);
+  it.port.status = canopen::BusStatus{canopen::BusState::off};
+  it.task.run_once();  // the interrupt has ended the wait
+  EXPECT_EQ(it.node.state(), canopen::NmtState::pre_operational);
+}
+
+TEST(NodeTask, LooksAtTheStatusUntilTheControllerIsErrorActive) {
+  Task<Port> it;
+  it.port.status = canopen::BusStatus{canopen::BusState::off};
+  it.task.run_once();
+  it.task.run_once();
+  it.port.status = canopen::BusStatus{canopen::BusState::active};
+  it.task.run_once();
+  it.port.take();
+  it.task.run_once();
+  EXPECT_EQ(it.system.waits, (std::vector<Duration>{100ms, 100ms, 15min, 15min}));
+}
+
+TEST(NodeTask, LooksAtTheStatusOfAPortWithoutAnInterruptForIt) {
+  Task<PolledPort> it;
+  it.task.run_once();
+  EXPECT_EQ(it.system.waits, (std::vector<Duration>{100ms}));
+}
+
 TEST(NodeTask, ProcessesAllReceivedFramesBeforeItWaits) {
-  Task it;
+  Task<Port> it;
   it.port.take();
   it.port.received = {frame("605 40 00 10 00 00 00 00 00"), frame("605 40 18 10 00 00 00 00 00")};
   it.task.run_once();
@@ -79,7 +113,7 @@ TEST(NodeTask, ProcessesAllReceivedFramesBeforeItWaits) {
 }
 
 TEST(NodeTask, LetsOtherTasksRunWhileTheBusHasNoRoom) {
-  Task it;
+  Task<Port> it;
   it.port.take();
   it.port.room = 0;
   it.port.received = {frame("605 40 00 10 00 00 00 00 00")};

@@ -27,7 +27,11 @@ struct FakeController {
     operator std::uint32_t() const {
       if (!controller.powered) return 2;
       if (controller.wire_busy > 0 && --controller.wire_busy > 0) return 0;
-      return controller.master_control & 1;
+      return (controller.master_control & 1) | (controller.error_interrupt ? 4u : 0);
+    }
+    /// 04h clears the error interrupt.
+    void operator=(std::uint32_t value) {
+      if ((value & 4) != 0) controller.error_interrupt = false;
     }
   };
   /// RF0R: 20h releases a frame, which takes some reads, and 10h clears the overrun.
@@ -59,7 +63,18 @@ struct FakeController {
     show();
   }
 
+  /// The error counters reach a state: EPVF, BOFF.
+  void enter(std::uint32_t state) {
+    const std::uint32_t begun = state & ~error_status;
+    error_status = state;
+    const std::uint32_t enabled = ((interrupts & 1u << 9) != 0 ? 2u : 0) | ((interrupts & 1u << 10) != 0 ? 4u : 0);
+    if ((begun & enabled) != 0) error_interrupt = true;
+  }
+  /// Whether the line for the status is active: ERRIE.
+  [[nodiscard]] bool interrupts_for_status() const { return error_interrupt && (interrupts & 1u << 15) != 0; }
+
   bool powered = true;
+  bool error_interrupt = false;  ///< MSR.ERRI
   bool lost = false;
   int wire_busy = 0;      ///< reads of MSR until the frame on the wire has ended
   int release_takes = 0;  ///< reads of RF0R
@@ -124,10 +139,28 @@ TEST_F(BxCan, GoesOnTheBusWithItsBitTiming) {
 TEST_F(BxCan, InterruptsForAFrameAndForAFreeMailbox) {
   static_assert(canopen::InterruptingController<canopen::BxCan<>>);
   bus.enable_interrupts();
-  EXPECT_EQ(controller.interrupts, 0x03u);  // IER.FMPIE0, IER.TMEIE
-  bus.acknowledge_interrupts();
+  EXPECT_EQ(controller.interrupts, 0x8603u);  // IER.FMPIE0, IER.TMEIE, IER.EPVIE, IER.BOFIE, IER.ERRIE
+  EXPECT_FALSE(bus.acknowledge_interrupts());
   EXPECT_EQ(controller.transmit_status, 0x0001'0101u);  // TSR.RQCP0 to RQCP2 are cleared by writing 1
   EXPECT_EQ(offsetof(canopen::BxCanRegisters, interrupts), 0x014u);
+}
+
+TEST_F(BxCan, InterruptsForErrorPassiveAndForBusOff) {
+  canopen::InterruptPort<canopen::BxCan<FakeController>, 4> port{bus};
+  static_assert(canopen::has_status_interrupt<decltype(port)>);
+  port.enable_interrupts();
+  controller.enter(2);
+  ASSERT_TRUE(controller.interrupts_for_status());
+  port.on_other_interrupt();
+  EXPECT_FALSE(controller.interrupts_for_status()) << "acknowledged";
+  EXPECT_FALSE(port.idle()) << "the loop must look at the status before it sleeps";
+  EXPECT_EQ(port.status_change(), canopen::BusStatus{BusState::passive});
+  EXPECT_TRUE(port.idle());
+  controller.enter(6);
+  ASSERT_TRUE(controller.interrupts_for_status());
+  port.on_interrupt();
+  EXPECT_FALSE(port.idle());
+  EXPECT_EQ(port.status_change(), canopen::BusStatus{BusState::off});
 }
 
 TEST_F(BxCan, DoesNotStartWithoutAClock) {

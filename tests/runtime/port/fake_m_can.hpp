@@ -90,9 +90,9 @@ class MCan {
   }
 
   /// Sets PSR as the error counters would.
-  void error_state(bool warning, bool passive) { state_ = (warning ? 1u << 6 : 0) | (passive ? 1u << 5 : 0); }
+  void error_state(bool warning, bool passive) { change_state((warning ? 1u << 6 : 0) | (passive ? 1u << 5 : 0)); }
   void go_bus_off() {
-    state_ = off | 1u << 6 | 1u << 5;
+    change_state(off | 1u << 6 | 1u << 5);
     on_wire_.reset();
     cccr_ |= initialize;
     asked_ |= initialize;
@@ -100,7 +100,7 @@ class MCan {
   /// 129 times 11 recessive bits. Returns false if INIT keeps the controller off the bus.
   bool pass_recovery() {
     if ((cccr_ & initialize) != 0) return false;
-    state_ = 0;
+    change_state(0);
     return true;
   }
 
@@ -108,9 +108,14 @@ class MCan {
   [[nodiscard]] bool on_the_bus() const { return (cccr_ & initialize) == 0 && (state_ & off) == 0; }
   [[nodiscard]] std::uint32_t requests() const { return requests_; }
   [[nodiscard]] bool classic() const { return (cccr_ & 0x0000'0344) == 0; }  // no FDOE, BRSE, DAR, ASM
-  /// Whether the interrupt of line 0 is enabled for received frames, and for every Tx buffer that has been sent.
+  /// Whether line 0 is active for a change of error passive or bus-off.
+  [[nodiscard]] bool interrupts_for_status() const {
+    return (interrupt_ & values_[IE]) != 0 && values_[ILE] == 1 && values_[ILS] == 0;
+  }
+  /// Whether the interrupt of line 0 is enabled for received frames, for every Tx buffer that has been sent, and for
+  /// error passive and bus-off.
   [[nodiscard]] bool interrupts() const {
-    const std::uint32_t enabled = 1u << 0 | (chip_ == Chip::g4 ? 1u << 7 : 1u << 9);  // RF0NE, TCE
+    const std::uint32_t enabled = 1u << 0 | (chip_ == Chip::g4 ? 1u << 7 : 1u << 9) | passive_bit() | off_bit();
     return values_[IE] == enabled && values_[ILE] == 1 && values_[ILS] == 0 &&
            values_[TXBTIE] == (1u << place_.transmitted) - 1;
   }
@@ -154,6 +159,16 @@ class MCan {
     std::uint32_t standard, standards, extended, extendeds, receive, received, transmit, transmitted, element;
   };
 
+  /// IR.EP, IR.BO: each change of these states.
+  [[nodiscard]] std::uint32_t passive_bit() const { return chip_ == Chip::g4 ? 1u << 17 : 1u << 23; }
+  [[nodiscard]] std::uint32_t off_bit() const { return chip_ == Chip::g4 ? 1u << 19 : 1u << 25; }
+  void change_state(std::uint32_t state) {
+    const std::uint32_t changed = state ^ state_;
+    if ((changed & 1u << 5) != 0) interrupt_ |= passive_bit();
+    if ((changed & off) != 0) interrupt_ |= off_bit();
+    state_ = state;
+  }
+
   [[nodiscard]] bool protected_register(Name name) const {
     static constexpr Name open[] = {CCCR, IR, IE, ILS, ILE, RXF0A, TXBAR, TXBCR, TXBTIE};
     return std::find(std::begin(open), std::end(open), name) == std::end(open);
@@ -163,6 +178,7 @@ class MCan {
     switch (name) {
       case CCCR: return read_cccr();
       case PSR: return 0x0000'0707 | state_;
+      case IR: return interrupt_;
       case RXF0S:
         return fill_ | get_ << 8 | put_ << 16 | (fill_ == place_.received ? 1u << 24 : 0) | (lost_ ? 1u << 25 : 0);
       case TXFQS: {
@@ -187,6 +203,7 @@ class MCan {
     switch (name) {
       case CCCR: return write_cccr(value);
       case IR:
+        interrupt_ &= ~value;
         if ((value & (chip_ == Chip::g4 ? 1u << 2 : 1u << 3)) != 0) lost_ = false;
         return;
       case RXF0A:
@@ -336,6 +353,7 @@ class MCan {
   std::uint32_t asked_ = initialize;
   int init_left_ = 0;
   std::uint32_t state_ = 0;
+  std::uint32_t interrupt_ = 0;  ///< IR
   std::uint32_t fill_ = 0, get_ = 0, put_ = 0;
   bool lost_ = false;
   std::uint32_t requests_ = 0, occurred_ = 0, cancelled_ = 0;

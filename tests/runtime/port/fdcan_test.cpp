@@ -42,8 +42,31 @@ TYPED_TEST(Fdcan, InterruptsForAFrameAndForAFreeBuffer) {
   EXPECT_TRUE(this->controller.interrupts());
   this->go_on_the_bus();
   EXPECT_TRUE(this->controller.interrupts()) << "also after a change of the bit rate";
-  this->bus.acknowledge_interrupts();
-  EXPECT_EQ(this->controller.acknowledged(), chip<TypeParam> == fake::Chip::g4 ? 0x81u : 0x201u);  // IR.RF0N, IR.TC
+  EXPECT_FALSE(this->bus.acknowledge_interrupts());
+  // IR.RF0N, IR.TC, IR.EP, IR.BO
+  EXPECT_EQ(this->controller.acknowledged(), chip<TypeParam> == fake::Chip::g4 ? 0x000A'0081u : 0x0280'0201u);
+}
+
+TYPED_TEST(Fdcan, InterruptsForErrorPassiveAndForBusOff) {
+  canopen::InterruptPort<typename TestFixture::Bus, 4> port{this->bus};
+  this->go_on_the_bus();
+  port.enable_interrupts();
+  EXPECT_FALSE(this->controller.interrupts_for_status());
+  this->controller.error_state(true, true);
+  ASSERT_TRUE(this->controller.interrupts_for_status());
+  port.on_interrupt();
+  EXPECT_FALSE(this->controller.interrupts_for_status()) << "acknowledged";
+  EXPECT_FALSE(port.idle()) << "the loop must look at the status before it sleeps";
+  EXPECT_EQ(port.status_change(), canopen::BusStatus{canopen::BusState::passive});
+  EXPECT_TRUE(port.idle());
+  this->controller.go_bus_off();
+  ASSERT_TRUE(this->controller.interrupts_for_status());
+  port.on_other_interrupt();
+  EXPECT_EQ(port.status_change(), canopen::BusStatus{canopen::BusState::off}) << "and the recovery begins";
+  while ((this->controller.common.cccr & 1) != 0) {
+  }
+  ASSERT_TRUE(this->controller.pass_recovery());
+  EXPECT_TRUE(this->controller.interrupts_for_status()) << "it is on the bus again";
 }
 
 TYPED_TEST(Fdcan, GoesOnTheBusWithItsBitTiming) {

@@ -18,4 +18,11 @@ struct BusStatus {
   friend constexpr bool operator==(const BusStatus&, const BusStatus&) = default;
 };
 
+/// Whether a port interrupts, or wakes its loop, when the status becomes error passive or bus-off: it has a constant
+/// `has_status_interrupt`. A loop must look at the status of another port now and then.
+template <class T>
+inline constexpr bool has_status_interrupt = requires {
+  requires T::has_status_interrupt;
+};
+
 }  // namespace canopen

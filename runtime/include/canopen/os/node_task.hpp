@@ -27,8 +27,8 @@ concept FrameSource = requires(T& port) {
 };
 
 /// Runs a node with the frames of a port. The interrupt of the CAN controller calls `wake` of the system after it has
-/// moved the frames to the port, and when a mailbox has become free; so does each context that posts to a Mailbox. All
-/// three must outlive this object. `Node` may be a `Locked`.
+/// moved the frames to the port, when a mailbox has become free, and for error passive and bus-off; so does each
+/// context that posts to a Mailbox. All three must outlive this object. `Node` may be a `Locked`.
 template <class Node, FrameSource Port, TaskSystem System>
 class NodeTask {
  public:
@@ -45,7 +45,10 @@ class NodeTask {
   void run_once() {
     while (const std::optional<Frame> frame = port_.receive()) node_.on_frame(*frame, system_.now());
     if constexpr (requires { port_.status_change(); }) {
-      if (const std::optional<BusStatus> status = port_.status_change()) node_.on_bus_status(*status, system_.now());
+      if (const std::optional<BusStatus> status = port_.status_change()) {
+        state_ = status->state;
+        node_.on_bus_status(*status, system_.now());
+      }
     }
     node_.on_time(system_.now());
     system_.wait(time_to_wait());
@@ -54,20 +57,31 @@ class NodeTask {
  private:
   /// A node must be called every half hour at least.
   static constexpr Duration longest_wait{900'000'000};
+  /// How often the status of a port is looked at that has no interrupt for it, or whose controller is not error active:
+  /// not every controller interrupts when it becomes so again.
+  static constexpr Duration look_at_status{100'000};
+
+  [[nodiscard]] Duration most() const {
+    if constexpr (requires(Port & port) { port.status_change(); }) {
+      if (!has_status_interrupt<Port> || state_ != BusState::active) return look_at_status;
+    }
+    return longest_wait;
+  }
 
   /// Not less than the shortest wait: what is due after `on_time` waits for room on the bus or for the flash, and tasks
   /// of lower priority must run meanwhile.
   [[nodiscard]] Duration time_to_wait() {
     const std::optional<TimePoint> due = node_.next_deadline();
-    if (!due) return longest_wait;
+    if (!due) return most();
     const TimePoint now = system_.now();
     if (*due <= now) return system_.shortest_wait();
-    return std::clamp(*due - now, system_.shortest_wait(), longest_wait);
+    return std::clamp(*due - now, system_.shortest_wait(), std::max(most(), system_.shortest_wait()));
   }
 
   Node& node_;
   Port& port_;
   System& system_;
+  BusState state_ = BusState::active;
 };
 
 }  // namespace canopen

@@ -166,11 +166,19 @@ class BxCan {
     return frame;
   }
 
-  /// Interrupts for a received frame and for a mailbox that has become free.
-  void enable_interrupts() { registers_.interrupts = frame_received | mailbox_free; }
+  /// Interrupts for a received frame, for a mailbox that has become free, and for error passive and bus-off. The
+  /// controller does not interrupt when these end: ask `status_change` now and then until it reports `active`.
+  void enable_interrupts() { registers_.interrupts = frame_received | mailbox_free | errors | error_passive | bus_off; }
+  static constexpr bool has_status_interrupt = true;
 
-  /// In the interrupt, before `receive` until there is no frame: that ends the other one.
-  void acknowledge_interrupts() { registers_.transmit_status = 1 << 0 | 1 << 8 | 1 << 16; }  // RQCP0 to RQCP2
+  /// In the interrupt, before `receive` until there is no frame: that ends the one for a frame. Returns whether it is
+  /// one for the status.
+  bool acknowledge_interrupts() {
+    registers_.transmit_status = 1 << 0 | 1 << 8 | 1 << 16;  // RQCP0 to RQCP2
+    if ((registers_.master_status & error_interrupt) == 0) return false;
+    registers_.master_status = error_interrupt;
+    return true;
+  }
 
   /// Returns the status of the controller if it has changed since the last call.
   [[nodiscard]] std::optional<BusStatus> status_change() {
@@ -192,6 +200,10 @@ class BxCan {
   static constexpr std::uint32_t release = 1 << 5;               // RFxR.RFOM
   static constexpr std::uint32_t mailbox_free = 1 << 0;          // IER.TMEIE
   static constexpr std::uint32_t frame_received = 1 << 1;        // IER.FMPIE0
+  static constexpr std::uint32_t error_passive = 1 << 9;         // IER.EPVIE
+  static constexpr std::uint32_t bus_off = 1 << 10;              // IER.BOFIE
+  static constexpr std::uint32_t errors = 1 << 15;               // IER.ERRIE
+  static constexpr std::uint32_t error_interrupt = 1 << 2;       // MSR.ERRI
 
   /// Returns the identifier in the format of mailboxes and filters.
   [[nodiscard]] static constexpr std::uint32_t word_of(std::uint32_t id, bool is_extended, bool is_remote) {

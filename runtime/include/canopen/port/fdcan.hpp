@@ -116,8 +116,9 @@ struct FdcanH7Registers {
 struct FdcanOfG4 {
   using Registers = FdcanG4Registers;
   static constexpr fdcan::MessageRam message_ram{28, 8, 3, 3, 18, 158, 212};
-  static constexpr std::uint32_t lost = 1 << 2;  ///< IR.RF0L
-  static constexpr std::uint32_t sent = 1 << 7;  ///< IR.TC
+  static constexpr std::uint32_t lost = 1 << 2;               ///< IR.RF0L
+  static constexpr std::uint32_t sent = 1 << 7;               ///< IR.TC
+  static constexpr std::uint32_t status = 1 << 17 | 1 << 19;  ///< IR.EP, IR.BO
 
   /// Only the number of filters can be configured.
   static void divide(auto& registers, std::uint32_t /*first_word*/) {
@@ -130,8 +131,9 @@ struct FdcanOfG4 {
 struct FdcanOfH7 {
   using Registers = FdcanH7Registers;
   static constexpr fdcan::MessageRam message_ram{64, 16, 64, 16, 4, 352, 416};
-  static constexpr std::uint32_t lost = 1 << 3;  ///< IR.RF0L
-  static constexpr std::uint32_t sent = 1 << 9;  ///< IR.TC
+  static constexpr std::uint32_t lost = 1 << 3;               ///< IR.RF0L
+  static constexpr std::uint32_t sent = 1 << 9;               ///< IR.TC
+  static constexpr std::uint32_t status = 1 << 23 | 1 << 25;  ///< IR.EP, IR.BO
 
   /// Start addresses are in bytes, because their two lowest bits are not part of the fields. Unused parts are empty.
   static void divide(auto& registers, std::uint32_t first_word) {
@@ -286,17 +288,24 @@ class Fdcan {
     return frame;
   }
 
-  /// Interrupts of line 0 for a received frame and for one that has been sent.
+  /// Interrupts of line 0 for a received frame, for one that has been sent, and for each change of error passive and
+  /// bus-off. In bus-off, the loop that they wake calls `status_change`, which starts the recovery.
   void enable_interrupts() {
-    interrupts_ = frame_received | Chip::sent;
+    interrupts_ = frame_received | Chip::sent | Chip::status;
     registers_.txbtie = (1u << layout.transmitted) - 1;
     registers_.common.ils = 0;
     registers_.common.ie = interrupts_;
     registers_.common.ile = 1;
   }
 
-  /// In the interrupt, before `receive` until there is no frame.
-  void acknowledge_interrupts() { registers_.common.ir = frame_received | Chip::sent; }
+  static constexpr bool has_status_interrupt = true;
+
+  /// In the interrupt, before `receive` until there is no frame. Returns whether it is one for the status.
+  bool acknowledge_interrupts() {
+    const bool status = (registers_.common.ir & Chip::status) != 0;
+    registers_.common.ir = frame_received | Chip::sent | Chip::status;
+    return status;
+  }
 
   /// Returns the status of the controller if it has changed since the last call. Call it in every cycle of the loop: it
   /// starts the recovery of a controller in bus-off, which takes 129 times 11 recessive bits.
