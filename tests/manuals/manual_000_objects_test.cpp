@@ -188,10 +188,10 @@ TEST(Manual000, AnAbortEndsATransferAndIsNotAnswered) {
   Drive drive;
   drive.ask("605 40 08 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 80 08 10 00 00 00 00 08"), "");
-  EXPECT_EQ(drive.ask("605 60 00 00 00 00 00 00 00"), "585 80 08 10 00 01 00 04 05");
+  EXPECT_EQ(drive.ask("605 60 00 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
   drive.ask("605 21 05 10 00 04 00 00 00");
   EXPECT_EQ(drive.ask("605 80 05 10 00 00 00 00 08"), "");
-  EXPECT_EQ(drive.ask("605 07 A2 00 00 00 00 00 00"), "585 80 05 10 00 01 00 04 05");
+  EXPECT_EQ(drive.ask("605 07 A2 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
   EXPECT_EQ(drive.node.get<od::cob_id_sync>(), 0x80u);
 }
 
@@ -200,7 +200,7 @@ TEST(Manual000, AToggleBitThatDoesNotAlternateEndsTheTransfer) {
   Drive drive;
   drive.ask("605 21 05 10 00 04 00 00 00");
   EXPECT_EQ(drive.ask("605 17 A2 00 00 00 00 00 00"), "585 80 05 10 00 00 00 03 05");
-  EXPECT_EQ(drive.ask("605 07 A2 00 00 00 00 00 00"), "585 80 05 10 00 01 00 04 05");
+  EXPECT_EQ(drive.ask("605 07 A2 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
   EXPECT_EQ(drive.node.get<od::cob_id_sync>(), 0x80u);
 }
 

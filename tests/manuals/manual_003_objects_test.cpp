@@ -136,7 +136,7 @@ TEST(Manual003, EndsATransferThatTheClientAborts) {
   DigitalOutputs module;
   module.ask("605 40 08 10 00 00 00 00 00");
   EXPECT_EQ(module.ask("605 80 08 10 00 00 00 00 08"), "");
-  EXPECT_EQ(module.ask("605 60 00 00 00 00 00 00 00"), "585 80 08 10 00 01 00 04 05");
+  EXPECT_EQ(module.ask("605 60 00 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
 }
 
 // Error control

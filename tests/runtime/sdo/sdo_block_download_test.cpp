@@ -183,7 +183,7 @@ TEST(SdoBlockDownload, ANewInitiateReplacesItWhenItsSegmentsAreThere) {
   device.ask("C6 0C 20 00 02 00 00 00");
   device.ask("81 48 69 00 00 00 00 00");
   EXPECT_EQ(device.ask("40 00 10 00 00 00 00 00"), "43 00 10 00 91 01 0F 00");
-  EXPECT_EQ(device.ask("D5 00 00 00 00 00 00 00"), "80 00 10 00 01 00 04 05");
+  EXPECT_EQ(device.ask("D5 00 00 00 00 00 00 00"), "80 00 00 00 01 00 04 05");
   EXPECT_EQ(device.store.get<od::visible_string_value>().view(), "hello");
 }
 

@@ -132,11 +132,11 @@ TEST(SdoBlockUpload, EndsWithAnAbortOfTheClientAndWithANewInitiate) {
   device.ask("A4 08 10 00 01 00 00 00");
   device.ask("A3 00 00 00 00 00 00 00");
   EXPECT_EQ(device.ask("80 08 10 00 00 00 00 08"), "");
-  EXPECT_EQ(device.ask("A2 01 7F 00 00 00 00 00"), "80 08 10 00 01 00 04 05");
+  EXPECT_EQ(device.ask("A2 01 7F 00 00 00 00 00"), "80 00 00 00 01 00 04 05");
   device.ask("A4 08 10 00 01 00 00 00");
   device.ask("A3 00 00 00 00 00 00 00");
   EXPECT_EQ(device.ask("40 00 10 00 00 00 00 00"), "43 00 10 00 91 01 0F 00");
-  EXPECT_EQ(device.ask("A2 01 7F 00 00 00 00 00"), "80 00 10 00 01 00 04 05");
+  EXPECT_EQ(device.ask("A2 01 7F 00 00 00 00 00"), "80 00 00 00 01 00 04 05");
 }
 
 struct WithTimeout : sample::Device {

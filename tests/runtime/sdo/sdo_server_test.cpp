@@ -53,7 +53,7 @@ TEST(SdoServer, AbortsASecondSegmentWithTheSameToggleBit) {
   device.ask("605 40 08 10 00 00 00 00 00");
   device.ask("605 60 00 00 00 00 00 00 00");
   EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 80 08 10 00 00 00 03 05");
-  EXPECT_EQ(device.ask("605 70 00 00 00 00 00 00 00"), "585 80 08 10 00 01 00 04 05");
+  EXPECT_EQ(device.ask("605 70 00 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
 
   device.ask("605 21 0C 20 00 0A 00 00 00");
   EXPECT_EQ(device.ask("605 10 41 42 43 44 45 46 47"), "585 80 0C 20 00 00 00 03 05");
@@ -70,13 +70,15 @@ TEST(SdoServer, NamesTheTransferThatAnUnknownCommandEnds) {
   Bench device;
   device.ask("605 40 08 10 00 00 00 00 00");
   EXPECT_EQ(device.ask("605 E0 00 20 01 00 00 00 00"), "585 80 08 10 00 01 00 04 05");
-  EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 80 08 10 00 01 00 04 05");
+  EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
 }
 
 TEST(SdoServer, AbortsSegmentsWithoutATransfer) {
   Bench device;
   EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
   EXPECT_EQ(device.ask("605 00 00 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
+  device.ask("605 40 18 10 01 00 00 00 00");
+  EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05") << "not of the last transfer";
 }
 
 TEST(SdoServer, AbortsSegmentsOfTheOtherDirection) {
@@ -92,7 +94,7 @@ TEST(SdoServer, ANewInitiateReplacesATransfer) {
   device.ask("605 21 0C 20 00 08 00 00 00");
   device.ask("605 00 41 42 43 44 45 46 47");
   EXPECT_EQ(device.ask("605 40 00 10 00 00 00 00 00"), "585 43 00 10 00 91 01 0F 00");
-  EXPECT_EQ(device.ask("605 1D 48 00 00 00 00 00 00"), "585 80 00 10 00 01 00 04 05");
+  EXPECT_EQ(device.ask("605 1D 48 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
   EXPECT_EQ(device.node.get<od::visible_string_value>().view(), "hello");
 }
 
@@ -100,7 +102,7 @@ TEST(SdoServer, AnAbortOfTheClientEndsATransferWithoutAnAnswer) {
   Bench device;
   device.ask("605 40 08 10 00 00 00 00 00");
   EXPECT_EQ(device.ask("605 80 08 10 00 00 00 00 08"), "");
-  EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 80 08 10 00 01 00 04 05");
+  EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
 }
 
 TEST(SdoServer, IgnoresFramesThatAreNotEightBytesLongOrRemote) {
@@ -125,7 +127,7 @@ TEST(SdoServer, StoppingEndsATransfer) {
   device.ask("605 40 08 10 00 00 00 00 00");
   device.ask(bench::stop);
   device.ask(bench::enter_pre_operational);
-  EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 80 08 10 00 01 00 04 05");
+  EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
 }
 
 TEST(SdoServer, KeepsItsAnswerUntilTheBusHasRoom) {

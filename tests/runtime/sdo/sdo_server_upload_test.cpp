@@ -98,6 +98,16 @@ TEST(SdoServer, ANumberIsUploadedAsItWasAtTheBeginning) {
   EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 00 08 07 06 05 04 03 02");
 }
 
+TEST(SdoServer, AStringIsUploadedAsItWasAtTheBeginning) {
+  Bench device;
+  device.node.set<od::visible_string_value>("AAAAAAAAAA");
+  EXPECT_EQ(device.ask("605 40 0C 20 00 00 00 00 00"), "585 41 0C 20 00 0A 00 00 00");
+  EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00"), "585 00 41 41 41 41 41 41 41");
+  device.node.set<od::visible_string_value>("BBBB");
+  EXPECT_EQ(device.ask("605 70 00 00 00 00 00 00 00"), "585 19 41 41 41 00 00 00 00");
+  EXPECT_EQ(device.ask("605 40 0C 20 00 00 00 00 00"), "585 43 0C 20 00 42 42 42 42");
+}
+
 // shows 000.27
 TEST(SdoServer, UploadsTimeOfDay) {
   Bench device;

@@ -19,9 +19,9 @@ namespace canopen {
 /// most one response of eight bytes until it has been sent. During a block upload the next segment is ready as soon as
 /// the one before has been sent: a node sends responses until none is left or its bus is full.
 ///
-/// Strings and DOMAINs are uploaded in place: changes by the application during the transfer are sent. Numbers are
-/// sampled at the start of the upload. A download is written when it is complete; only a DOMAIN is filled as bytes
-/// arrive, and is empty until its last byte has arrived.
+/// Numbers and strings are sampled at the start of the upload. DOMAINs are uploaded in place: changes by the
+/// application during the transfer are sent. A download is written when it is complete; only a DOMAIN is filled as
+/// bytes arrive, and is empty until its last byte has arrived.
 ///
 /// Block transfer is compiled in with `Device::options.sdo_block_transfer`; otherwise its initiate is aborted with 0504
 /// 0001h. A new initiate ends the previous transfer, except during the segments of a block download, from which it
@@ -110,6 +110,7 @@ class SdoServer {
   static constexpr bool has_block = Device::options.sdo_block_transfer;
 
   [[nodiscard]] AbortCode handle(const sdo::Data& request, auto& hooks) {
+    if (transfer_.state() == State::idle) transfer_.forget();
     if constexpr (has_block) {
       if (takes_segments() && request[0] != sdo::abort_command) return Blocks::take_segment(request, transfer_, hooks);
     }

@@ -29,7 +29,7 @@ class SdoServerBlocks {
       transfer.answer_upload();
       return ok;
     }
-    transfer.hold_number();
+    transfer.hold_value();
     transfer.progress().begin(request[0]);
     transfer.enter(State::block_upload_initiated);
     transfer.answer_with_size(sdo::block_upload_answer | sdo::crc_supported, sdo::block_size_indicated);

@@ -48,6 +48,9 @@ class SdoServerTransfer {
     multiplexer_ = sdo::multiplexer_of(request);
   }
 
+  /// No transfer is running: an abort contains 0000h:00.
+  void forget() { multiplexer_ = 0; }
+
   [[nodiscard]] State state() const { return state_; }
   void enter(State next) { state_ = next; }
 
@@ -105,12 +108,14 @@ class SdoServerTransfer {
   /// Returns the number of bytes to send; `unknown_size` if the application streams them.
   [[nodiscard]] std::uint32_t size() const { return size_; }
 
-  /// Copies a number that is sent in several frames, so that it does not change.
-  void hold_number() {
-    if constexpr (!has_long_numbers) return;
-    if (entry::class_of(word_) == entry::Class::special || bytes_ == buffer_.data()) return;
-    copy_bytes(buffer_.data(), bytes_, size_);
-    bytes_ = buffer_.data();
+  /// Copies a number or a string that is sent in several frames, so that it does not change.
+  void hold_value() {
+    if constexpr (has_long_numbers || longest_string != 0) {
+      const bool is_number = entry::class_of(word_) != entry::Class::special;
+      if (!(is_number || is_string_in_ram(word_)) || bytes_ == buffer_.data()) return;
+      copy_bytes(buffer_.data(), bytes_, size_);
+      bytes_ = buffer_.data();
+    }
   }
 
   /// Sets the response to an initiate: the value, if it fits; otherwise its size, and segments are requested next.
@@ -120,7 +125,7 @@ class SdoServerTransfer {
       copy_bytes(&reply_[4], bytes_, size_);
       return;
     }
-    hold_number();
+    hold_value();
     state_ = State::uploading;
     answer_with_size(0x40, sdo::size_indicated);
   }
@@ -297,6 +302,22 @@ class SdoServerTransfer {
     });
   }();
 
+  [[nodiscard]] static constexpr bool is_string_in_ram(entry::Word word) {
+    return entry::is_string(word) && entry::place_of(word) == entry::Place::ram;
+  }
+
+  /// The longest string in RAM that can be read, in bytes.
+  static constexpr std::size_t longest_string = [] {
+    std::size_t longest = 0;
+    const Dictionary& dictionary = Device::dictionary;
+    for (const Limits& row : dictionary.limits) {
+      const entry::Word word =
+          dictionary.find(static_cast<std::uint16_t>(row.key >> 8), static_cast<std::uint8_t>(row.key & 0xFF));
+      if (is_string_in_ram(word) && (word & entry::readable) != 0) longest = std::max<std::size_t>(longest, row.high);
+    }
+    return longest;
+  }();
+
   /// Whether there are numbers of more than four bytes, or BOOLEANs, which `answer_number` cannot send.
   static constexpr bool has_long_numbers =
       EntryAccess<Device>::kinds.wide_numbers || EntryAccess<Device>::kinds.booleans;
@@ -394,7 +415,7 @@ class SdoServerTransfer {
   std::uint32_t size_ = 0;         ///< upload: bytes of the value; download: bytes that are accepted
   std::uint32_t position_ = 0;     ///< of the next byte
   alignas(4) sdo::Data reply_{};
-  alignas(4) std::array<std::uint8_t, buffer_bytes> buffer_{};
+  alignas(4) std::array<std::uint8_t, std::max(buffer_bytes, longest_string)> buffer_{};
 };
 
 }  // namespace canopen
