@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <rk5c/device.hpp>
 #include <sample/device.hpp>
 #include <string>
@@ -40,6 +41,29 @@ TEST(ObjectStore, BeginsWithTheDefaultValues) {
   EXPECT_EQ(store.get<od::profile_acceleration>(), 1000u);
   EXPECT_EQ(store.get<od::visible_string_value>().view(), "hello");
   EXPECT_EQ(store.get<od::filter::time_constant>(), 1000u);
+}
+
+/// Returns a value whose padding, and whose bytes after the end of a string, are all `filler`.
+template <class T>
+T padded(const T& value, std::uint8_t filler, std::size_t used) {
+  T other;
+  std::memset(static_cast<void*>(&other), filler, sizeof other);
+  std::memcpy(static_cast<void*>(&other), &value, used);
+  return other;
+}
+
+TEST(ObjectStore, EqualValuesAreEqualWhateverTheirPadding) {
+  Store store = fresh();
+  const canopen::TimeOfDay time{0x0ABCDEF0, 0x1234};
+  EXPECT_TRUE(store.set<od::time_of_day_value>(padded(time, 0x00, 6)));
+  EXPECT_FALSE(store.set<od::time_of_day_value>(padded(time, 0xFF, 6)));
+  EXPECT_TRUE(store.set<od::time_of_day_value>(canopen::TimeOfDay{0x0ABCDEF0, 0x1235}));
+  using Text = od::visible_string_value::type;
+  const Text text{"abc"};
+  EXPECT_TRUE(store.set<od::visible_string_value>(padded(text, 0x00, 5)));
+  EXPECT_FALSE(store.set<od::visible_string_value>(padded(text, 0xFF, 5)));
+  EXPECT_TRUE(store.set<od::visible_string_value>(Text{"ab"}));
+  EXPECT_TRUE(store.set<od::visible_string_value>(Text{"ac"}));
 }
 
 TEST(ObjectStore, AddsTheNodeIdToCobIds) {

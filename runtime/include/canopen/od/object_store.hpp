@@ -46,7 +46,7 @@ class ObjectStore {
   bool set(const typename O::type& value) {
     constexpr entry::Word word = word_of<O>();
     static_assert(entry::place_of(word) == entry::Place::ram, "a constant of the EDS cannot be set");
-    const bool changed = std::memcmp(ram() + entry::offset_of(word), &value, sizeof value) != 0;
+    const bool changed = !holds(ram() + entry::offset_of(word), value);
     std::memcpy(std::assume_aligned<alignof(typename O::type)>(ram() + entry::offset_of(word)), &value, sizeof value);
     return changed;
   }
@@ -107,6 +107,22 @@ class ObjectStore {
     T value;
     std::memcpy(&value, std::assume_aligned<alignof(T)>(base + Offset), sizeof value);
     return value;
+  }
+
+  /// Whether the memory of an object has this value. Padding is not compared, nor bytes of a string after its end.
+  template <class T>
+  [[nodiscard]] static bool holds(const std::uint8_t* own, const T& value) {
+    if constexpr (std::is_class_v<T> && !std::is_same_v<T, Domain>) {
+      T present;
+      std::memcpy(&present, own, sizeof present);
+      if constexpr (requires { value.bytes; }) {
+        return present.size == value.size && std::memcmp(present.bytes.data(), value.bytes.data(), value.size) == 0;
+      } else {
+        return present == value;
+      }
+    } else {
+      return std::memcmp(own, &value, sizeof value) == 0;
+    }
   }
 
   /// Calls `visit(offset)` for each DOMAIN of the dictionary.
