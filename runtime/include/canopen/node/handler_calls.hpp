@@ -18,12 +18,9 @@ class HandlerCalls {
   template <class Ask>
   [[nodiscard]] auto ask([[maybe_unused]] std::uint32_t written, Ask&& ask) {
     if constexpr (exist) {
-      state_.key = written;
-      state_.active = true;
       state_.has_set = false;
-      const auto answer = ask();
-      state_.active = false;
-      return answer;
+      const Call<false> call{state_, written};
+      return ask();
     } else {
       return ask();
     }
@@ -32,12 +29,8 @@ class HandlerCalls {
   /// Calls the read handlers of an object for a TPDO.
   template <class Ask>
   void ask_for_tpdo(std::uint32_t key, Ask&& ask) requires(exist) {
-    state_.key = key;
-    state_.active = true;
-    state_.for_tpdo = true;
+    const Call<true> call{state_, key};
     ask();
-    state_.for_tpdo = false;
-    state_.active = false;
   }
 
   /// Whether an object is set by its own read handler for a TPDO.
@@ -85,6 +78,26 @@ class HandlerCalls {
     std::uint8_t deferred;  ///< the NMT command that it has requested; 0: none
   };
   struct NoState {};
+
+  /// A call of handlers, which also ends if one of them throws an exception, as on a host.
+  template <bool for_tpdo>
+  class Call {
+   public:
+    Call(State& state, std::uint32_t key) : state_{state} {
+      state_.key = key;
+      state_.active = true;
+      if constexpr (for_tpdo) state_.for_tpdo = true;
+    }
+    ~Call() {
+      if constexpr (for_tpdo) state_.for_tpdo = false;
+      state_.active = false;
+    }
+    Call(const Call&) = delete;
+    Call& operator=(const Call&) = delete;
+
+   private:
+    State& state_;
+  };
 
   [[no_unique_address]] std::conditional_t<exist, State, NoState> state_{};
 };
