@@ -117,6 +117,7 @@ TEST(Emcy, HasNoRestrictedCanId) {
   EXPECT_EQ(device.ask("605 23 14 10 00 00 08 00 00"), "585 80 14 10 00 30 00 09 06");
   EXPECT_EQ(device.ask("605 23 14 10 00 00 00 00 80"), "585 60 14 10 00 00 00 00 00");
   EXPECT_EQ(device.ask("605 23 14 10 00 00 00 00 00"), "585 80 14 10 00 30 00 09 06");
+  EXPECT_EQ(device.ask("605 23 14 10 00 80 00 00 00"), "585 80 14 10 00 30 00 09 06") << "a SYNC for all others";
   EXPECT_EQ(device.ask("605 23 14 10 00 00 07 00 00"), "585 60 14 10 00 00 00 00 00");
 }
 

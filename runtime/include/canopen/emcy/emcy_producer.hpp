@@ -79,8 +79,8 @@ class EmergencyProducer {
 
   /// Checks whether these bytes may be written to 1014h or 1015h (CiA 301, 7.5.2.17 and 7.5.2.18). Bits of 1014h that
   /// the device does not allow to change are restored in `bytes`.
-  ///   0609 0030h  1014h: the CAN-ID changes while EMCY is valid, is a restricted one, also if the device keeps some
-  ///               of its bits, or has 29 bits although the device supports 11; bit 30 is 1.
+  ///   0609 0030h  1014h: the CAN-ID changes while EMCY is valid, is that of SYNC or a restricted one, also if the
+  ///               device keeps some of its bits, or has 29 bits although the device supports 11; bit 30 is 1.
   ///               1015h: not a multiple of the device's step
   ///   0604 0047h  in the EDS, the object does not have the type of CiA 301
   [[nodiscard]] static AbortCode check(EntryAccess<Device> entries, std::uint16_t index,
@@ -100,6 +100,7 @@ class EmergencyProducer {
     const CobId after = written_cob_id(before, Device::options.emcy_cob_id_writable, bytes);
     constexpr std::uint32_t reserved_bit = 0x4000'0000;
     if ((after.value() & reserved_bit) != 0) return AbortCode::invalid_value;
+    if (after.value() == function_code::sync) return AbortCode::invalid_value;
     if constexpr (Device::options.emcy_cob_id_writable != 0xFFFF'FFFF) {
       if (after.valid() && !is_usable(written.value() & CobId::identifier)) return AbortCode::invalid_value;
     }
