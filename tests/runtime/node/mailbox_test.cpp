@@ -39,6 +39,21 @@ TEST(Mailbox, TheNodeIsDueWhileAValueWaits) {
   EXPECT_EQ(device.node.next_deadline(), std::nullopt);
 }
 
+/// A loop sleeps while nothing is pending or due, also without node-ID.
+TEST(Mailbox, AValueForANodeWithoutNodeIdIsSetAndNotLost) {
+  Mailbox<od::statusword> mailbox;
+  bench::RecordingBus bus;
+  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{}, values_from(mailbox));
+  node.start(TimePoint{});
+  mailbox.post<od::statusword>(0x1234);
+  EXPECT_EQ(node.next_deadline(), TimePoint{});
+  node.on_time(TimePoint{});
+  EXPECT_FALSE(mailbox.pending());
+  EXPECT_EQ(node.next_deadline(), std::nullopt);
+  EXPECT_EQ(node.get<od::statusword>(), 0x1234);
+  EXPECT_EQ(bus.take(), "");
+}
+
 TEST(Mailbox, TheLatestValueReplacesThoseBefore) {
   Mailbox<od::statusword> mailbox;
   auto device = bench::with(values_from(mailbox));
