@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <canopen/host/memory_storage.hpp>
 #include <canopen/node/locked.hpp>
 #include <canopen/node/mailbox.hpp>
 #include <canopen/storage/background_storage.hpp>
@@ -96,6 +97,25 @@ TEST(Start, MayReportAnErrorAndConfigureTheNode) {
   EXPECT_EQ(node.state(), NmtState::pre_operational) << "a command in Initialisation has no effect";
   node.on_time(TimePoint{100ms});
   EXPECT_EQ(bus.take(), "705 7F");
+}
+
+TEST(Start, SeesStoredValues) {
+  canopen::MemoryStorage storage;
+  bench::RecordingBus bus;
+  {
+    auto node = canopen::make_node<rk5c::Device>(bus, NodeId{5}, canopen::stored_in(storage));
+    node.start(TimePoint{});
+    node.set(od::cyclic_timer{}, 9);
+    ASSERT_EQ(node.save(), canopen::ok);
+  }
+  std::uint16_t seen = 0;
+  auto node = canopen::make_node<rk5c::Device>(bus, NodeId{5}, canopen::stored_in(storage),
+                                               canopen::on_start([&](auto& starting) {
+                                                 seen = starting.get(od::cyclic_timer{});
+                                                 EXPECT_EQ(starting.save(), canopen::ok);
+                                               }));
+  node.start(TimePoint{});
+  EXPECT_EQ(seen, 9);
 }
 
 TEST(Start, IsCalledForEachHandlerInTheirOrder) {
@@ -212,6 +232,28 @@ TEST(Periodic, DoesNotDependOnNodeIdAndState) {
     device.pass(10ms);
     EXPECT_NE(std::ranges::count(take(device), "10 ms at " + at(device.now)), 0) << command;
   }
+}
+
+/// CiA 305: a node sends nothing while its bit rate is being switched.
+TEST(Periodic, IsCalledWhileTheBitRateIsSwitched) {
+  struct Port {
+    [[nodiscard]] canopen::LssBitTiming bit_timing() const { return {}; }
+    [[nodiscard]] canopen::LssError accept(NodeId) const { return canopen::lss::success; }
+    [[nodiscard]] canopen::LssError accept(canopen::LssBitTiming) const { return canopen::lss::success; }
+    [[nodiscard]] canopen::LssError store(NodeId, canopen::LssBitTiming) const { return canopen::lss::success; }
+    void stop_communication() {}
+    void start_communication(canopen::LssBitTiming) {}
+  };
+  Port port;
+  auto device = bench::with<rk5c::Device>(canopen::configured_by_lss<rk5c::Device::lss_options>(port), Sensor{});
+  device.ask("7E5 04 01 00 00 00 00 00 00");
+  EXPECT_EQ(device.ask("7E5 13 00 04 00 00 00 00 00"), "7E4 13 00 00 00 00 00 00 00");
+  device.ask("7E5 15 64 00 00 00 00 00 00");  // 100 ms
+  Calls& calls = device.node.application<Sensor>().calls;
+  calls.clear();
+  device.ask("605 40 00 10 00 00 00 00 00");
+  EXPECT_EQ(device.pass(50ms), "");
+  EXPECT_EQ(calls.size(), 7u);
 }
 
 TEST(Periodic, SendsWhatItCausesAtOnce) {

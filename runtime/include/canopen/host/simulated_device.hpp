@@ -20,7 +20,8 @@
 ///       std::uint16_t speed_ = 0;
 ///     };
 ///
-/// Instead of such functions, it may have `auto handlers()`, which returns a tuple of on_write(), on_read(), ...
+/// Instead of such functions, it may have `auto handlers()`, which returns a tuple of on_write(), on_read(), ...; the
+/// functions of the class itself are called if application_at(*this) is one of them.
 ///
 /// A device whose dictionary has 1010h or 1011h gets a storage in memory, and one with LSS a port that stores node-ID
 /// and bit rate, where the handlers do not bring their own.

@@ -328,7 +328,11 @@ template <class A, class Node>
     return true;
   } else {
     constexpr bool without_period = requires(A & application) { Every::call(application); };
-    constexpr bool others = without_period || takes_first<Every, A, NoPeriod> ||
+    // A template of periods, which the search does not find, accepts each period.
+    using Unlikely = Microseconds<1'799'999'983>;
+    constexpr bool for_all =
+        takes_first<Every, A, Unlikely> && !takes_first<Every, A, PeriodIn<1'799'999'983, 1'799'999'983>>;
+    constexpr bool others = without_period || for_all || takes_first<Every, A, NoPeriod> ||
                             !none_fits<Every, A, AnyReference, AnyReference, AnyReference>;
     constexpr bool have_periods = takes_first<Every, A, AnyPeriod> && !others;
     constexpr auto check_each = []<class... P>(PeriodList<P...>) {
