@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
 #include "commands/commands.hpp"
 #include "compare/compare_devices.hpp"
 #include "compare/print_changes.hpp"
+#include "compare/stored_values.hpp"
 #include "load/load_device.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
@@ -21,7 +24,8 @@ constexpr const char* examples = R"(Examples:
   edsc diff drive-1.0.eds drive-1.1.eds --format json    the same for a program
   edsc diff drive.eds axis1.dcf --node-id 5              a DCF against its EDS, both as node 5
   edsc diff --against git:main drive.eds --format markdown    a comment for a pull request
-  edsc diff --against git:HEAD --fail-on any eds/*.eds   exit code 1 if a device differs from its commit)";
+  edsc diff --against git:HEAD --fail-on any eds/*.eds   exit code 1 if a device differs from its commit
+  edsc diff drive-1.0.eds drive-1.1.eds --storage        what becomes of the parameters that a device has stored)";
 
 struct Settings {
   std::vector<std::string> files;
@@ -32,6 +36,7 @@ struct Settings {
   std::optional<std::uint8_t> node_id;
   bool allow_new = false;
   bool keep_going = false;
+  bool storage = false;
   ColorOption color;
 };
 
@@ -40,6 +45,7 @@ struct Pair {
   std::unique_ptr<LoadedDevice> before;
   std::unique_ptr<LoadedDevice> after;
   Changes changes;
+  std::vector<StoredValueChange> stored_values;
 };
 
 /// Null if the device cannot be compared; the errors are printed.
@@ -115,13 +121,42 @@ void check_files(const Settings& settings) {
   if (settings.against.empty() && settings.allow_new) throw CLI::RequiresError("--allow-new", "--against");
 }
 
+void compare(Pair& pair) {
+  if (!pair.before) return;
+  pair.changes = compare_devices(*pair.before->device, *pair.after->device);
+  pair.stored_values = compare_stored_values({*pair.before->device, pair.before->options},
+                                             {*pair.after->device, pair.after->options});
+  add_lost_values(pair.stored_values, pair.changes);
+}
+
+/// The fate of the stored values alone.
+int diff_storage(const Settings& settings, std::vector<Pair>& pairs) {
+  std::vector<StoredValueChange> all;
+  for (Pair& pair : pairs) {
+    compare(pair);
+    std::ranges::move(pair.stored_values, std::back_inserter(all));
+  }
+  if (settings.format == "json") {
+    fmt::print("{}\n", json_text(stored_values_as_json(all)));
+  } else {
+    fmt::print("{}", settings.format == "text" ? stored_values_as_text(all) : stored_values_as_markdown(all));
+  }
+  const auto is_lost = [](const StoredValueChange& value) { return value.fate != StoredFate::kept; };
+  const auto may_be_lost = [](const StoredValueChange& value) { return !value.why.empty(); };
+  const bool fails = settings.fail_on == "any"        ? std::ranges::any_of(all, may_be_lost)
+                     : settings.fail_on == "breaking" ? std::ranges::any_of(all, is_lost)
+                                                      : false;
+  return fails ? exit_input_has_errors : exit_fine;
+}
+
 int diff(const Settings& settings) {
   check_files(settings);
   auto pairs = load_pairs(settings);
   if (!pairs) return exit_wrong_usage;
+  if (settings.storage) return diff_storage(settings, *pairs);
   Changes all;
   for (Pair& pair : *pairs) {
-    if (pair.before) pair.changes = compare_devices(*pair.before->device, *pair.after->device);
+    compare(pair);
     pair.changes.keep(audience_of(settings));
     if (&pair != &pairs->front() && settings.format == "markdown") fmt::print("\n");
     print(pair, settings);
@@ -153,6 +188,8 @@ void add_diff_options(CLI::App& command, int& exit_code) {
   add_choice(command, "--audience", settings.audience, {"all", "wire", "source"},
              "whose breaking changes to report: all, wire (masters, PDO partners) or source (C++ code)");
   add_choice(command, "--fail-on", settings.fail_on, {"breaking", "any", "never"}, "changes that cause exit code 1");
+  command.add_flag("--storage", settings.storage,
+                   "list which stored parameters a device keeps that gets the new version, and which are converted or dropped");
   add_node_id_option(command, settings.node_id);
   command.add_flag("--keep-going", settings.keep_going, "compare despite errors; what is wrong is left out");
   settings.color.add_to(command);

@@ -12,6 +12,7 @@
 #include "format/dcf/make_dcf.hpp"
 #include "format/dcf/move_values.hpp"
 #include "format/sheet_document.hpp"
+#include "format/storage_locations.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -33,11 +34,13 @@ constexpr const char* examples = R"(Examples:
   edsc format axis1.dcf --dcf --node-id 7 -o axis2.dcf     the same configuration for node 7
   edsc format drive.xdd -o drive.eds                       an EDS from an XDD
   edsc format axis1.xdc -o axis1.dcf                       a DCF from an XDC
-  edsc format axis1.dcf --concise -o axis1.bin             the concise DCF for a master (object 1F22h))";
+  edsc format axis1.dcf --concise -o axis1.bin             the concise DCF for a master (object 1F22h)
+  edsc format node.eds --write-options node.options.json   the storage groups of an EDS of CANopenNode, as options)";
 
 struct Settings {
   std::vector<std::string> paths;
   std::string output;
+  std::string options;
   std::optional<std::uint8_t> node_id;
   bool check = false;
   bool in_place = false;
@@ -147,6 +150,14 @@ void write(const Settings& settings, const SourceFile& source, const std::string
   }
 }
 
+/// Writes the options file that the comments of CANopenNode result in.
+int write_options(const Settings& settings, const std::string& path, const Input& input) {
+  const nlohmann::ordered_json options = storage_options(input.ini, input.device, {});
+  if (options.is_null()) fail(path + ": no comment ;StorageLocation= in a section of an entry");
+  write_output(settings.options, options.dump(2) + "\n", {path});
+  return exit_fine;
+}
+
 int format_file(const Settings& settings, const std::string& path) {
   Input input;
   std::string error;
@@ -172,6 +183,7 @@ int format_file(const Settings& settings, const std::string& path) {
   }
   print_findings(stderr, diagnostics, settings.color);
   if (diagnostics.errors() > 0) return exit_input_has_errors;
+  if (!settings.options.empty()) return write_options(settings, path, input);
   if (settings.check) return check(*input.file, content);
   write(settings, *input.file, settings.in_place ? path : settings.output, std::move(content));
   return exit_fine;
@@ -218,8 +230,12 @@ void add_format_options(CLI::App& command, int& exit_code) {
   auto* all = command.add_flag("--all", settings.all, "with --dcf: a ParameterValue for each writable entry");
   auto* concise = command.add_flag("--concise", settings.concise,
                                    "write the concise DCF: what differs from the defaults, as object 1F22h holds it");
+  auto* options = command.add_option("--write-options", settings.options,
+                                     "write no EDS, but the options file with the storage groups of its comments "
+                                     ";StorageLocation= (CANopenNode)");
   add_node_id_option(command, settings.node_id);
   settings.color.add_to(command);
+  options->excludes(output)->excludes(in_place)->excludes(check)->excludes(dcf)->excludes(concise);
   check->excludes(output)->excludes(dcf)->excludes(concise)->excludes(in_place);
   in_place->excludes(output)->excludes(dcf)->excludes(concise);
   dcf->excludes(concise)->needs("--node-id");

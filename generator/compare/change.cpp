@@ -105,13 +105,17 @@ constexpr std::array kinds = {
                "the partner reads other values from the frame"},
     ChangeKind{pdo_layout_extended, "pdo-layout-extended", none, none, none, "layout",
                "all values that were in the frame keep their position"},
+    // Stored parameters.
+    ChangeKind{stored_value_lost, "stored-value-lost", none, none, none, "stored value:",
+               "a device that has stored it starts with the default value and sends EMCY 6300h, unless its application "
+               "converts the value"},
 };
 
 constexpr bool stands_in_order() {
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     if (static_cast<std::size_t>(kinds[i].id) != i) return false;
   }
-  return kinds.size() == static_cast<std::size_t>(pdo_layout_extended) + 1;
+  return kinds.size() == static_cast<std::size_t>(stored_value_lost) + 1;
 }
 static_assert(stands_in_order(), "the table has a row for each ChangeId, in its order");
 
@@ -144,7 +148,8 @@ Change& Changes::add(ChangeId id, std::string entry, std::string name, const Pos
                                   new_position,
                                   kind.breaks_master,
                                   kind.breaks_pdo,
-                                  kind.breaks_source});
+                                  kind.breaks_source,
+                                  id == ChangeId::stored_value_lost});
 }
 
 void Changes::keep(Audience audience) {
@@ -153,6 +158,7 @@ void Changes::keep(Audience audience) {
     const bool was_breaking = change.is_breaking();
     (audience == Audience::wire ? change.breaks_source : change.breaks_master) = false;
     if (audience == Audience::source) change.breaks_pdo = false;
+    change.breaks_storage = false;
     return was_breaking && !change.is_breaking();
   });
 }

@@ -61,6 +61,7 @@ enum class ChangeId : std::uint8_t {
   pdo_timing,
   pdo_layout,
   pdo_layout_extended,
+  stored_value_lost,
 };
 
 struct ChangeKind {
@@ -88,8 +89,9 @@ struct Change {
   bool breaks_master = false;
   bool breaks_pdo = false;
   bool breaks_source = false;
+  bool breaks_storage = false;  ///< parameters that the device has stored are not loaded
 
-  [[nodiscard]] bool is_breaking() const { return breaks_master || breaks_pdo || breaks_source; }
+  [[nodiscard]] bool is_breaking() const { return breaks_master || breaks_pdo || breaks_source || breaks_storage; }
 };
 
 /// The property, its old and new value, and the consequence, in one sentence.

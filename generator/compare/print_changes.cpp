@@ -13,22 +13,12 @@
 namespace edsc {
 namespace {
 
-std::string place_text(const Position& position) {
-  const std::string file = position.file != nullptr ? position.file->name() : "";
-  return position.line == 0 ? file : fmt::format("{}:{}", file, position.line);
-}
-
-nlohmann::ordered_json place_json(const Position& position) {
-  return {{"file", position.file != nullptr ? position.file->name() : ""},
-          {"line", position.line},
-          {"column", position.line == 0 ? 0 : position.column}};
-}
-
 std::vector<std::string_view> broken_by(const Change& change) {
   std::vector<std::string_view> broken;
   if (change.breaks_master) broken.push_back("master");
   if (change.breaks_pdo) broken.push_back("PDO partner");
   if (change.breaks_source) broken.push_back("source code");
+  if (change.breaks_storage) broken.push_back("stored values");
   return broken;
 }
 
@@ -57,6 +47,7 @@ nlohmann::ordered_json change_json(const Change& change) {
   if (change.breaks_master) breaks.push_back("master");
   if (change.breaks_pdo) breaks.push_back("pdo");
   if (change.breaks_source) breaks.push_back("source");
+  if (change.breaks_storage) breaks.push_back("storage");
   return {{"kind", kind_of(change.id).name},
           {"entry", change.entry},
           {"name", change.name},
@@ -64,11 +55,22 @@ nlohmann::ordered_json change_json(const Change& change) {
           {"new", text_or_null(change.new_value)},
           {"breaks", std::move(breaks)},
           {"message", message_of(change)},
-          {"old_position", place_json(change.old_position)},
-          {"new_position", place_json(change.new_position)}};
+          {"old_position", json_of_place(change.old_position)},
+          {"new_position", json_of_place(change.new_position)}};
 }
 
 }  // namespace
+
+std::string text_of_place(const Position& position) {
+  const std::string file = position.file != nullptr ? position.file->name() : "";
+  return position.line == 0 ? file : fmt::format("{}:{}", file, position.line);
+}
+
+nlohmann::ordered_json json_of_place(const Position& position) {
+  return {{"file", position.file != nullptr ? position.file->name() : ""},
+          {"line", position.line},
+          {"column", position.line == 0 ? 0 : position.column}};
+}
 
 std::string verdict_text(const Change& change) {
   const std::vector<std::string_view> broken = broken_by(change);
@@ -87,9 +89,9 @@ std::string changes_as_text(const Changes& changes, bool colour) {
     const std::string_view start = !colour ? "" : change.is_breaking() ? "\x1B[1;31m" : "\x1B[1;32m";
     const std::string name = change.name.empty() ? "" : fmt::format(" \"{}\"", change.name);
     text +=
-        fmt::format("{}: {}{}{}: {}{}: {} [{}] (was {})\n", printable(place_text(change.new_position)), start,
+        fmt::format("{}: {}{}{}: {}{}: {} [{}] (was {})\n", printable(text_of_place(change.new_position)), start,
                     verdict_text(change), colour ? "\x1B[0m" : "", change.entry, printable(name),
-                    printable(message_of(change)), kind_of(change.id).name, printable(place_text(change.old_position)));
+                    printable(message_of(change)), kind_of(change.id).name, printable(text_of_place(change.old_position)));
   }
   return text +
          fmt::format("{} breaking, {} compatible\n", changes.breaking(), changes.all().size() - changes.breaking());

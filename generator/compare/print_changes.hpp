@@ -9,6 +9,11 @@
 
 namespace edsc {
 
+/// `drive.eds:12`; the file alone if the position is the whole file.
+[[nodiscard]] std::string text_of_place(const Position& position);
+/// `{"file", "line", "column"}`
+[[nodiscard]] nlohmann::ordered_json json_of_place(const Position& position);
+
 /// `breaks master and PDO partner`, or `compatible`.
 [[nodiscard]] std::string verdict_text(const Change& change);
 

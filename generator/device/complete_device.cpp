@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <canopen/can/cob_id.hpp>
 #include <canopen/pdo/pdo_parameters.hpp>
+#include <canopen/storage/parameter_ranges.hpp>
 
 #include "device/cob_id_parameter.hpp"
 #include "device/index_range.hpp"
@@ -39,6 +40,8 @@ struct StorageCapability {
 };
 constexpr StorageCapability storage_capabilities[] = {{0x1010, 0x3, "7.5.2.13"}, {0x1011, 0x1, "7.5.2.14"}};
 constexpr std::uint64_t on_command = 1;
+constexpr std::uint64_t autonomously = 2;
+constexpr std::uint16_t store_parameters = 0x1010;
 
 std::string spelled(const Value& value) {
   if (value.plus_node_id) return fmt::format("$NODEID+0x{:X}", value.bits);
@@ -54,7 +57,8 @@ bool holds(const Entry& entry, std::uint64_t bits) {
 
 class Completion {
  public:
-  Completion(Device& device, Diagnostics& diagnostics) : device_{device}, diagnostics_{diagnostics} {}
+  Completion(Device& device, const Options& options, Diagnostics& diagnostics)
+      : device_{device}, options_{options}, diagnostics_{diagnostics} {}
 
   void complete() {
     for (Object& object : device_.objects) {
@@ -178,11 +182,47 @@ class Completion {
   void complete_storage_capability(Entry& entry, const Object& object) {
     const auto row = std::ranges::find(storage_capabilities, entry.index, &StorageCapability::index);
     if (row == std::end(storage_capabilities) || (object.has_sub_indices() && entry.sub_index == 0)) return;
-    if (!entry.default_value || (entry.default_value->bits & ~row->bits) == 0 || !holds(entry, on_command)) return;
+    if (!holds(entry, on_command)) return;
+    if (!entry.default_value) {
+      if (!stores_entries(entry.sub_index)) return;
+      diagnostics_.warning("storage-default", entry.position,
+                           fmt::format("{} has no default value; using {}, on command ({})", named(entry), on_command,
+                                       by(row->clause)));
+      return set(entry, on_command, row->clause);
+    }
+    complete_autonomous_storage(entry, row->clause);
+    if ((entry.default_value->bits & ~row->bits) == 0) return complete_unassigned_storage(entry);
     diagnostics_.warning("storage-capability", entry.default_value->position,
                          fmt::format("{} is 0x{:X}, but only the bits 0x{:X} are defined; using {}, on command",
                                      named(entry), entry.default_value->bits, row->bits, on_command));
     set(entry, on_command, row->clause);
+  }
+
+  /// Whether entries are assigned to a sub-index of 1010h and 1011h, by CiA 301 or by the options.
+  [[nodiscard]] bool stores_entries(std::uint8_t sub_index) const {
+    if (sub_index < canopen::first_group_sub_index) return true;
+    return std::ranges::any_of(options_.stored_by, [&](const auto& row) { return row.second == sub_index; });
+  }
+
+  /// A node stores when it gets the command; what the application stores by itself is known from the options.
+  void complete_autonomous_storage(Entry& entry, std::string_view clause) {
+    const std::uint64_t bits = entry.default_value->bits;
+    if (entry.index != store_parameters || bits > (on_command | autonomously) || (bits & autonomously) == 0) return;
+    if (std::ranges::find(options_.autonomous_storage, entry.sub_index) != options_.autonomous_storage.end()) return;
+    diagnostics_.warning(
+        "storage-autonomous", entry.default_value->position,
+        fmt::format("{} is {}: the device stores by itself (bit 1), but a node stores on command; using {}; the option "
+                    "storage.autonomous keeps the bit for an application that stores by itself",
+                    named(entry), bits, bits & on_command));
+    set(entry, bits & on_command, clause);
+  }
+
+  void complete_unassigned_storage(const Entry& entry) {
+    if ((entry.default_value->bits & on_command) == 0 || stores_entries(entry.sub_index)) return;
+    note("storage-sub-index", entry.default_value->position,
+         fmt::format("{} is {}, on command, but no entries are assigned to it; assign them by the option "
+                     "storage.sub_indices, or the application handles the command",
+                     named(entry), entry.default_value->bits));
   }
 
   void complete_sync_counter(Entry& entry) {
@@ -219,11 +259,14 @@ class Completion {
   }
 
   Device& device_;
+  const Options& options_;
   Diagnostics& diagnostics_;
 };
 
 }  // namespace
 
-void complete_device(Device& device, Diagnostics& diagnostics) { Completion{device, diagnostics}.complete(); }
+void complete_device(Device& device, const Options& options, Diagnostics& diagnostics) {
+  Completion{device, options, diagnostics}.complete();
+}
 
 }  // namespace edsc

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "device/device.hpp"
+#include "device/options/options.hpp"
 
 namespace edsc {
 
@@ -14,6 +15,6 @@ inline constexpr std::uint8_t default_transmission_type = 255;
 /// Sets the default values of the communication profile that CiA 301 fixes, regardless of the file, and those that it
 /// implies and the file does not state. Each such value records its clause; differences from the file and missing
 /// values are reported.
-void complete_device(Device& device, Diagnostics& diagnostics);
+void complete_device(Device& device, const Options& options, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -39,7 +39,7 @@ class Resolver {
       }
     }
     resolve_objects();
-    complete_device(device_, diagnostics_);
+    complete_device(device_, options_, diagnostics_);
     check_option_keys();
     resolve_pdos(device_, options_);
     mark_broken_pdos(device_, options_, diagnostics_);
@@ -116,6 +116,10 @@ class Resolver {
         check_object(entry.index, "pdo.no_event");
       }
     }
+    const auto check_stored = [&](const EntrySelector& entry, std::string_view option) {
+      entry.sub_index ? check({entry.index, *entry.sub_index}, option) : check_object(entry.index, option);
+    };
+    for (const auto& [entry, sub_index] : options_.stored_by) check_stored(entry, "storage.sub_indices");
     for (const std::uint16_t index : options_.static_mapping.parameters) check_object(index, "pdo.static_mapping");
   }
 

@@ -89,7 +89,7 @@ ordered_json cpp_view(const Device& device, const Options& options, Diagnostics&
       description_rows(device), "node_id", device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr),
       "dummies", dummy_mask(device), "granularity", device.information.capabilities.granularity.value_or(1), "lss",
       std::move(view.lss), "stored_eds", stored_eds_view(device, options), "storing", std::move(view.storing),
-      "any_storing", !options.storing.empty());
+      "any_storing", !options.storing.empty() || !options.stored_by.empty());
 }
 
 }  // namespace edsc

@@ -16,12 +16,21 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// Entries before objects, so that an entry can differ from its object.
 ordered_json storing_rows(const Options& options) {
-  ordered_json rows = json_array(options.storing.size());
-  for (const auto& [entry, how] : options.storing) {
+  ordered_json rows = json_array(options.storing.size() + options.stored_by.size());
+  const auto add = [&](const EntrySelector& entry, std::string storing) {
     std::string condition = fmt::format("index == 0x{:04X}", entry.index);
     if (entry.sub_index) condition += fmt::format(" && sub_index == 0x{:02X}", *entry.sub_index);
-    rows.push_back(json_object("condition", std::move(condition), "storing", how));
+    rows.push_back(json_object("condition", std::move(condition), "storing", std::move(storing)));
+  };
+  for (const bool of_entries : {true, false}) {
+    for (const auto& [entry, how] : options.storing) {
+      if (entry.sub_index.has_value() == of_entries) add(entry, fmt::format("Storing::{}", how));
+    }
+    for (const auto& [entry, sub_index] : options.stored_by) {
+      if (entry.sub_index.has_value() == of_entries) add(entry, fmt::format("stored_by({})", sub_index));
+    }
   }
   return rows;
 }

@@ -145,8 +145,20 @@ inline constexpr OptionRow rows[] = {
     {storage, "entries", "storing", structured,
      "objects or entries that 1010h stores differently from what their access type implies: `{\"6010h:01\": \"never\"}`, [see "
      "below](#stored-parameters)"},
+    {storage, "sub_indices", "", structured,
+     "entries that a sub-index of 1010h and 1011h from 05h to 0Eh stores and restores, as 01h does: `{\"05h\": [\"2111h\"]}`, "
+     "[see below](#stored-parameters)"},
+    {storage, "autonomous", "", structured,
+     "sub-indices of 1010h whose parameters the application stores by itself, so that their bit 1 is 1: `[\"06h\"]`",
+     "", "none: bit 1 is 0"},
     {storage, "signature_abort_code", "storage_signature_abort_code", abort_code,
      "abort code for a write of a value other than \"save\" to 1010h or \"load\" to 1011h", "\"0x08000020\""},
+    {storage, "version", "storage_version", number,
+     "number of the meaning of the stored values: a value that was stored with another one is passed to the application's "
+     "`on_stored_value`",
+     "0", "", 0, 255},
+    {storage, "first_format", "storage_first_format", flag,
+     "images of stored parameters that edsc wrote before format 2 are loaded too", "true"},
     {storage, "restore_needs_power_cycle", "restore_needs_power_cycle", flag,
      "after \"load\", NMT resets keep the values in use; the defaults become active at the next power-on", "false"},
     {sdo, "upload_size_indicated", "sdo_upload_size_indicated", flag,

@@ -105,6 +105,10 @@ struct Options {
   std::map<std::uint16_t, EmergencyInfo> emergency_info;
   /// Entries for which 1010h does not follow the access type, with their enumerator of canopen::Storing.
   std::vector<std::pair<EntrySelector, std::string>> storing;
+  /// Entries that a sub-index of 1010h from 05h on stores.
+  std::vector<std::pair<EntrySelector, std::uint8_t>> stored_by;
+  /// Sub-indices of 1010h whose parameters the application stores by itself.
+  std::vector<std::uint8_t> autonomous_storage;
   /// Set if the options file has the group `lss`: the device then supports LSS regardless of the EDS.
   std::optional<LssSettings> lss;
   StoredEds stored_eds = StoredEds::of_application;

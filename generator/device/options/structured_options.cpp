@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <canopen/lss/lss_options.hpp>
+#include <canopen/storage/parameter_ranges.hpp>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -72,6 +73,8 @@ class StructuredOptions {
         {"pdo", "no_event", &StructuredOptions::no_event},
         {"emcy", "info", &StructuredOptions::emergency_info},
         {"storage", "entries", &StructuredOptions::storing},
+        {"storage", "sub_indices", &StructuredOptions::stored_by},
+        {"storage", "autonomous", &StructuredOptions::autonomous_storage},
         {"sdo", "zero_terminated_strings", &StructuredOptions::zero_terminated_strings},
         {"lss", "bit_rates", &StructuredOptions::lss_bit_rates},
     };
@@ -235,6 +238,41 @@ class StructuredOptions {
                  entry ? "expected always, never or with_node_id" : "not an object or entry such as \"6010h:01\"");
       }
     }
+  }
+
+  void stored_by(const json& value) {
+    if (!value.is_object()) {
+      return error("expected an object with one member for each sub-index: {\"05h\": [\"2111h\"]}");
+    }
+    for (const auto& [text, entries] : value.items()) {
+      const auto sub_index = parse_sub_index(text);
+      if (!sub_index || *sub_index < canopen::first_group_sub_index || *sub_index > canopen::last_group_sub_index) {
+        error_in(text, "not a sub-index from \"05h\" to \"0Eh\"");
+        continue;
+      }
+      for (const json& item : entries.is_array() ? entries : json::array({entries})) {
+        const auto entry = parsed(item, parse_entry_selector);
+        if (!entry) {
+          error_in(text, "expected an array of objects or entries such as \"2111h\" or \"2111h:01\"");
+        } else if (entry->index < 0x2000) {
+          error_in(text, "1010h:02 stores the parameters of 1000h..1FFFh");
+        } else {
+          options_.stored_by.emplace_back(*entry, *sub_index);
+        }
+      }
+    }
+  }
+
+  void autonomous_storage(const json& value) {
+    append_each(value, "expected an array of sub-indices such as \"06h\"", options_.autonomous_storage,
+                parse_sub_index);
+  }
+
+  /// "05h".
+  static std::optional<std::uint8_t> parse_sub_index(std::string_view text) {
+    if (text.size() != 3 || text.back() != 'h') return std::nullopt;
+    const auto number = parse_unsigned(fmt::format("0x{}", text.substr(0, 2)));
+    return number ? std::optional{static_cast<std::uint8_t>(*number)} : std::nullopt;
   }
 
   void zero_terminated_strings(const json& value) {

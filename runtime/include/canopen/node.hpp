@@ -250,8 +250,8 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   /// if the bus has no room.
   bool send_time(TimeOfDay time) { return serves_sync(state_) && TimeStamp<Device>::send(store_, bus_, time); }
 
-  /// Stores parameters like "save" to this sub-index of 1010h: 1 all, 2 those of 1000h..1FFFh, 3 of 6000h..9FFFh, 4 of
-  /// 2000h..5FFFh. hardware: the storage has failed, or the range is not one of these. With a storage that is written
+  /// Stores parameters like "save" to this sub-index of 1010h: storage/parameter_ranges.hpp lists
+  /// them. hardware: the storage has failed, or the range is not one of these. With a storage that is written
   /// in steps, `ok` means that it has begun; device_state: the command before it has not ended yet.
   [[nodiscard]] AbortCode save(std::uint8_t sub_index = 1) requires(storage_detail::has_storage<Handlers...>) {
     return services_.template get<StoredValues>().save(host(), sub_index);
@@ -260,6 +260,13 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   /// Restores parameters like "load" to this sub-index of 1011h: the next reset sets their default values.
   [[nodiscard]] AbortCode restore(std::uint8_t sub_index = 1) requires(storage_detail::has_storage<Handlers...>) {
     return services_.template get<StoredValues>().restore(host(), sub_index);
+  }
+
+  /// Calls `visit(const StoredValue&)` for each stored value that is not loaded since the last reset, for example those
+  /// of another version of this device. The next "save" of all parameters removes them.
+  template <class Visit>
+  void for_each_not_loaded(Visit visit) requires(storage_detail::has_storage<Handlers...>) {
+    services_.template get<StoredValues>().for_each_not_loaded(host(), visit);
   }
 
   /// Sends a value to an object of another node, or of all nodes, as a DAM-MPDO (CiA 301, 7.2.2.5), with the next

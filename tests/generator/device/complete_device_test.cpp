@@ -223,17 +223,47 @@ TEST(CompleteDevice, HasTheHighestSubIndexInSubIndex0) {
 }
 
 TEST(CompleteDevice, HasNoReservedValues) {
-  const DeviceFromText text(record("1010", {"0x65766173", "0x3"}) + record("1011", {"0x64616F6C", "0x0"}) +
+  const DeviceFromText text(record("1010", {"0x65766173", "0x1"}) + record("1011", {"0x64616F6C", "0x0"}) +
                             var("1019", "Counter", "5", "rw", "DefaultValue=1\n") +
                             record("1029", {"3", "0x80"}, "0x5"));
   EXPECT_EQ(text.entry(0x1010, 1).default_value->bits, 1U) << "the signature means: on command";
-  EXPECT_EQ(text.entry(0x1010, 2).default_value->bits, 3U);
+  EXPECT_EQ(text.entry(0x1010, 2).default_value->bits, 1U);
   EXPECT_EQ(text.entry(0x1011, 1).default_value->bits, 1U);
   EXPECT_EQ(text.entry(0x1011, 2).default_value->bits, 0U);
   EXPECT_EQ(text.entry(0x1019).default_value->bits, 0U);
   EXPECT_EQ(text.entry(0x1029, 1).default_value->bits, 0U);
   EXPECT_EQ(text.entry(0x1029, 2).default_value->bits, 0x80U);
   EXPECT_EQ(rules_of(text.diagnostics), (Rules{"storage-capability", "sync-counter", "error-behavior"}));
+}
+
+TEST(CompleteDevice, StoresOnCommand) {
+  const DeviceFromText text(record("1010", {"-", "0x3", "0x0", "0x2"}) + record("1011", {"-"}));
+  EXPECT_EQ(text.entry(0x1010, 1).default_value->bits, 1U) << "no default value";
+  EXPECT_EQ(text.entry(0x1010, 2).default_value->bits, 1U) << "a node does not store by itself";
+  EXPECT_EQ(text.entry(0x1010, 3).default_value->bits, 0U);
+  EXPECT_EQ(text.entry(0x1010, 4).default_value->bits, 0U);
+  EXPECT_EQ(text.entry(0x1011, 1).default_value->bits, 1U);
+  EXPECT_EQ(rules_of(text.diagnostics),
+            (Rules{"storage-default", "storage-autonomous", "storage-autonomous", "storage-default"}));
+}
+
+TEST(CompleteDevice, KeepsTheBitOfAnApplicationThatStoresByItself) {
+  Options options;
+  options.autonomous_storage = {2};
+  const DeviceFromText text(record("1010", {"0x3", "0x3"}), options);
+  EXPECT_EQ(text.entry(0x1010, 1).default_value->bits, 1U);
+  EXPECT_EQ(text.entry(0x1010, 2).default_value->bits, 3U);
+}
+
+// A sub-index from 05h on stores what the options assign to it, or belongs to the application.
+TEST(CompleteDevice, ReportsASubIndexOf1010hWithoutEntries) {
+  const std::string sheet = record("1010", {"1", "1", "1", "1", "1"}) + var("2100", "Recipe", "5", "rw", "");
+  const DeviceFromText unassigned(sheet);
+  EXPECT_EQ(rules_of(unassigned.diagnostics), (Rules{"storage-sub-index"}));
+  Options options;
+  options.stored_by = {{{0x2100, {}}, 5}};
+  const DeviceFromText assigned(sheet, options);
+  EXPECT_EQ(rules_of(assigned.diagnostics), (Rules{}));
 }
 
 // ---- defaults that a running device does not have ----

@@ -64,7 +64,7 @@ struct CountSteps {
 };
 
 constexpr std::uint32_t step_size = 16;
-using Background = BackgroundStorage<FlashStorage<SlowFlash>, 512, step_size, CountSteps>;
+using Background = BackgroundStorage<FlashStorage<SlowFlash>, 768, step_size, CountSteps>;
 
 struct Memory {
   SlowFlash pages;

@@ -86,7 +86,8 @@ TYPED_TEST(FlashStorageOf, TakesNoImageThatAPageHasNoRoomFor) {
   canopen::FlashStorage storage{flash};
   static_cast<void>(storage.open());
   const std::uint32_t header = std::max(12u, TypeParam::word_size);
-  const std::uint32_t room = 256 - (header + TypeParam::word_size - 1) / TypeParam::word_size * TypeParam::word_size;
+  const std::uint32_t words = (header + TypeParam::word_size - 1) / TypeParam::word_size;
+  const std::uint32_t room = 256 - 2 * words * TypeParam::word_size;  // a header and its copy
   EXPECT_FALSE(storage.begin(room + 1));
   EXPECT_EQ(flash.erased[0] + flash.erased[1], 0);
   EXPECT_TRUE(put(storage, image_of(room, 1)));
@@ -117,6 +118,27 @@ TYPED_TEST(FlashStorageOf, ReportsADamagedImageThatIsNewerThanTheOther) {
   }
 }
 
+/// One damaged header is replaced by its copy; if both are damaged, the older image does not pass for the newest one.
+TYPED_TEST(FlashStorageOf, ReportsADamagedHeaderUnlessItsCopyIsGood) {
+  TypeParam flash;
+  canopen::FlashStorage storage{flash};
+  static_cast<void>(storage.open());
+  EXPECT_TRUE(put(storage, image_of(20, 1)));
+  EXPECT_TRUE(put(storage, image_of(20, 100)));
+  const std::uint32_t words = (12 + TypeParam::word_size - 1) / TypeParam::word_size;
+  const std::uint32_t copy_at = 256 - words * TypeParam::word_size;
+  for (std::uint32_t bit = 0; bit < 12 * 8; ++bit) {
+    for (const bool copy_too : {false, true}) {
+      TypeParam copy = flash;
+      copy.pages[1].at(bit / 8) ^= static_cast<std::uint8_t>(1u << bit % 8);
+      if (copy_too) copy.pages[1].at(copy_at + bit / 8) ^= static_cast<std::uint8_t>(1u << bit % 8);
+      canopen::FlashStorage damaged{copy};
+      EXPECT_EQ(damaged.open(), copy_too ? StorageState::damaged : StorageState::whole) << bit;
+      EXPECT_EQ(get(damaged), image_of(20, copy_too ? 1 : 100)) << bit;
+    }
+  }
+}
+
 /// Power was lost while the older page was being erased, its image before its header.
 TYPED_TEST(FlashStorageOf, PassesOverADamagedImageThatIsOlder) {
   TypeParam flash;
@@ -133,7 +155,7 @@ TYPED_TEST(FlashStorageOf, PassesOverADamagedImageThatIsOlder) {
 
 TYPED_TEST(FlashStorageOf, KeepsImagesOfAnyLength) {
   TypeParam flash;
-  for (const std::size_t size : {std::size_t{1}, std::size_t{7}, std::size_t{16}, std::size_t{33}, std::size_t{200}}) {
+  for (const std::size_t size : {std::size_t{1}, std::size_t{7}, std::size_t{16}, std::size_t{33}, std::size_t{190}}) {
     const auto image = image_of(size, static_cast<std::uint8_t>(size));
     canopen::FlashStorage storage{flash};
     static_cast<void>(storage.open());
@@ -217,6 +239,7 @@ TEST(FlashStorage, TellsThatBothPagesAreDamaged) {
   ASSERT_TRUE(put(storage, image_of(40, 1)));
   ASSERT_TRUE(put(storage, image_of(40, 2)));
   flash.pages.at(0).at(2) ^= 1;
+  flash.pages.at(0).at(512 - 16) ^= 1;  // the copy of the header
   flash.pages.at(1).at(50) ^= 1;
   EXPECT_EQ(storage.open(), StorageState::damaged);
   EXPECT_EQ(storage.size(), 0u);
@@ -228,10 +251,10 @@ TEST(FlashStorage, RefusesAnImageThatDoesNotFit) {
   Flash flash;
   canopen::FlashStorage storage{flash};
   static_cast<void>(storage.open());
-  EXPECT_FALSE(storage.begin(512 - 15));
+  EXPECT_FALSE(storage.begin(512 - 31));
   EXPECT_EQ(flash.steps, 0);
-  EXPECT_TRUE(put(storage, image_of(512 - 16, 1)));
-  EXPECT_EQ(get(storage), image_of(512 - 16, 1));
+  EXPECT_TRUE(put(storage, image_of(512 - 32, 1)));
+  EXPECT_EQ(get(storage), image_of(512 - 32, 1));
 }
 
 TEST(FlashStorage, NoticesThatACellHasNotKeptItsValue) {

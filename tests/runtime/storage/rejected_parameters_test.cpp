@@ -26,7 +26,7 @@ namespace od = stored_device::od;
 
 // Another dictionary, a damaged storage
 
-TEST(StoreParameters, IsNotTakenByAnotherDictionary) {
+TEST(StoreParameters, KeepsItsValuesInAnotherDictionary) {
   MemoryStorage storage;
   {
     auto device = powered(storage);
@@ -34,10 +34,10 @@ TEST(StoreParameters, IsNotTakenByAnotherDictionary) {
     device.ask(save_all);
   }
   auto device = powered<longer_label::Device>(storage);
-  EXPECT_EQ(ranges(device), (Ranges{2048, -5, 8, 9})) << "a string of 2000h..5FFFh is longer";
+  EXPECT_EQ(ranges(device), (Ranges{2048, 7, 8, 9})) << "a string of 2000h..5FFFh is longer";
   device.ask("605 23 10 10 03 73 61 76 65");
-  EXPECT_EQ(ranges(powered<longer_label::Device>(storage)), (Ranges{2048, -5, 8, 9}));
-  EXPECT_EQ(ranges(powered(storage)), (Ranges{2048, -5, 8, 9})) << "what nobody reads goes with the next save";
+  EXPECT_EQ(ranges(powered<longer_label::Device>(storage)), (Ranges{2048, 7, 8, 9}));
+  EXPECT_EQ(ranges(powered(storage)), (Ranges{2048, 7, 8, 9}));
 }
 
 TEST(StoreParameters, TellsThatStoredValuesAreLost) {
@@ -93,7 +93,7 @@ std::string acceleration_after(MemoryStorage storage) {
   return device.ask("605 40 83 60 00 00 00 00 00");
 }
 
-TEST(StoreParameters, DoesNotTakeValuesThatWereStoredUnderOtherLimits) {
+TEST(StoreParameters, TakesValuesThatFitTheNewLimits) {
   MemoryStorage storage;
   {
     auto device = powered(storage);
@@ -104,8 +104,10 @@ TEST(StoreParameters, DoesNotTakeValuesThatWereStoredUnderOtherLimits) {
   const std::string stored = "585 43 83 60 00 D0 07 00 00";
   const std::string by_default = "585 43 83 60 00 E8 03 00 00";
   EXPECT_EQ((acceleration_after<WithLimits<1, 0xFFFF'FFFF>>(storage)), stored);
-  EXPECT_EQ((acceleration_after<WithLimits<2, 0xFFFF'FFFF>>(storage)), by_default);
-  EXPECT_EQ((acceleration_after<WithLimits<1, 0xFFFF'FFFE>>(storage)), by_default);
+  EXPECT_EQ((acceleration_after<WithLimits<2, 0xFFFF'FFFF>>(storage)), stored);
+  EXPECT_EQ((acceleration_after<WithLimits<1, 2000>>(storage)), stored);
+  EXPECT_EQ((acceleration_after<WithLimits<2001, 0xFFFF'FFFF>>(storage)), by_default);
+  EXPECT_EQ((acceleration_after<WithLimits<1, 1999>>(storage)), by_default);
 }
 
 // The signature of a section depends on each limit, also on those of more than 32 bits.

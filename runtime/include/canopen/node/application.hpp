@@ -98,7 +98,8 @@ template <class A>
 inline constexpr bool is_application<A, true> =
     declares_any<A, function::Write, function::Written, function::Read, function::Start, function::Every,
                  function::OnState, function::OnSync, function::OnTimeOfDay, function::OnHeartbeat,
-                 function::OnLifeGuarding, function::OnEmergency, function::OnError, function::OnRpdo>;
+                 function::OnLifeGuarding, function::OnEmergency, function::OnError, function::OnRpdo,
+                 function::OnStoredValue>;
 
 /// The periods of a handler.
 template <class H>
@@ -114,6 +115,15 @@ requires is_application<typename ApplicationOf<H>::type>
 struct PeriodsOf<H> {
   using type = decltype(periods_of_application<typename ApplicationOf<H>::type>());
 };
+
+/// Whether a handler is called for an event: an application that has its function, or a callable.
+template <class Event, class H>
+inline constexpr bool has_event_function = false;
+template <class Event, class F>
+inline constexpr bool has_event_function<Event, EventHandler<Event, F>> = true;
+template <class Event, class H>
+requires is_application<typename ApplicationOf<H>::type>
+inline constexpr bool has_event_function<Event, H> = Event::template is_declared<typename ApplicationOf<H>::type>;
 
 /// Whether an application has a function for these arguments, with or without the node after them.
 template <class Function, class A, class Node, class... Values>

@@ -403,7 +403,8 @@ template <class Device, class Node, class A>
          check_event<Device, Node, A, OnState>() && check_event<Device, Node, A, OnSync>() &&
          check_event<Device, Node, A, OnTimeOfDay>() && check_event<Device, Node, A, OnHeartbeat>() &&
          check_event<Device, Node, A, OnLifeGuarding>() && check_event<Device, Node, A, OnEmergency>() &&
-         check_event<Device, Node, A, OnError>() && check_event<Device, Node, A, OnRpdo>();
+         check_event<Device, Node, A, OnError>() && check_event<Device, Node, A, OnRpdo>() &&
+         check_event<Device, Node, A, OnStoredValue>();
 }
 
 }  // namespace canopen::handler_detail

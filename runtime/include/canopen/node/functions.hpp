@@ -9,6 +9,7 @@
 #include "canopen/nmt/heartbeat_consumer.hpp"
 #include "canopen/nmt/nmt.hpp"
 #include "canopen/pdo/rpdo.hpp"
+#include "canopen/storage/stored_value.hpp"
 #include "canopen/time/time_stamp.hpp"
 
 namespace canopen::function {
@@ -78,6 +79,8 @@ CANOPEN_FUNCTION(OnEmergency, on_emergency, 0x1028, ConsumedEmergency);
 CANOPEN_FUNCTION(OnError, on_error, 0, std::uint16_t);
 /// An event of an RPDO, with its number.
 CANOPEN_FUNCTION(OnRpdo, on_rpdo, 0, RpdoEvent, std::uint16_t);
+/// A stored value that this version of the device does not accept as it is, at each reset until it is saved without it.
+CANOPEN_FUNCTION(OnStoredValue, on_stored_value, 0x1010, StoredValue);
 
 // Names that are never called, but are probably meant to be one of these.
 CANOPEN_FUNCTION(Writen, writen, 0, );

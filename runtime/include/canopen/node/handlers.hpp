@@ -59,6 +59,8 @@ template <class F>
 using ErrorHandler = EventHandler<function::OnError, F>;
 template <class F>
 using RpdoHandler = EventHandler<function::OnRpdo, F>;
+template <class F>
+using StoredValueHandler = EventHandler<function::OnStoredValue, F>;
 
 /// The handler of a period.
 template <Period P, class F>
@@ -171,6 +173,13 @@ template <class F>
 /// Calls `handler(event, number)` or `handler(node, event, number)` with each event of an RPDO.
 template <class F>
 [[nodiscard]] constexpr RpdoHandler<F> on_rpdo(F handler) {
+  return {std::move(handler)};
+}
+
+/// Calls `handler(StoredValue)` or `handler(node, StoredValue)` at each reset with each stored value that is not loaded,
+/// or was stored with another `storage.version` of the options. It may replace or discard the value.
+template <class F>
+[[nodiscard]] constexpr StoredValueHandler<F> on_stored_value(F handler) {
   return {std::move(handler)};
 }
 

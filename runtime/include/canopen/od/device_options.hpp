@@ -14,7 +14,17 @@ enum class Storing : std::uint8_t {
   always,
   never,
   with_node_id,  ///< stored, and valid only for the node-ID that it was stored with; not affected by "load"
+  first_group,   ///< stored by 1010h:05 and :01; those after it by 1010h:06 to :0E and :01
 };
+
+/// Entries that a sub-index of 1010h from 05h to 0Eh stores, and :01 with all others.
+[[nodiscard]] constexpr Storing stored_by(std::uint8_t sub_index) {
+  return static_cast<Storing>(static_cast<std::uint8_t>(Storing::first_group) + sub_index - 5);
+}
+/// Returns the sub-index of `stored_by`.
+[[nodiscard]] constexpr std::uint8_t sub_index_of(Storing storing) {
+  return static_cast<std::uint8_t>(static_cast<std::uint8_t>(storing) - static_cast<std::uint8_t>(Storing::first_group) + 5);
+}
 
 struct DeviceOptions {
   /// Bits of 1400h..15FFh:01 and 1800h..19FFh:01 that a write can change; the others silently keep their value.
@@ -77,6 +87,11 @@ struct DeviceOptions {
   std::uint32_t storage_signature_abort_code = 0x0800'0020;
   /// Bits of 6502h for modes that 6060h accepts in addition to those of 6502h in the EDS (CiA 402).
   std::uint32_t drive_additional_modes = 0;
+  /// Number of the meaning of the stored values, which the application changes with the meaning: a value that was stored
+  /// with another one is passed to its function `on_stored_value`.
+  std::uint8_t storage_version = 0;
+  /// Parameters are also loaded from images of the first format, which earlier versions of edsc wrote.
+  bool storage_first_format = true;
   /// After "load" the values in use survive NMT resets: the default values take effect at the next power-on.
   bool restore_needs_power_cycle = false;
 };

@@ -26,9 +26,11 @@ concept FlashPages = requires(T& pages, std::uint8_t page, std::uint32_t offset,
   { pages.read(page, offset, to) } -> std::same_as<bool>;
 };
 
-/// Keeps a header and the image in each page. The header is written last: until its last word has been written, its
-/// checksum is wrong and the other page is used. So a power loss cannot leave a valid newer header with an invalid
-/// image; such a page is reported as damaged, and the older image is used. The pages must outlive the storage.
+/// Keeps a header, the image and, at the end of the page, a copy of the header in each page. The header is written after
+/// the image and the copy after the header: after a power loss the newer page has a valid header and a valid image, or
+/// no copy, so that the other page is used. A page with a copy and without a valid header and image is reported as
+/// damaged, and the older image is used. A page without a copy, of the first format, is read too. The pages must outlive
+/// the storage.
 template <FlashPages Pages>
 class FlashStorage {
  public:
@@ -39,11 +41,18 @@ class FlashStorage {
     page_ = 1;
     size_ = 0;
     erasures_ = 0;
-    std::uint32_t broken = 0;  // count of a page with a valid header and an invalid image
+    std::uint32_t broken = 0;   // count of a damaged page
+    bool may_be_newer = false;  // a damaged page without a count
     for (std::uint8_t page = 0; page < 2; ++page) {
       const StorageState found = look_into(page);
-      if (found == StorageState::damaged && state == StorageState::empty) state = found;
-      if (found == StorageState::damaged && header_is_sound()) broken = std::max(broken, header_.erasures);
+      if (found == StorageState::damaged) {
+        if (state == StorageState::empty) state = found;
+        if (header_.erasures == unknown) {
+          may_be_newer = true;
+        } else {
+          broken = std::max(broken, header_.erasures);
+        }
+      }
       if (found != StorageState::whole || (state == found && erasures_ >= header_.erasures)) continue;
       state = found;
       size_ = header_.size;
@@ -51,11 +60,9 @@ class FlashStorage {
       page_ = page;
     }
     header_ = {};
-    if (broken > erasures_) {
-      erasures_ = broken;
-      return StorageState::damaged;
-    }
-    return state;
+    if (broken <= erasures_) return may_be_newer ? StorageState::damaged : state;
+    erasures_ = broken;
+    return StorageState::damaged;
   }
 
   [[nodiscard]] std::uint32_t size() const { return size_; }
@@ -69,7 +76,7 @@ class FlashStorage {
   }
 
   [[nodiscard]] bool begin(std::uint32_t size) {
-    if (size > Pages::page_size - image_at) return false;
+    if (size > max_size) return false;
     header_ = {};
     header_.size = size;
     header_.erasures = ++erasures_;
@@ -98,7 +105,8 @@ class FlashStorage {
       if (!write_word(image_at + written_ - rest)) return false;
     }
     header_.crc = crc_of(header_);
-    if (!write_header() || look_into(spare()) != StorageState::whole) return false;  // the medium has not stored it
+    if (!write_header(0) || !write_header(copy_at)) return false;
+    if (look_into(spare()) != StorageState::whole) return false;  // the medium has not stored it
     page_ = spare();
     size_ = header_.size;
     return true;
@@ -120,7 +128,12 @@ class FlashStorage {
 
   /// Start of the image: after the header, at a word boundary.
   static constexpr std::uint32_t image_at = (header_bytes + word_size - 1) / word_size * word_size;
-  static_assert(Pages::page_size > image_at && Pages::page_size % word_size == 0);
+  static_assert(Pages::page_size > 2 * image_at && Pages::page_size % word_size == 0);
+  /// Start of the copy of the header.
+  static constexpr std::uint32_t copy_at = Pages::page_size - image_at;
+  static constexpr std::uint32_t max_size = copy_at - image_at;
+  /// In place of the count of a page whose headers are both damaged: it may be the newer one.
+  static constexpr std::uint32_t unknown = 0xFFFF'FFFF;
 
   [[nodiscard]] std::uint8_t spare() const { return static_cast<std::uint8_t>(page_ ^ 1u); }
 
@@ -142,20 +155,43 @@ class FlashStorage {
   }
 
   // Separate functions, so that their buffers are not on the stack at the same time.
-  [[nodiscard, gnu::noinline]] bool write_header() const {
+  [[nodiscard, gnu::noinline]] bool write_header(std::uint32_t offset) const {
     std::array<std::uint8_t, image_at> bytes;
     bytes.fill(0xFF);
     std::memcpy(bytes.data(), &header_, sizeof header_);
     wait_until_erased();
-    return pages_.write(spare(), 0, bytes);
+    return pages_.write(spare(), offset, bytes);
   }
 
   /// Returns the state of a page; `header_` is then its header.
   [[nodiscard, gnu::noinline]] StorageState look_into(std::uint8_t page) {
+    const bool has_copy = read_header(page, copy_at);
+    const bool is_copy_sound = header_is_sound();
+    const Header copy = header_;
+    const bool has_header = read_header(page, 0);
+    if (!header_is_sound()) {
+      if (!has_header && !has_copy) return StorageState::empty;
+      // Without the header, the erase has begun; without the copy, the header was being written.
+      if (!is_copy_sound) return damage(has_header && has_copy ? unknown : 0);
+      header_ = copy;
+    }
+    return image_is_whole(page) ? StorageState::whole : StorageState::damaged;
+  }
+
+  StorageState damage(std::uint32_t erasures) {
+    header_ = {};
+    header_.erasures = erasures;
+    return StorageState::damaged;
+  }
+
+  /// Reads a header, or its copy. Returns whether its memory has been written.
+  [[nodiscard]] bool read_header(std::uint8_t page, std::uint32_t offset) {
     const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&header_), sizeof header_};
-    if (!pages_.read(page, 0, bytes)) return StorageState::damaged;
-    if (std::ranges::all_of(bytes, [](std::uint8_t byte) { return byte == 0xFF; })) return StorageState::empty;
-    return header_is_sound() && image_is_whole(page) ? StorageState::whole : StorageState::damaged;
+    if (!pages_.read(page, offset, bytes)) {
+      header_ = {};
+      return true;
+    }
+    return !std::ranges::all_of(bytes, [](std::uint8_t byte) { return byte == 0xFF; });
   }
 
   [[nodiscard]] bool header_is_sound() const {

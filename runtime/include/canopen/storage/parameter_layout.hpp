@@ -1,59 +1,19 @@
-/// Which values of a device "save" stores, and their order in storage; computed at compile time (CiA 301, 7.5.2.13).
+/// Which values of a device "save" stores, computed at compile time (CiA 301, 7.5.2.13).
 #pragma once
 
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "canopen/od/device_options.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/value.hpp"
+#include "canopen/storage/parameter_ranges.hpp"
+#include "canopen/storage/stored_format.hpp"
 
 namespace canopen {
-
-/// Values that are stored and restored together.
-enum class ParameterSection : std::uint8_t {
-  communication,  ///< 1000h..1FFFh
-  manufacturer,   ///< 2000h..5FFFh
-  application,    ///< 6000h..9FFFh
-  other,          ///< A000h..FFFFh
-  with_node_id,   ///< entries whose stored value is valid only for the node-ID it was stored with, and that "load" does
-                  ///< not affect
-  configuration,  ///< 1020h
-};
-inline constexpr std::size_t parameter_sections = 6;
-
-/// Bit n is section n.
-using SectionSet = std::uint8_t;
-[[nodiscard]] constexpr SectionSet set_of(ParameterSection section) {
-  return static_cast<SectionSet>(1u << static_cast<unsigned>(section));
-}
-inline constexpr SectionSet all_sections = (1u << parameter_sections) - 1;
-
-/// The sections of 1000h..1FFFh, which a reset communication loads.
-inline constexpr SectionSet communication_sections = set_of(ParameterSection::communication) |
-                                                     set_of(ParameterSection::with_node_id) |
-                                                     set_of(ParameterSection::configuration);
-
-/// The sections of a sub-index of 1010h and 1011h. Sub-indices that are not listed belong to the application.
-struct ParameterRange {
-  std::uint8_t sub_index;
-  SectionSet sections;
-};
-inline constexpr ParameterRange parameter_ranges[] = {
-    {1, all_sections},
-    {2, communication_sections},
-    {3, set_of(ParameterSection::application)},
-    {4, set_of(ParameterSection::manufacturer)},
-};
-
-[[nodiscard]] constexpr SectionSet sections_of(std::uint8_t sub_index) {
-  for (const ParameterRange& row : parameter_ranges) {
-    if (row.sub_index == sub_index) return row.sections;
-  }
-  return 0;
-}
 
 /// Consecutive bytes of Values that are stored.
 struct StoredRun {
@@ -62,39 +22,6 @@ struct StoredRun {
 };
 
 namespace parameter_detail {
-
-struct SectionRow {
-  std::uint16_t last;
-  ParameterSection section;
-};
-inline constexpr SectionRow section_rows[] = {
-    {0x101F, ParameterSection::communication}, {0x1020, ParameterSection::configuration},
-    {0x1FFF, ParameterSection::communication}, {0x5FFF, ParameterSection::manufacturer},
-    {0x9FFF, ParameterSection::application},   {0xFFFF, ParameterSection::other},
-};
-
-[[nodiscard]] constexpr ParameterSection section_of(std::uint16_t index) {
-  const SectionRow* row = section_rows;
-  while (index > row->last) ++row;
-  return row->section;
-}
-
-struct IndexRange {
-  std::uint16_t first;
-  std::uint16_t last;
-};
-
-/// Writable objects of the communication profile that are not parameters: errors, time stamps, commands.
-inline constexpr IndexRange no_parameters[] = {
-    {0x1001, 0x1003}, {0x1010, 0x1011}, {0x1013, 0x1013}, {0x1023, 0x1026}, {0x1F50, 0x1F57}, {0x1F82, 0x1F83},
-};
-
-[[nodiscard]] constexpr bool can_be_parameter(std::uint16_t index) {
-  for (const IndexRange& row : no_parameters) {
-    if (index >= row.first && index <= row.last) return false;
-  }
-  return true;
-}
 
 /// Whether an entry is readable and writable, and not process data: rww is a process output, rwr an input (CiA
 /// 306-1, 4.6.2).
@@ -183,6 +110,7 @@ class ParameterLayout {
       case Storing::always: return static_cast<std::uint8_t>(parameter_detail::section_of(index));
       case Storing::with_node_id: return static_cast<std::uint8_t>(ParameterSection::with_node_id);
       case Storing::by_access: break;
+      default: return static_cast<std::uint8_t>(std::countr_zero(canopen::sections_of(sub_index_of(storing(index, sub_index)))));
     }
     return parameter_detail::has_access_of_parameter(word) ? as_parameter : not_stored;
   }
@@ -200,14 +128,17 @@ class ParameterLayout {
     if (entry::is_string(word)) {
       const bool terminated =
           Device::dictionary.zero_terminated_strings && entry::type_of(word) == entry::visible_string;
-      return sizeof(std::uint16_t) + string_capacity(object_key(index, sub_index)) + (terminated ? 1 : 0);
+      return sizeof(std::uint16_t) + string_capacity(index, sub_index) + (terminated ? 1 : 0);
     }
     const std::size_t size = entry::wire_bytes(word);
     return size <= 2 ? size : size <= 4 ? 4 : 8;
   }
 
-  [[nodiscard]] static constexpr std::size_t string_capacity(std::uint32_t key) {
+  /// The elements of an ARRAY share the row of sub-index 1.
+  [[nodiscard]] static constexpr std::size_t string_capacity(std::uint16_t index, std::uint8_t sub_index) {
+    const bool array = entry::kind_of(Device::dictionary.find_index(index)) == entry::Kind::array;
     const std::span<const Limits> rows = Device::dictionary.limits;
+    const std::uint32_t key = object_key(index, array && sub_index > 1 ? std::uint8_t{1} : sub_index);
     const std::size_t position = dictionary_detail::position_of_key(rows, key);
     return position < rows.size() ? rows[position].high : 0;
   }
@@ -256,53 +187,52 @@ class ParameterLayout {
   }
 
  public:
+  /// The sections of this device are those below.
+  static constexpr std::size_t section_count = [] {
+    std::size_t count = 0;
+    for_each_run([&](std::uint8_t section, StoredRun) {
+      if (section >= count) count = section + std::size_t{1};
+    });
+    return count;
+  }();
+
   /// Position in `runs` of the first run of each section.
-  static constexpr std::array<std::uint16_t, parameter_sections + 1> firsts = [] {
-    std::array<std::uint16_t, parameter_sections + 1> counts{};
+  static constexpr std::array<std::uint16_t, section_count + 1> firsts = [] {
+    std::array<std::uint16_t, section_count + 1> counts{};
     for_each_run([&](std::uint8_t section, StoredRun) { ++counts[section + 1u]; });
-    for (std::size_t i = 0; i < parameter_sections; ++i)
-      counts[i + 1] = static_cast<std::uint16_t>(counts[i + 1] + counts[i]);
+    for (std::size_t i = 0; i < section_count; ++i) counts[i + 1] = static_cast<std::uint16_t>(counts[i + 1] + counts[i]);
     return counts;
   }();
 
-  static constexpr std::array<StoredRun, firsts[parameter_sections]> runs = [] {
-    std::array<StoredRun, firsts[parameter_sections]> rows{};
+  static constexpr std::array<StoredRun, firsts[section_count]> runs = [] {
+    std::array<StoredRun, firsts[section_count]> rows{};
     auto next = firsts;
     for_each_run([&](std::uint8_t section, StoredRun run) { rows[next[section]++] = run; });
     return rows;
   }();
 
-  /// Bytes of the values of each section.
-  static constexpr std::array<std::uint16_t, parameter_sections> sizes = [] {
-    std::array<std::uint16_t, parameter_sections> bytes{};
+  /// Bytes of the values of each section in images of the first format.
+  static constexpr std::array<std::uint16_t, section_count> sizes = [] {
+    std::array<std::uint16_t, section_count> bytes{};
     for_each_run([&](std::uint8_t section, StoredRun run) {
       bytes[section] = static_cast<std::uint16_t>(bytes[section] + run.size);
     });
     return bytes;
   }();
 
-  /// Bytes before the values of each section.
-  static constexpr std::uint32_t header_bytes = 8;
-  /// Bytes of an image with all sections.
-  static constexpr std::uint32_t max_image = [] {
-    std::uint32_t bytes = 0;
-    for (const std::uint16_t size : sizes) bytes += size == 0 ? 0u : size + header_bytes;
-    return bytes;
-  }();
-
-  /// Identifies the stored bytes of each section, so that those of another dictionary are not loaded: a hash of the
-  /// entries, their types, limits and positions in storage.
-  static constexpr std::array<std::uint32_t, parameter_sections> signatures = [] {
+  /// Identifies the values of each section in images of the first format: a hash of the entries, their types, limits
+  /// and positions.
+  static constexpr std::array<std::uint32_t, section_count> signatures = [] {
     std::array<std::uint16_t, ram_bytes> places{};
-    std::array<std::uint16_t, parameter_sections> next{};
+    std::array<std::uint16_t, section_count> next{};
     for_each_run([&](std::uint8_t section, StoredRun run) {
       std::uint16_t place = next[section];
       std::uint16_t* const begin = places.data() + run.offset;
       for (std::uint16_t* at = begin; at != begin + run.size; ++at) *at = place++;
       next[section] = place;
     });
-    std::array<std::uint32_t, parameter_sections> hashes{};
-    for (std::uint32_t i = 0; i < parameter_sections; ++i) hashes[i] = parameter_detail::mix(0x811C'9DC5u, i);
+    std::array<std::uint32_t, section_count> hashes{};
+    for (std::uint32_t i = 0; i < section_count; ++i) hashes[i] = parameter_detail::mix(0x811C'9DC5u, i);
     for_each_in_ram([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
       const std::uint8_t section = owners[entry::offset_of(word)];
       if (section >= parameter_sections) return;
@@ -316,6 +246,21 @@ class ParameterLayout {
     return hashes;
   }();
 
+  /// Bytes of an image with all values of this device.
+  static constexpr std::uint32_t max_image = [] {
+    std::uint32_t bytes = stored_format::magic.size();
+    if (section_count == 0) return bytes;
+    bytes += static_cast<std::uint32_t>(stored_format::header_bytes * (section_count + 1));
+    for_each_in_ram([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+      if (owners[entry::offset_of(word)] >= parameter_sections) return;
+      const std::size_t value = entry::is_string(word)
+                                    ? stored_format::length_bytes + string_capacity(index, sub_index)
+                                    : entry::wire_bytes(word);
+      bytes += static_cast<std::uint32_t>(stored_format::header_bytes + value);
+    });
+    return bytes;
+  }();
+
   /// Whether an entry is stored.
   [[nodiscard]] static constexpr bool stores(std::uint16_t index, std::uint8_t sub_index) {
     const entry::Word word = Device::dictionary.find(index, sub_index);
@@ -323,14 +268,49 @@ class ParameterLayout {
            owners[entry::offset_of(word)] < parameter_sections;
   }
 
-  /// The same at run time, for an entry in RAM.
-  [[nodiscard]] static bool stores(entry::Word word) {
-    const std::uint16_t offset = entry::offset_of(word);
-    for (const StoredRun& run : runs) {
-      if (offset >= run.offset && offset - run.offset < run.size) return true;
-    }
-    return false;
+  /// Whether any entry belongs to a section.
+  [[nodiscard]] static constexpr bool has(ParameterSection section) {
+    const auto i = static_cast<std::size_t>(section);
+    return i < section_count && sizes[i] != 0;
   }
+
+  /// Returns the sections of a sub-index of 1010h and 1011h; 0 if no entry belongs to a manufacturer-specific one.
+  [[nodiscard]] static constexpr SectionSet sections_of(std::uint8_t sub_index) {
+    const SectionSet sections = canopen::sections_of(sub_index);
+    return sub_index < first_group_sub_index || sections < (1u << section_count) ? sections : SectionSet{0};
+  }
+
+  /// The section of an entry that is not stored.
+  static constexpr std::uint8_t none = 0xFF;
+
+  /// Returns the section of an entry in RAM.
+  [[nodiscard, gnu::noinline]] static std::uint8_t section_at(std::uint16_t offset) {
+    for (std::uint8_t section = 0; section < section_count; ++section) {
+      for (std::size_t i = firsts[section]; i < firsts[section + 1u]; ++i) {
+        if (static_cast<std::uint16_t>(offset - runs[i].offset) < runs[i].size) return section;
+      }
+    }
+    return none;
+  }
+
+  /// Whether a section of this device is the one of an image of the first format.
+  [[nodiscard]] static bool has_first_format(std::size_t section, std::uint32_t signature, std::uint16_t size) {
+    return signatures[section] == signature && sizes[section] == size;
+  }
+
+  /// Returns the position of the value at an offset in RAM in an image of the first format, among the values of its
+  /// section.
+  [[nodiscard]] static std::uint32_t place_in_section(std::size_t section, std::uint16_t offset) {
+    std::uint32_t place = 0;
+    for (std::size_t i = firsts[section];; ++i) {
+      const auto in_run = static_cast<std::uint16_t>(offset - runs[i].offset);
+      if (in_run < runs[i].size) return place + in_run;
+      place += runs[i].size;
+    }
+  }
+
+  /// Whether an entry in RAM is stored.
+  [[nodiscard]] static bool stores(entry::Word word) { return section_at(entry::offset_of(word)) != none; }
 };
 
 }  // namespace canopen

@@ -15,6 +15,8 @@
 #include "canopen/od/object_store.hpp"
 #include "canopen/storage/parameter_layout.hpp"
 #include "canopen/storage/storage.hpp"
+#include "canopen/storage/stored_format.hpp"
+#include "canopen/storage/stored_value.hpp"
 #include "canopen/storage/stored_value_check.hpp"
 
 namespace canopen {
@@ -40,9 +42,9 @@ template <class Device>
   return on_command ? ok : AbortCode::not_stored;
 }
 
-/// The stored values of one device. An image contains one record for each stored section: a header, then the bytes of
-/// its values in the order of the layout. Records of another layout are ignored, and removed by the next "save" or
-/// "load". If a stored value could not have been written over the bus, the default value is used.
+/// The stored values of one device. An image contains one record for each stored value, with index, sub-index, type and
+/// length, so that a value of another dictionary is loaded if this one accepts it. What is not loaded is reported, and
+/// stays in the storage until the application has been able to use it.
 template <class Device>
 class ParameterStorage {
  public:
@@ -57,39 +59,70 @@ class ParameterStorage {
   void open(S& storage) {
     damaged_ = storage.open() == StorageState::damaged;
     restored_ = false;
+    reported_ = false;
   }
 
-  /// Whether stored values have been lost since power-on, or some of them could not have been written and were replaced
-  /// by default values.
+  /// Whether stored values have been lost or not loaded since power-on.
   [[nodiscard]] bool damaged() const { return damaged_; }
 
-  /// Sets 2000h..FFFFh to their default values, then to the stored ones.
-  template <Storage S>
-  void reset_application(S& storage, ObjectStore<Device>& store, NodeId node_id) {
-    reset<false>(storage, store, node_id);
+  /// Sets 2000h..FFFFh to their default values, then to the stored ones. `hook(value)` is called for each stored value
+  /// that is not loaded, or was stored with another `storage_version`.
+  template <Storage S, class Hook>
+  void reset_application(S& storage, ObjectStore<Device>& store, NodeId node_id, Hook& hook) {
+    store.reset_application(node_id);
+    if (load(storage, store, Work::load_application, hook)) return;
+    damaged_ = true;
+    store.reset_application(node_id);
   }
 
   /// Sets 1000h..1FFFh to their default values, then to the stored ones.
-  template <Storage S>
-  void reset_communication(S& storage, ObjectStore<Device>& store, NodeId node_id) {
-    reset<true>(storage, store, node_id);
+  template <Storage S, class Hook>
+  void reset_communication(S& storage, ObjectStore<Device>& store, NodeId node_id, Hook& hook) {
+    if constexpr (Check::has_mappings) rejected_ = {};
+    store.reset_communication(node_id);
+    bool loaded = load(storage, store, Work::load_communication, hook);
+    if constexpr (Check::has_mappings) {
+      if (loaded && Check::reject_mappings(store.entries(), rejected_)) {
+        store.reset_communication(node_id);
+        if (Check::has_better_defaults(store.entries(), rejected_)) damaged_ = true;
+        loaded = load(storage, store, Work::load_communication, hook);
+      }
+    }
+    if (loaded) return;
+    damaged_ = true;
+    store.reset_communication(node_id);
   }
 
-  /// Stores the values of some sections, and 1020h with them. Other stored sections are kept. False: storage has
-  /// not changed.
-  template <Storage S>
-  [[nodiscard]] bool save(S& storage, SectionSet sections, ObjectStore<Device>& store) {
-    return rewrite(storage, sections | set_of(ParameterSection::configuration), 0, store);
+  /// Calls `visit(StoredValue)` for each stored value that is not loaded. The next "save" of all parameters removes
+  /// them.
+  template <Storage S, class Visit>
+  void for_each_not_loaded(S& storage, ObjectStore<Device>& store, Visit visit) {
+    reported_ = true;
+    Lister<Visit> lister{visit};
+    Pass pass{&store, Work::list};
+    if (walk(storage, pass, lister) == ReadResult::other) visit(StoredValue{{}, NotLoaded::layout, {}, nullptr});
+  }
+
+  /// Stores the values of some sections, and 1020h with them. Other stored values are kept. If all values are stored
+  /// and the application has been able to use those that were not loaded, by its hook or the list, these are removed,
+  /// otherwise they are kept as long as the storage has room. False: storage has not changed.
+  template <Storage S, class Hook>
+  [[nodiscard]] bool save(S& storage, SectionSet sections, ObjectStore<Device>& store, Hook& hook) {
+    Pass pass{&store, Work::keep};
+    pass.written = sections | set_of(ParameterSection::configuration);
+    pass.keeps_not_loaded = sections != all_sections || !(Hook::exists || reported_);
+    return rewrite(storage, pass, hook);
   }
 
   /// Removes some sections from storage: the next reset or, depending on the options, the next power-on sets their
   /// default values. As 1020h is then no longer valid, it is removed too, and becomes 0 at once. False: storage has
   /// not changed.
-  template <Storage S>
-  [[nodiscard]] bool restore(S& storage, SectionSet sections, ObjectStore<Device>& store) {
-    const unsigned given_up =
-        (sections & ~set_of(ParameterSection::with_node_id)) | set_of(ParameterSection::configuration);
-    if (!holds_none_of(storage, given_up) && !rewrite(storage, 0, given_up, store)) return false;
+  template <Storage S, class Hook>
+  [[nodiscard]] bool restore(S& storage, SectionSet sections, ObjectStore<Device>& store, Hook& hook) {
+    Pass pass{&store, Work::keep};
+    pass.given_up = (sections & ~set_of(ParameterSection::with_node_id)) | set_of(ParameterSection::configuration);
+    pass.keeps_not_loaded = true;
+    if (!rewrite(storage, pass, hook)) return false;
     clear_configuration(store);
     restored_ = true;
     return true;
@@ -129,131 +162,281 @@ class ParameterStorage {
 
  private:
   using Check = StoredValueCheck<Device>;
-  using Rows = typename Check::Rows;
+  using Record = stored_format::Record;
+  using SectionHeader = stored_format::SectionHeader;
+  using Bytes = std::array<std::uint8_t, 8>;
 
-  /// Header of a section's values. A section is recognised by signature and size.
-  struct Header {
-    std::uint32_t signature;
-    std::uint16_t size;     ///< bytes of the values
-    std::uint8_t node_id;   ///< node-ID when they were stored
-    std::uint8_t given_up;  ///< 1: valid until the next power-on
-  };
-  static_assert(sizeof(Header) == Layout::header_bytes);
+  /// Bytes of a string that are passed to the application; a number has at most 8.
+  static constexpr std::size_t string_bytes = 32;
 
-  /// A section of this device in storage.
-  struct Record {
-    std::uint32_t position = 0;  ///< of its values; 0: does not exist
-    std::uint8_t node_id = 0;
-    std::uint8_t given_up = 0;
+  /// How the values of an image were read.
+  enum class ReadResult : std::uint8_t {
+    whole,
+    invalid,     ///< the bytes are not an image of stored values, or its rest is not
+    other,       ///< an image of the first format has sections of another dictionary
+    unreadable,  ///< the storage could not be read, or a new image not be written
   };
 
-  [[nodiscard]] static constexpr bool is_in(unsigned sections, std::size_t i) { return ((sections >> i) & 1u) != 0; }
+  /// What is done with each stored value.
+  enum class Work : std::uint8_t {
+    load_application,    ///< those that are not in 1000h..1FFFh replace default values
+    load_communication,  ///< those in 1000h..1FFFh
+    keep,                ///< they are copied to a new image, unless they are removed
+    write,               ///< present values are written to a new image
+    list,                ///< those that are not loaded are passed to the application
+  };
 
-  [[nodiscard]] static std::uint8_t* ram_of(ObjectStore<Device>& store) {
-    return reinterpret_cast<std::uint8_t*>(&store.values());
+  struct Pass {
+    ObjectStore<Device>* store;
+    Work work;
+    bool keeps_not_loaded = false;
+    bool counts = true;         ///< the bytes of the new image are only counted
+    bool changes = false;       ///< a value of the present image is not kept as it is
+    SectionSet written = 0;     ///< sections whose present values are stored
+    SectionSet given_up = 0;    ///< sections that are removed, or marked as valid until power-on
+    std::uint16_t context = 0;  ///< node-ID and version of the last context; 0: none, as no node-ID is 0
+    std::uint32_t size = 0;     ///< bytes of the new image
+  };
+
+  [[nodiscard]] static constexpr bool is_in(SectionSet sections, unsigned i) { return ((sections >> i) & 1u) != 0; }
+
+  // Reading: storage/stored_format.hpp describes the bytes
+
+  /// Does the work of a pass for each stored value.
+  template <Storage S, class Hook>
+  [[nodiscard, gnu::noinline]] ReadResult walk(S& storage, Pass& pass, Hook& hook) {
+    const std::uint32_t end = storage.size();
+    Record record;
+    std::array<std::uint8_t, stored_format::header_bytes> bytes{};
+    for (std::uint32_t at = 0; at != end;) {
+      const bool is_first = at == 0;
+      if (!read(storage, at, end, bytes)) return failure(at, end, bytes.size());
+      if (is_first) {
+        if (number_in(bytes) == number_in(stored_format::magic)) continue;
+        if constexpr (Device::options.storage_first_format) return walk_sections(storage, pass, hook);
+        return ReadResult::invalid;
+      }
+      const std::uint32_t header = number_in(bytes);
+      record.index = static_cast<std::uint16_t>(header);
+      if (record.index == 0) {
+        record.context = static_cast<std::uint16_t>(header >> 16);
+        continue;
+      }
+      record.sub_index = static_cast<std::uint8_t>(header >> 16);
+      record.type = static_cast<std::uint8_t>(header >> 24);
+      record.size = entry::wire_bytes(stored_format::word_of(record.type));
+      if (stored_format::is_string(record.type)) {
+        const std::span<std::uint8_t> length{bytes.data(), stored_format::length_bytes};
+        if (!read(storage, at, end, length)) return failure(at, end, length.size());
+        record.size = static_cast<std::uint16_t>(number_in(length));
+      }
+      record.position = at;
+      if (end - at < record.size) return ReadResult::invalid;
+      at += record.size;
+      if (!visit(storage, pass, record, hook)) return ReadResult::unreadable;
+    }
+    return ReadResult::whole;
   }
 
-  /// Finds the record of a section that has this device's layout. It is looked up each time, because a table of all
-  /// records would take too much stack. False: storage could not be read.
+  /// Reads the next bytes of an image.
   template <Storage S>
-  [[nodiscard, gnu::noinline]] bool find(S& storage, std::size_t section, Record& record) const {
-    record = {};
+  [[nodiscard]] static bool read(S& storage, std::uint32_t& at, std::uint32_t end, std::span<std::uint8_t> to) {
+    if (end - at < to.size() || !storage.read(at, to)) return false;
+    at += static_cast<std::uint32_t>(to.size());
+    return true;
+  }
+  [[nodiscard]] static ReadResult failure(std::uint32_t at, std::uint32_t end, std::size_t size) {
+    return end - at < size ? ReadResult::invalid : ReadResult::unreadable;
+  }
+
+  /// The same for an image of the first format. A section of this dictionary has the values of all its entries.
+  template <Storage S, class Hook>
+  [[nodiscard]] ReadResult walk_sections(S& storage, Pass& pass, Hook& hook) {
     const std::uint32_t end = storage.size();
-    for (std::uint32_t at = 0; at + sizeof(Header) <= end;) {
-      Header header;
-      if (!storage.read(at, {reinterpret_cast<std::uint8_t*>(&header), sizeof header})) return false;
-      at += static_cast<std::uint32_t>(sizeof header);
-      const bool same_layout = header.signature == Layout::signatures[section] && header.size == Layout::sizes[section];
-      if (same_layout && (header.given_up == 0 || restored_)) record = {at, header.node_id, header.given_up};
+    ReadResult result = ReadResult::whole;
+    for (std::uint32_t at = 0; at != end;) {
+      SectionHeader header;
+      const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&header), sizeof header};
+      if (!read(storage, at, end, bytes)) return failure(at, end, sizeof header);
+      if (end - at < header.size) return ReadResult::invalid;
+      std::size_t section = Layout::section_count;
+      while (section != 0 && !Layout::has_first_format(section - 1, header.signature, header.size)) --section;
+      if (section == 0) {
+        result = ReadResult::other;
+      } else {
+        Record record;
+        record.context = header.node_id;
+        if (header.given_up != 0) record.type = stored_format::given_up;
+        record.position = at;
+        if (!visit_entries(storage, pass, static_cast<SectionSet>(1u << (section - 1)), record, hook))
+          return ReadResult::unreadable;
+      }
       at += header.size;
     }
-    return true;
+    return result;
   }
 
-  /// Whether storage could be read, and does not contain these sections.
-  template <Storage S>
-  [[nodiscard, gnu::noinline]] bool holds_none_of(S& storage, unsigned sections) const {
-    Record record;
-    for (std::size_t i = 0; i < parameter_sections; ++i) {
-      if (is_in(sections, i) && (!find(storage, i, record) || record.position != 0)) return false;
+  /// Does the work of a pass for each entry of some sections: for its value in an image of the first format, whose
+  /// section is at the position of `section`, or for its present value.
+  template <Storage S, class Hook>
+  [[nodiscard, gnu::noinline]] bool visit_entries(S& storage, Pass& pass, SectionSet sections, const Record& section,
+                                                  Hook& hook) {
+    bool good = true;
+    Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+      if (!good || entry::place_of(word) != entry::Place::ram) return;
+      const std::uint8_t owner = Layout::section_at(entry::offset_of(word));
+      if (owner == Layout::none || !is_in(sections, owner)) return;
+      Record record = section;
+      record.index = index;
+      record.sub_index = sub_index;
+      record.type = section.type | stored_format::type_of(word);
+      record.size = EntryAccess<Device>::bytes_of(word);
+      if (pass.work == Work::write) {
+        good = write_present(storage, pass, record, word);
+        return;
+      }
+      if constexpr (Device::options.storage_first_format) {
+        record.position += Layout::place_in_section(owner, entry::offset_of(word));
+        if (EntryAccess<Device>::kinds.strings_in_ram && entry::is_string(word)) {
+          std::array<std::uint8_t, stored_format::length_bytes> length{};
+          good = storage.read(record.position, length);
+          record.size = static_cast<std::uint16_t>(length[0] | length[1] << 8);
+          record.position += static_cast<std::uint32_t>(length.size());
+        }
+        good = good && visit(storage, pass, record, hook);
+      }
+    });
+    return good;
+  }
+
+  /// Does the work of a pass for one stored value. False: storage could not be read or written.
+  template <Storage S, class Hook>
+  [[nodiscard, gnu::noinline]] bool visit(S& storage, Pass& pass, const Record& record, Hook& hook) {
+    const bool loads = pass.work < Work::keep;
+    if (loads && is_communication_index(record.index) != (pass.work == Work::load_communication)) return true;
+    const bool is_void = record.is_given_up() && !restored_;
+    if (is_void && pass.work != Work::keep) return true;
+    Bytes bytes;
+    const std::span<std::uint8_t> number{bytes.data(), stored_format::is_string(record.type) ? 0u : record.size};
+    if (!storage.read(record.position, number)) return false;
+    const entry::Word word = EntryAccess<Device>::find(record.index, record.sub_index);
+    NotLoaded why = examine(record, word, number);
+    if (why == NotLoaded::value && pass.store->entries().holds(word, number)) why = NotLoaded::none;
+    if (pass.work == Work::keep) return is_void ? removed(pass) : keep(storage, pass, record, word, why);
+    if constexpr (Hook::lists) {
+      if (why != NotLoaded::none) report(storage, record, why, number, nullptr, hook);
+      return true;
+    } else {
+      if (why == NotLoaded::none) return load_one(storage, pass, record, word, number, hook);
+      if (!asked(storage, pass, record, why, number, hook)) damaged_ = true;
+      return true;
     }
-    return true;
   }
 
-  /// The same for the image after the sections in `given_up` have been removed, or marked as valid until power-on.
-  template <Storage S>
-  [[nodiscard]] bool find_kept(S& storage, std::size_t section, unsigned given_up, Record& record) const {
-    if (!find(storage, section, record)) return false;
-    if (is_in(given_up, section)) {
-      if constexpr (Device::options.restore_needs_power_cycle) {
-        record.given_up = 1;
-      } else {
-        record.position = 0;
+  /// Returns why a stored value cannot be loaded.
+  [[nodiscard]] NotLoaded examine(const Record& record, entry::Word word, std::span<const std::uint8_t> number) const {
+    if (word <= Dictionary::no_sub_index) return NotLoaded::no_object;
+    if (entry::place_of(word) != entry::Place::ram || !Layout::stores(word)) return NotLoaded::not_stored;
+    if (((stored_format::type_of(word) ^ record.type) & stored_format::type_mask) != 0) return NotLoaded::type;
+    if constexpr (EntryAccess<Device>::kinds.strings_in_ram) {
+      if (entry::is_string(word)) {
+        const bool fits = record.size <= EntryAccess<Device>::capacity(record.index, record.sub_index);
+        return fits ? NotLoaded::none : NotLoaded::length;
       }
     }
-    return true;
-  }
-
-  /// Writes a new image: the sections in `written` with their present values, the others as they are stored.
-  template <Storage S>
-  [[nodiscard, gnu::noinline]] bool rewrite(S& storage, unsigned written, unsigned given_up,
-                                            ObjectStore<Device>& store) const {
-    std::uint32_t size = 0;
-    for (std::size_t i = 0; i < parameter_sections; ++i) {
-      if (Layout::sizes[i] == 0) continue;
-      Record record;
-      if (!find_kept(storage, i, given_up, record)) return false;
-      if (is_in(written, i) || record.position != 0)
-        size += static_cast<std::uint32_t>(sizeof(Header)) + Layout::sizes[i];
-    }
-    if (!storage.begin(size)) return false;
-    for (std::size_t i = 0; i < parameter_sections; ++i) {
-      if (Layout::sizes[i] == 0) continue;
-      if (!(is_in(written, i) ? write_present(storage, i, store) : write_kept(storage, i, given_up))) return false;
-    }
-    return storage.commit();
-  }
-
-  // Separate functions, so that their buffers do not take stack while the image is committed.
-  template <Storage S>
-  [[nodiscard, gnu::noinline]] static bool write_present(S& storage, std::size_t section, ObjectStore<Device>& store) {
-    return write_header(storage, section, {.node_id = store.node_id().value()}) &&
-           write_values(storage, section, ram_of(store));
-  }
-  template <Storage S>
-  [[nodiscard, gnu::noinline]] bool write_kept(S& storage, std::size_t section, unsigned given_up) const {
-    Record record;
-    if (!find_kept(storage, section, given_up, record)) return false;
-    return record.position == 0 || (write_header(storage, section, record) && copy_values(storage, section, record));
-  }
-
-  template <Storage S>
-  [[nodiscard]] static bool write_header(S& storage, std::size_t section, const Record& record) {
-    const Header header{Layout::signatures[section], Layout::sizes[section], record.node_id, record.given_up};
-    return storage.write({reinterpret_cast<const std::uint8_t*>(&header), sizeof header});
-  }
-
-  template <Storage S>
-  [[nodiscard]] static bool write_values(S& storage, std::size_t section, const std::uint8_t* ram) {
-    for (std::size_t i = Layout::firsts[section]; i < Layout::firsts[section + 1]; ++i) {
-      if (!storage.write({ram + Layout::runs[i].offset, Layout::runs[i].size})) return false;
-    }
-    return true;
-  }
-
-  template <Storage S>
-  [[nodiscard, gnu::noinline]] static bool copy_values(S& storage, std::size_t section, const Record& record) {
-    std::array<std::uint8_t, 16> bytes;
-    for (std::uint32_t done = 0; done < Layout::sizes[section];) {
-      const std::uint32_t size = std::min<std::uint32_t>(bytes.size(), Layout::sizes[section] - done);
-      const std::span<std::uint8_t> piece{bytes.data(), size};
-      if (!storage.read(record.position + done, piece) || !storage.write(piece)) return false;
-      done += size;
-    }
-    return true;
+    const bool is_possible = Check::is_possible(record.index, record.sub_index, word, number) &&
+                             !Check::is_rejected(rejected_, record.index);
+    return is_possible ? NotLoaded::none : NotLoaded::value;
   }
 
   // Loading
+
+  /// Replaces default values by the stored ones. False: storage could not be read, and some values are undefined.
+  template <Storage S, class Hook>
+  [[nodiscard]] bool load(S& storage, ObjectStore<Device>& store, Work work, Hook& hook) {
+    Pass pass{&store, work};
+    const ReadResult result = walk(storage, pass, hook);
+    if (result == ReadResult::unreadable) return false;
+    if (result != ReadResult::whole) damaged_ = true;
+    if constexpr (Hook::exists) {
+      if (result == ReadResult::other && work == Work::load_application)
+        hook(StoredValue{{}, NotLoaded::layout, {}, nullptr});
+    }
+    return true;
+  }
+
+  /// Loads a value. False: storage could not be read.
+  template <Storage S, class Hook>
+  [[nodiscard]] bool load_one(S& storage, Pass& pass, const Record& record, entry::Word word,
+                              std::span<const std::uint8_t> number, Hook& hook) {
+    const EntryAccess<Device> entries = pass.store->entries();
+    if constexpr (Layout::has(ParameterSection::with_node_id)) {
+      if (record.node_id() != pass.store->node_id().value() &&
+          Layout::section_at(entry::offset_of(word)) == static_cast<std::uint8_t>(ParameterSection::with_node_id))
+        return true;
+    }
+    if constexpr (Hook::exists) {
+      if (record.version() != Device::options.storage_version &&
+          asked(storage, pass, record, NotLoaded::version, number, hook))
+        return true;
+    }
+    if constexpr (EntryAccess<Device>::kinds.strings_in_ram) {
+      if (entry::is_string(word)) {
+        const std::span<std::uint8_t> text{entries.ram(word) + stored_format::length_bytes, record.size};
+        if (!storage.read(record.position, text)) return false;
+        entries.write(word, text);
+        return true;
+      }
+    }
+    if (!follows_node_id(pass, record, word, number)) entries.write(word, number);
+    return true;
+  }
+
+  /// Asks the application about a value. Returns whether it has replaced or discarded it.
+  template <Storage S, class Hook>
+  [[nodiscard]] static bool asked([[maybe_unused]] S& storage, [[maybe_unused]] Pass& pass,
+                                  [[maybe_unused]] const Record& record, [[maybe_unused]] NotLoaded why,
+                                  [[maybe_unused]] std::span<const std::uint8_t> number, [[maybe_unused]] Hook& hook) {
+    if constexpr (Hook::exists) {
+      StoredValueAnswer answer;
+      report(storage, record, why, number, &answer, hook);
+      if (answer.size != 0) {
+        const auto index = static_cast<std::uint16_t>(answer.key >> 8);
+        const auto sub_index = static_cast<std::uint8_t>(answer.key);
+        const entry::Word word = EntryAccess<Device>::find(index, sub_index);
+        const std::span<const std::uint8_t> value{answer.bytes.data(), answer.size};
+        if (is_communication_index(index) != (pass.work == Work::load_communication) ||
+            word <= Dictionary::no_sub_index || entry::place_of(word) != entry::Place::ram ||
+            !Check::is_possible(index, sub_index, word, value))
+          return false;
+        pass.store->entries().write(word, value);
+      }
+      return answer.discarded;
+    }
+    return false;
+  }
+
+  /// Passes a value to the application, with its bytes, of a string the first ones.
+  template <Storage S, class Hook>
+  static void report(S& storage, const Record& record, NotLoaded why, std::span<const std::uint8_t> number,
+                     StoredValueAnswer* answer, Hook& hook) {
+    std::array<std::uint8_t, string_bytes> text{};
+    std::span<const std::uint8_t> bytes = number;
+    if (stored_format::is_string(record.type)) {
+      const std::span<std::uint8_t> first{text.data(), std::min<std::size_t>(text.size(), record.size)};
+      if (storage.read(record.position, first)) bytes = first;
+    }
+    hook(StoredValue{record, why, bytes, answer});
+  }
+
+  /// Passes the values that are not loaded to the application.
+  template <class Visit>
+  struct Lister {
+    static constexpr bool exists = false;
+    static constexpr bool lists = true;
+    Visit& visit;
+    void operator()(const StoredValue& value) const { visit(value); }
+  };
 
   /// Whether a node-ID-dependent value is longer than four bytes.
   static constexpr bool has_wide_relative = [] {
@@ -263,131 +446,132 @@ class ParameterStorage {
     return wide;
   }();
   using Relative = std::conditional_t<has_wide_relative, std::uint64_t, std::uint32_t>;
-  static constexpr std::size_t max_relative =
-      std::max(Device::node_id_relative_communication().size(), Device::node_id_relative_application().size());
+  static constexpr bool has_relative =
+      !Device::node_id_relative_communication().empty() || !Device::node_id_relative_application().empty();
 
-  [[nodiscard]] static Relative relative_value(const std::uint8_t* ram, const NodeIdRelative& row) {
-    Relative value = 0;
-    std::memcpy(&value, ram + row.offset, row.size);
-    return value;
-  }
-
-  template <bool Communication>
-  static void reset_to_defaults(ObjectStore<Device>& store, NodeId node_id) {
-    Communication ? store.reset_communication(node_id) : store.reset_application(node_id);
-  }
-
-  /// Sets default values, then the stored ones.
-  template <bool Communication, Storage S>
-  void reset(S& storage, ObjectStore<Device>& store, NodeId node_id) {
-    constexpr std::size_t begin = Communication ? 0 : Check::communication_count;
-    constexpr std::size_t end = Communication ? Check::communication_count : Check::checked_count;
-    reset_to_defaults<Communication>(store, node_id);
-    if (!load<Communication>(storage, nullptr, store)) {
-      damaged_ = true;
-      reset_to_defaults<Communication>(store, node_id);
-    } else if constexpr (begin != end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        if (!Check::is_possible(store.entries(), Check::checked[i]))
-          return leave_out<Communication>(storage, store, node_id, i, end);
+  /// Whether a value was the default value for another node-ID: the default value for this node-ID, which is in RAM,
+  /// stays. A COB-ID that depends on the node-ID continues to do so (CiA 305).
+  [[nodiscard]] static bool follows_node_id([[maybe_unused]] Pass& pass, [[maybe_unused]] const Record& record,
+                                            [[maybe_unused]] entry::Word word,
+                                            [[maybe_unused]] std::span<const std::uint8_t> number) {
+    if constexpr (has_relative) {
+      const std::uint8_t node_id = pass.store->node_id().value();
+      if (record.node_id() == node_id) return false;
+      const std::span<const NodeIdRelative> rows = pass.work == Work::load_communication
+                                                       ? Device::node_id_relative_communication()
+                                                       : Device::node_id_relative_application();
+      for (const NodeIdRelative& row : rows) {
+        if (row.offset != entry::offset_of(word)) continue;
+        Relative stored = 0;
+        Relative by_default = 0;
+        std::memcpy(&stored, number.data(), row.size);
+        std::memcpy(&by_default, pass.store->entries().ram(word), row.size);
+        return stored + node_id == by_default + record.node_id();
       }
     }
+    return false;
   }
 
-  /// Loads again without those values of rows `first` to `end` that could not have been written.
-  template <bool Communication, Storage S>
-  [[gnu::noinline]] void leave_out(S& storage, ObjectStore<Device>& store, NodeId node_id, std::size_t first,
-                                   std::size_t end) {
-    Rows left_out{};
-    for (std::size_t i = first; i < end; ++i) {
-      if (!Check::is_possible(store.entries(), Check::checked[i]))
-        left_out[i / 8] |= static_cast<std::uint8_t>(1u << i % 8);
+  // Saving
+
+  /// Writes a new image; if no value is written, only if it differs from the present one. False: storage has not
+  /// changed.
+  template <Storage S, class Hook>
+  [[nodiscard, gnu::noinline]] bool rewrite(S& storage, Pass& pass, Hook& hook) {
+    if (!produce(storage, pass, hook)) return false;
+    if (pass.written == 0 && !pass.changes) return true;
+    if (!storage.begin(pass.size)) {
+      if (!pass.keeps_not_loaded) return false;
+      pass.keeps_not_loaded = false;  // there is no room for them
+      if (!produce(storage, pass, hook) || !storage.begin(pass.size)) return false;
     }
-    reset_to_defaults<Communication>(store, node_id);
-    for (std::size_t i = first; i < end; ++i) {
-      // A default value that could not have been written either is an error in the EDS.
-      if (Check::is_row(left_out, i) && Check::is_possible(store.entries(), Check::checked[i])) damaged_ = true;
-    }
-    if (!load<Communication>(storage, &left_out, store)) {
-      damaged_ = true;
-      reset_to_defaults<Communication>(store, node_id);
-    }
+    pass.counts = false;
+    return produce(storage, pass, hook) && storage.commit();
   }
 
-  /// Replaces the default values by the stored ones, except some rows of `checked`. False: storage could not be read,
-  /// and some values are undefined.
-  template <bool Communication, Storage S>
-  [[nodiscard]] bool load(S& storage, const Rows* left_out, ObjectStore<Device>& store) const {
-    if constexpr (Communication) {
-      return load(storage, communication_sections, Device::node_id_relative_communication(), left_out, store);
-    } else {
-      return load(storage, all_sections & ~communication_sections, Device::node_id_relative_application(), left_out,
-                  store);
-    }
+  /// Writes the bytes of a new image, or counts them.
+  template <Storage S, class Hook>
+  [[nodiscard, gnu::noinline]] bool produce(S& storage, Pass& pass, Hook& hook) {
+    pass.context = 0;
+    pass.size = 0;
+    pass.work = Work::keep;
+    if (!put(storage, pass, stored_format::magic)) return false;
+    const ReadResult result = walk(storage, pass, hook);
+    if (result == ReadResult::unreadable) return false;
+    if (result != ReadResult::whole) pass.changes = true;
+    Record record;
+    record.context = static_cast<std::uint16_t>(pass.store->node_id().value() | Device::options.storage_version << 8);
+    pass.work = Work::write;
+    return visit_entries(storage, pass, pass.written, record, hook);
   }
+
+  /// Writes the present value of an entry, without the 00h after a text.
   template <Storage S>
-  [[nodiscard, gnu::noinline]] bool load(S& storage, unsigned sections, std::span<const NodeIdRelative> relative,
-                                         const Rows* left_out, ObjectStore<Device>& store) const {
-    for (std::size_t i = 0; i < parameter_sections; ++i) {
-      if (!is_in(sections, i) || Layout::sizes[i] == 0) continue;
-      Record record;
-      if (!find(storage, i, record)) return false;
-      if (record.position != 0 && !load_section(storage, i, record, relative, left_out, store)) return false;
-    }
-    return true;
-  }
-
-  /// Loads a section. A value that was the default value for another node-ID becomes the one for this node-ID: a COB-ID
-  /// that depends on the node-ID continues to do so (CiA 305).
-  template <Storage S>
-  [[nodiscard]] static bool load_section(S& storage, std::size_t section, Record record,
-                                         std::span<const NodeIdRelative> relative, const Rows* left_out,
-                                         ObjectStore<Device>& store) {
-    const bool same_node_id = record.node_id == store.node_id().value();
-    if (!same_node_id && section == static_cast<std::size_t>(ParameterSection::with_node_id)) return true;
-    std::uint8_t* const ram = ram_of(store);
-    std::array<Relative, max_relative> defaults;
-    for (std::size_t i = 0; i < relative.size(); ++i) defaults[i] = relative_value(ram, relative[i]);
-    if (!read_values(storage, section, record.position, left_out, ram)) return false;
-    for (std::size_t i = 0; !same_node_id && i < relative.size(); ++i) {
-      const Relative stored = relative_value(ram, relative[i]);
-      if (stored + store.node_id().value() == defaults[i] + record.node_id)
-        std::memcpy(ram + relative[i].offset, &defaults[i], relative[i].size);
-    }
-    return true;
-  }
-
-  template <Storage S>
-  [[nodiscard]] static bool read_values(S& storage, std::size_t section, std::uint32_t position, const Rows* left_out,
-                                        std::uint8_t* ram) {
-    for (std::size_t i = Layout::firsts[section]; i < Layout::firsts[section + 1]; ++i) {
-      const StoredRun run = Layout::runs[i];
-      if (left_out == nullptr ? !storage.read(position, {ram + run.offset, run.size})
-                              : !read_others(storage, position, run, *left_out, ram))
-        return false;
-      position += run.size;
-    }
-    return true;
-  }
-
-  /// Reads byte by byte, because it is rarely needed.
-  template <Storage S>
-  [[nodiscard, gnu::noinline]] static bool read_others([[maybe_unused]] S& storage,
-                                                       [[maybe_unused]] std::uint32_t position,
-                                                       [[maybe_unused]] StoredRun run,
-                                                       [[maybe_unused]] const Rows& left_out,
-                                                       [[maybe_unused]] std::uint8_t* ram) {
-    if constexpr (Check::checked_count != 0) {
-      for (std::uint16_t i = 0; i < run.size; ++i) {
-        const std::size_t offset = std::size_t{run.offset} + i;
-        if (!Check::belongs_to(left_out, offset) && !storage.read(position + i, {ram + offset, 1})) return false;
+  [[nodiscard]] static bool write_present(S& storage, Pass& pass, Record& record, entry::Word word) {
+    const std::uint8_t* value = pass.store->entries().ram(word);
+    if constexpr (EntryAccess<Device>::kinds.strings_in_ram) {
+      if (entry::is_string(word)) {
+        std::memcpy(&record.size, value, sizeof record.size);
+        value += sizeof record.size;
       }
     }
+    return put_header(storage, pass, record) && put(storage, pass, {value, record.size});
+  }
+
+  /// A stored value is not in the new image.
+  [[nodiscard]] static bool removed(Pass& pass) {
+    pass.changes = true;
     return true;
+  }
+
+  /// Copies a stored value to the new image, unless it is removed.
+  template <Storage S>
+  [[nodiscard]] static bool keep(S& storage, Pass& pass, Record record, entry::Word word, NotLoaded why) {
+    const unsigned section = why == NotLoaded::none ? Layout::section_at(entry::offset_of(word))
+                                                    : static_cast<unsigned>(parameter_detail::section_of(record.index));
+    if (why == NotLoaded::none ? is_in(pass.written, section) : !pass.keeps_not_loaded) return removed(pass);
+    if (is_in(pass.given_up, section)) {
+      if (!Device::options.restore_needs_power_cycle || why != NotLoaded::none) return removed(pass);
+      if (!record.is_given_up()) pass.changes = true;
+      record.type |= stored_format::given_up;
+    }
+    if (!put_header(storage, pass, record)) return false;
+    Bytes bytes;
+    for (std::uint32_t done = 0; done < record.size;) {
+      const std::span<std::uint8_t> piece{bytes.data(), std::min<std::size_t>(bytes.size(), record.size - done)};
+      if (!storage.read(record.position + done, piece) || !put(storage, pass, piece)) return false;
+      done += static_cast<std::uint32_t>(piece.size());
+    }
+    return true;
+  }
+
+  /// Writes what is before the bytes of a value.
+  template <Storage S>
+  [[nodiscard, gnu::noinline]] static bool put_header(S& storage, Pass& pass, const Record& record) {
+    if (pass.context != record.context) {
+      pass.context = record.context;
+      if (!put_word(storage, pass, std::uint32_t{record.context} << 16)) return false;
+    }
+    if (!put_word(storage, pass, record.index | std::uint32_t{record.sub_index} << 16 | std::uint32_t{record.type} << 24))
+      return false;
+    if (!stored_format::is_string(record.type)) return true;
+    return put(storage, pass, {reinterpret_cast<const std::uint8_t*>(&record.size), sizeof record.size});
+  }
+  template <Storage S>
+  [[nodiscard]] static bool put_word(S& storage, Pass& pass, std::uint32_t word) {
+    return put(storage, pass, {reinterpret_cast<const std::uint8_t*>(&word), sizeof word});
+  }
+
+  template <Storage S>
+  [[nodiscard, gnu::noinline]] static bool put(S& storage, Pass& pass, std::span<const std::uint8_t> bytes) {
+    pass.size += static_cast<std::uint32_t>(bytes.size());
+    return pass.counts || storage.write(bytes);
   }
 
   bool damaged_ = false;
   bool restored_ = false;  ///< since power-on
+  bool reported_ = false;  ///< the application has read what is not loaded
+  [[no_unique_address]] typename Check::Rejected rejected_{};
 };
 
 }  // namespace canopen

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/can/cob_id.hpp"
@@ -27,7 +28,7 @@ class StoredValueCheck {
   using Layout = ParameterLayout<Device>;
 
  public:
-  /// A stored entry that does not accept all bit patterns, or sub-index 0 of a mapping parameter.
+  /// A stored entry with a check of its service, or sub-index 0 of a mapping parameter.
   struct Checked {
     std::uint16_t index;
     std::uint8_t sub_index;
@@ -46,15 +47,12 @@ class StoredValueCheck {
   static constexpr std::uint8_t sync_overflow = 0xFD;
   static constexpr std::uint8_t cob_id = 0xFF;      ///< if it is not valid, any value is accepted
   static constexpr std::uint8_t identifier = 0xFE;  ///< the same, but bits 30 and 31 have another meaning
-  [[nodiscard]] static constexpr bool is_mapping(const Checked& row) {
-    return row.what != plain_value && row.what <= max_mapped;
-  }
-  [[nodiscard]] static constexpr bool is_of_service(const Checked& row) {
-    return row.what > max_mapped && row.what < identifier;
-  }
+  [[nodiscard]] static constexpr bool is_mapping(const Checked& row) { return row.what <= max_mapped; }
 
-  [[nodiscard]] static constexpr bool is_error_behavior(const Checked& row) { return row.what == error_behavior; }
-  [[nodiscard]] static constexpr bool is_emcy_inhibit_time(const Checked& row) { return row.what == emcy_inhibit_time; }
+  template <std::uint8_t What>
+  [[nodiscard]] static constexpr bool is(const Checked& row) {
+    return row.what == What;
+  }
 
   [[nodiscard]] static constexpr std::uint8_t what_is(std::uint16_t index, std::uint8_t sub_index) {
     if (const std::optional<CobIdEntries> row = find_cob_id_entries(index, sub_index)) {
@@ -78,8 +76,7 @@ class StoredValueCheck {
     Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
       if (entry::place_of(word) != entry::Place::ram || !Layout::stores(index, sub_index)) return;
       const std::uint8_t what = what_is(index, sub_index);
-      const bool limited = (word & entry::limited) != 0 || entry::is_boolean(word) || entry::is_string(word);
-      if (limited || what != plain_value) visit(Checked{index, sub_index, what});
+      if (what != plain_value) visit(Checked{index, sub_index, what});
     });
   }
 
@@ -95,47 +92,68 @@ class StoredValueCheck {
     for_each_checked([&](const Checked& row) { rows[i++] = row; });
     return rows;
   }();
-  static constexpr std::size_t communication_count =
-      static_cast<std::size_t>(std::ranges::count_if(checked, [](const Checked& row) { return row.index < 0x2000; }));
+  /// Whether a mapping can be stored.
+  static constexpr bool has_mappings = std::ranges::any_of(checked, is_mapping);
 
-  /// One bit for each row of `checked`.
-  using Rows = std::array<std::uint8_t, (checked_count + 7) / 8>;
-  [[nodiscard]] static bool is_row(const Rows& rows, std::size_t i) { return (rows[i / 8] >> i % 8 & 1) != 0; }
-
-  /// Whether the value of an entry could have been written over the bus.
-  [[nodiscard, gnu::noinline]] static bool is_possible(EntryAccess<Device> entries, const Checked& row) {
-    const entry::Word word = EntryAccess<Device>::find(row.index, row.sub_index);
-    const std::uint8_t* const at = entries.ram(word);
-    if constexpr (std::ranges::any_of(checked, is_mapping)) {
-      if (is_mapping(row)) {
-        const MappingParameter mapping{at, entries.ram(EntryAccess<Device>::find(row.index, 1))};
-        return is_possible_mapping<Device>(mapping, is_tpdo_mapping(row.index), *at, row.what);
+  /// Whether these bytes of an entry, as SDO sends them, could have been written over the bus. A mapping is checked
+  /// when all its entries are loaded.
+  [[nodiscard]] static bool is_possible(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
+                                        std::span<const std::uint8_t> bytes) {
+    if (EntryAccess<Device>::check_value(index, sub_index, word, bytes) != ok) return false;
+    if constexpr (checked_count != 0) {
+      for (const Checked& row : checked) {
+        if (row.index == index && row.sub_index == sub_index) return is_possible(row.what, number_in(bytes));
       }
     }
-    if constexpr (EntryAccess<Device>::kinds.strings_in_ram) {
-      if (entry::is_string(word)) return number_in({at, 2}) <= EntryAccess<Device>::capacity(row.index, row.sub_index);
-    }
-    const std::size_t size = EntryAccess<Device>::bytes_of(word);
-    if (EntryAccess<Device>::check_value(row.index, row.sub_index, word, {at, size}) != ok) return false;
-    if (row.what == plain_value) return true;
-    if constexpr (std::ranges::any_of(checked, is_of_service)) {
-      if (is_of_service(row)) return is_possible(row.what, entries.number(word));
-    }
-    const CobId value{entries.number(word) & (row.what == cob_id ? 0xFFFF'FFFF : CobId::identifier)};
-    return !value.valid() || may_be_written(value, true, Device::options.pdo_extended_ids);
+    return true;
   }
 
-  /// Whether a byte of RAM belongs to one of these rows.
-  [[nodiscard]] static bool belongs_to(const Rows& rows, std::size_t offset) {
-    for (std::size_t i = 0; i < checked_count; ++i) {
-      if (is_row(rows, i) && (is_in_entry(offset, checked[i].index, checked[i].sub_index, 1) ||
-                              (is_mapping(checked[i]) && is_in_entry(offset, checked[i].index, 1, checked[i].what))))
-        return true;
+  /// The mapping parameters whose stored mapping is not possible: one bit for each row of `checked`.
+  using Rejected = std::array<std::uint8_t, has_mappings ? (checked_count + 7) / 8 : 0>;
+
+  /// Whether an entry belongs to a mapping parameter that has been rejected.
+  [[nodiscard]] static bool is_rejected([[maybe_unused]] const Rejected& rejected,
+                                        [[maybe_unused]] std::uint16_t index) {
+    if constexpr (has_mappings) {
+      for (std::size_t i = 0; i < checked_count; ++i) {
+        if (((rejected[i / 8] >> (i % 8)) & 1) != 0 && checked[i].index == index) return true;
+      }
     }
     return false;
   }
 
+  /// Adds the mappings that are loaded and not possible. Returns whether there are any.
+  [[nodiscard]] static bool reject_mappings(EntryAccess<Device> entries, Rejected& rejected) {
+    bool any = false;
+    for_each_impossible_mapping(entries, [&](std::size_t i) {
+      rejected[i / 8] = static_cast<std::uint8_t>(rejected[i / 8] | 1u << i % 8);
+      any = true;
+    });
+    return any;
+  }
+
+  /// Whether one of the rejected mappings would be possible with its present values, which are the default values: a
+  /// default value that is not possible either is an error in the EDS.
+  [[nodiscard]] static bool has_better_defaults(EntryAccess<Device> entries, const Rejected& rejected) {
+    Rejected left = rejected;
+    for_each_impossible_mapping(entries, [&](std::size_t i) {
+      left[i / 8] = static_cast<std::uint8_t>(left[i / 8] & ~(1u << i % 8));
+    });
+    return std::ranges::any_of(left, [](std::uint8_t bits) { return bits != 0; });
+  }
+
  private:
+  template <class Visit>
+  static void for_each_impossible_mapping(EntryAccess<Device> entries, Visit visit) {
+    for (std::size_t i = 0; i < checked_count; ++i) {
+      const Checked& row = checked[i];
+      if (!is_mapping(row)) continue;
+      const std::uint8_t* const count = entries.ram(EntryAccess<Device>::find(row.index, 0));
+      const MappingParameter mapping{count, entries.ram(EntryAccess<Device>::find(row.index, 1))};
+      if (!is_possible_mapping<Device>(mapping, is_tpdo_mapping(row.index), *count, row.what)) visit(i);
+    }
+  }
+
   /// Whether the service of a parameter accepts a value.
   [[nodiscard]] static bool is_possible(std::uint8_t what, std::uint32_t value) {
     switch (what) {
@@ -143,28 +161,26 @@ class StoredValueCheck {
       case sync_overflow: return is_sync_overflow(value);
       case sync_start: return value <= highest_sync_counter;
       case error_behavior:
-        if constexpr (std::ranges::any_of(checked, is_error_behavior)) {
+        if constexpr (std::ranges::any_of(checked, is<error_behavior>)) {
           return check_error_behavior(static_cast<std::uint8_t>(value)) == ok;
         }
         return true;
       case emcy_inhibit_time:
-        if constexpr (std::ranges::any_of(checked, is_emcy_inhibit_time)) {
+        if constexpr (std::ranges::any_of(checked, is<emcy_inhibit_time>)) {
           return value % Device::options.emcy_inhibit_time_step == 0;
         }
         return true;
-      default:
+      case rpdo_transmission:
+      case tpdo_transmission:
         return check_transmission_type(Device::options, what == tpdo_transmission, static_cast<std::uint8_t>(value)) ==
                ok;
+      case cob_id:
+      case identifier: {
+        const CobId id{value & (what == cob_id ? 0xFFFF'FFFF : CobId::identifier)};
+        return !id.valid() || may_be_written(id, true, Device::options.pdo_extended_ids);
+      }
+      default: return true;  // a mapping
     }
-  }
-
-  [[nodiscard]] static bool is_in_entry(std::size_t offset, std::uint16_t index, std::uint8_t sub_index,
-                                        unsigned elements) {
-    const entry::Word word = EntryAccess<Device>::find(index, sub_index);
-    const std::size_t bytes = EntryAccess<Device>::bytes_of(word);
-    std::size_t size = (bytes <= 2 ? bytes : bytes <= 4 ? 4 : 8) * elements;  // size in memory
-    if (entry::is_string(word)) size = sizeof(std::uint16_t) + EntryAccess<Device>::capacity(index, sub_index);
-    return offset - entry::offset_of(word) < size;
   }
 };
 

@@ -9,6 +9,8 @@
 
 #include "canopen/base/clock.hpp"
 #include "canopen/emcy/error_register.hpp"
+#include "canopen/node/application.hpp"
+#include "canopen/node/functions.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/node/services/emergency.hpp"
 #include "canopen/od/object_store.hpp"
@@ -37,6 +39,16 @@ class DefaultValues : public ServiceDefaults<DefaultValues<Device, Handlers...>>
 template <class Device, class... Handlers>
 class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
   using Stored = ParameterStorage<Device>;
+  static constexpr bool has_hook = (handler_detail::has_event_function<function::OnStoredValue, Handlers> || ...);
+
+  /// Passes a stored value to the application.
+  template <class Host>
+  struct Hook {
+    static constexpr bool exists = has_hook;
+    static constexpr bool lists = false;
+    Host* host;
+    void operator()(const StoredValue& value) const { host->template notify<function::OnStoredValue>(value); }
+  };
 
  public:
   static constexpr bool exists = storage_detail::has_storage<Handlers...>;
@@ -50,13 +62,15 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
   template <class Host>
   void reset_application(Host& host) {
     finish(host);
-    stored_.reset_application(host.handlers().storage(), host.store(), host.node_id());
+    Hook<Host> hook{&host};
+    stored_.reset_application(host.handlers().storage(), host.store(), host.node_id(), hook);
   }
   /// Reports stored values that have been lost, by EMCY 6300h.
   template <class Host>
   void reset_communication(Host& host) {
     finish(host);
-    stored_.reset_communication(host.handlers().storage(), host.store(), host.node_id());
+    Hook<Host> hook{&host};
+    stored_.reset_communication(host.handlers().storage(), host.store(), host.node_id(), hook);
     if (!stored_.damaged()) return;
     constexpr std::uint16_t code = emergency_code::data_set;
     host.template service<Emergency<Device>>().report(host, code, ErrorRegister::generic, Device::emergency_info(code));
@@ -100,7 +114,7 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
     if (code == ok) {
       code = host.handler_calls().ask(key, [&] { return host.handlers().before_write(host.node(), key, bytes); });
     }
-    if (code != ok || (sections_of(sub_index) == 0 && host.handlers().handles(key))) return code;
+    if (code != ok || (Stored::Layout::sections_of(sub_index) == 0 && host.handlers().handles(key))) return code;
     code = index == store_parameters ? save(host, sub_index) : restore(host, sub_index);
     if constexpr (is_stepped) progress_.started = code == ok && host.handlers().storage().busy();
     return code;
@@ -110,17 +124,24 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
   template <class Host>
   [[nodiscard]] AbortCode save(Host& host, std::uint8_t sub_index) {
     if (is_writing(host)) return AbortCode::device_state;
-    const SectionSet sections = sections_of(sub_index);
-    const bool saved = sections != 0 && stored_.save(host.handlers().storage(), sections, host.store());
+    const SectionSet sections = Stored::Layout::sections_of(sub_index);
+    Hook<Host> hook{&host};
+    const bool saved = sections != 0 && stored_.save(host.handlers().storage(), sections, host.store(), hook);
     if constexpr (is_stepped) host.attend();
     return saved ? ok : AbortCode::hardware;
+  }
+  /// Calls `visit(StoredValue)` for each stored value that is not loaded.
+  template <class Host, class Visit>
+  void for_each_not_loaded(Host& host, Visit visit) {
+    stored_.for_each_not_loaded(host.handlers().storage(), host.store(), visit);
   }
   /// Restores the default values of a sub-index of 1011h.
   template <class Host>
   [[nodiscard]] AbortCode restore(Host& host, std::uint8_t sub_index) {
     if (is_writing(host)) return AbortCode::device_state;
-    const SectionSet sections = sections_of(sub_index);
-    const bool restored = sections != 0 && stored_.restore(host.handlers().storage(), sections, host.store());
+    const SectionSet sections = Stored::Layout::sections_of(sub_index);
+    Hook<Host> hook{&host};
+    const bool restored = sections != 0 && stored_.restore(host.handlers().storage(), sections, host.store(), hook);
     if constexpr (is_stepped) host.attend();
     return restored ? ok : AbortCode::hardware;
   }

@@ -1,0 +1,115 @@
+#include "format/storage_locations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/storage/parameter_ranges.hpp>
+#include <cctype>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "compare/stored_values.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr std::string_view comment = ";StorageLocation=";
+constexpr std::string_view never_stored[] = {"RAM", "ROM"};
+
+/// The entry of a section: `2100` or `2100sub1`.
+std::optional<EntryKey> entry_of(std::string_view section) {
+  const auto number = [](std::string_view digits) -> std::optional<unsigned> {
+    unsigned value = 0;
+    if (digits.empty() || digits.size() > 4) return std::nullopt;
+    for (const char digit : digits) {
+      if (std::isxdigit(static_cast<unsigned char>(digit)) == 0) return std::nullopt;
+      const int letter = std::toupper(static_cast<unsigned char>(digit));
+      value = value * 16 + static_cast<unsigned>(letter <= '9' ? letter - '0' : letter - 'A' + 10);
+    }
+    return value;
+  };
+  const auto index = number(section.substr(0, 4));
+  if (section.size() < 4 || !index) return std::nullopt;
+  if (section.size() == 4) return EntryKey{static_cast<std::uint16_t>(*index), std::uint8_t{0}};
+  if (!starts_with_ignoring_case(section.substr(4), "sub")) return std::nullopt;
+  const auto sub_index = number(section.substr(7));
+  if (!sub_index || *sub_index > 0xFF) return std::nullopt;
+  return EntryKey{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*sub_index)};
+}
+
+/// The groups by entry.
+std::map<EntryKey, std::string> locations_of(const IniFile& ini) {
+  std::map<EntryKey, std::string> locations;
+  auto remark = ini.remarks.begin();
+  for (std::size_t i = 0; i < ini.sections.size(); ++i) {
+    const std::uint32_t end = i + 1 < ini.sections.size() ? ini.sections[i + 1].line : UINT32_MAX;
+    for (; remark != ini.remarks.end() && remark->line < end; ++remark) {
+      if (remark->line <= ini.sections[i].line || !starts_with_ignoring_case(remark->text, comment)) continue;
+      if (const auto entry = entry_of(ini.sections[i].name)) {
+        locations[*entry] = std::string{remark->text.substr(comment.size())};
+      }
+    }
+  }
+  return locations;
+}
+
+bool has_word(std::string_view text, std::string_view word) {
+  const auto is_part = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || !is_part(text[at - 1])) && (end == text.size() || !is_part(text[end]))) return true;
+  }
+  return false;
+}
+
+/// The sub-index of 1010h whose name has the name of a group.
+std::optional<std::uint8_t> sub_index_of_group(const Device& device, std::string_view group) {
+  const Object* const store = device.find(0x1010);
+  if (store == nullptr) return std::nullopt;
+  for (const Entry& entry : store->entries) {
+    const bool assignable =
+        entry.sub_index >= canopen::first_group_sub_index && entry.sub_index <= canopen::last_group_sub_index;
+    if (assignable && has_word(entry.name, group)) return entry.sub_index;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+nlohmann::ordered_json storage_options(const IniFile& ini, const Device& device, const Options& options) {
+  const std::map<EntryKey, std::string> locations = locations_of(ini);
+  if (locations.empty()) return nullptr;
+  nlohmann::ordered_json entries = nlohmann::ordered_json::object();
+  nlohmann::ordered_json sub_indices = nlohmann::ordered_json::object();
+  const StoringDevice storing{device, options};
+  for (const auto& [key, group] : locations) {
+    const Object* const object = device.find(key.first);
+    const Entry* const entry = object == nullptr ? nullptr : object->find(key.second);
+    if (entry == nullptr || !canopen::parameter_detail::can_be_parameter(key.first)) continue;
+    const bool is_excluded = std::ranges::find(never_stored, group) != std::end(never_stored);
+    const bool stores_now = is_stored(storing, *object, *entry);
+    const std::string label = entry_label(key.first, key.second);
+    if (is_excluded) {
+      if (stores_now) entries[label] = "never";
+      continue;
+    }
+    if (!canopen::writable(entry->access)) continue;  // CANopenNode also writes constants to the storage
+    const auto sub_index = key.first < 0x2000 ? std::nullopt : sub_index_of_group(device, group);
+    if (sub_index) {
+      sub_indices[fmt::format("{:02X}h", *sub_index)].push_back(label);
+    } else if (!stores_now) {
+      entries[label] = "always";
+    }
+  }
+  nlohmann::ordered_json storage = nlohmann::ordered_json::object();
+  if (!entries.empty()) storage["entries"] = std::move(entries);
+  if (!sub_indices.empty()) storage["sub_indices"] = std::move(sub_indices);
+  return {{"storage", std::move(storage)}};
+}
+
+}  // namespace edsc
