@@ -124,8 +124,8 @@ void check_files(const Settings& settings) {
 void compare(Pair& pair) {
   if (!pair.before) return;
   pair.changes = compare_devices(*pair.before->device, *pair.after->device);
-  pair.stored_values = compare_stored_values({*pair.before->device, pair.before->options},
-                                             {*pair.after->device, pair.after->options});
+  pair.stored_values =
+      compare_stored_values({*pair.before->device, pair.before->options}, {*pair.after->device, pair.after->options});
   add_lost_values(pair.stored_values, pair.changes);
 }
 
@@ -188,8 +188,9 @@ void add_diff_options(CLI::App& command, int& exit_code) {
   add_choice(command, "--audience", settings.audience, {"all", "wire", "source"},
              "whose breaking changes to report: all, wire (masters, PDO partners) or source (C++ code)");
   add_choice(command, "--fail-on", settings.fail_on, {"breaking", "any", "never"}, "changes that cause exit code 1");
-  command.add_flag("--storage", settings.storage,
-                   "list which stored parameters a device keeps that gets the new version, and which are converted or dropped");
+  command.add_flag(
+      "--storage", settings.storage,
+      "list which stored parameters a device keeps that gets the new version, and which are converted or dropped");
   add_node_id_option(command, settings.node_id);
   command.add_flag("--keep-going", settings.keep_going, "compare despite errors; what is wrong is left out");
   settings.color.add_to(command);

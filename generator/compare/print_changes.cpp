@@ -88,10 +88,10 @@ std::string changes_as_text(const Changes& changes, bool colour) {
   for (const Change& change : changes.all()) {
     const std::string_view start = !colour ? "" : change.is_breaking() ? "\x1B[1;31m" : "\x1B[1;32m";
     const std::string name = change.name.empty() ? "" : fmt::format(" \"{}\"", change.name);
-    text +=
-        fmt::format("{}: {}{}{}: {}{}: {} [{}] (was {})\n", printable(text_of_place(change.new_position)), start,
-                    verdict_text(change), colour ? "\x1B[0m" : "", change.entry, printable(name),
-                    printable(message_of(change)), kind_of(change.id).name, printable(text_of_place(change.old_position)));
+    text += fmt::format("{}: {}{}{}: {}{}: {} [{}] (was {})\n", printable(text_of_place(change.new_position)), start,
+                        verdict_text(change), colour ? "\x1B[0m" : "", change.entry, printable(name),
+                        printable(message_of(change)), kind_of(change.id).name,
+                        printable(text_of_place(change.old_position)));
   }
   return text +
          fmt::format("{} breaking, {} compatible\n", changes.breaking(), changes.all().size() - changes.breaking());

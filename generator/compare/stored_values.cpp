@@ -50,7 +50,8 @@ bool is_mapped_by_default(const Device& device, const Entry& entry) {
 }
 
 bool is_stored_at(const StoringDevice& storing, const Placement& placement, const Object& object, const Entry& entry) {
-  if (placement.place(object, entry) != MemoryPlace::ram || entry.type->kind == canopen::DataClass::domain) return false;
+  if (placement.place(object, entry) != MemoryPlace::ram || entry.type->kind == canopen::DataClass::domain)
+    return false;
   if (const auto by_options = stored_by_options(storing.options, entry)) return *by_options;
   const canopen::AccessRow& access = canopen::row_of(entry.access);
   const bool is_process_data = canopen::allows(entry.mappable(), canopen::Mappable::tpdo) !=
@@ -60,9 +61,8 @@ bool is_stored_at(const StoringDevice& storing, const Placement& placement, cons
 }
 
 std::uint32_t version_of(const Options& options) {
-  const auto row = std::ranges::find_if(options.runtime, [](const RuntimeOption& option) {
-    return option.row->flat_name == storage_version;
-  });
+  const auto row = std::ranges::find_if(
+      options.runtime, [](const RuntimeOption& option) { return option.row->flat_name == storage_version; });
   return row == options.runtime.end() ? 0 : row->value;
 }
 
@@ -118,8 +118,9 @@ std::vector<StoredValueChange> compare_stored_values(const StoringDevice& before
   for (const Object& object : before.device.objects) {
     for (const Entry& entry : object.entries) {
       if (!is_stored_at(before, old_placement, object, entry)) continue;
-      StoredValueChange value{StoredFate::kept,  entry_label(entry.index, entry.sub_index), entry.name, {},
-                              entry.position, {after.device.source}};
+      StoredValueChange value{StoredFate::kept, entry_label(entry.index, entry.sub_index),
+                              entry.name,       {},
+                              entry.position,   {after.device.source}};
       const Object* const new_object = after.device.find(entry.index);
       const Entry* const new_entry = new_object == nullptr ? nullptr : new_object->find(entry.sub_index);
       if (new_entry != nullptr) value.new_position = new_entry->position;
@@ -155,8 +156,8 @@ std::string stored_values_as_text(const std::vector<StoredValueChange>& values) 
 }
 
 std::string stored_values_as_markdown(const std::vector<StoredValueChange>& values) {
-  std::string text = fmt::format("**Stored values**: {}\n\n| Entry | Stored value | Why |\n| --- | --- | --- |\n",
-                                 summary(values));
+  std::string text =
+      fmt::format("**Stored values**: {}\n\n| Entry | Stored value | Why |\n| --- | --- | --- |\n", summary(values));
   for (const StoredValueChange& value : values) {
     text += fmt::format("| {} {} | {} | {} |\n", value.entry, markdown_text(value.name), to_string(value.fate),
                         value.why.empty() ? "-" : markdown_text(value.why));

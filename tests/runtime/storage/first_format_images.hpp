@@ -1,5 +1,5 @@
-/// Images that an earlier version of the runtime wrote for tests/fixtures/parameters.eds: stored parameters in the first
-/// format, in memory and in two pages of flash.
+/// Images that an earlier version of the runtime wrote for tests/fixtures/parameters.eds: stored parameters in the
+/// first format, in memory and in two pages of flash.
 #pragma once
 
 #include <cstdint>

@@ -78,7 +78,7 @@ struct Entry {
   std::uint8_t sub_index;
   Type type;
   unsigned section;
-  std::uint32_t limit;   ///< highest value, or capacity; 0: none
+  std::uint32_t limit;    ///< highest value, or capacity; 0: none
   std::uint64_t initial;  ///< default value; of a text, its letters
 };
 
@@ -281,8 +281,8 @@ struct Trial {
     const bool is_cut = below(random, 4) != 0;
     flash.cut = static_cast<Flash::Cut>(below(random, 3));
     if (is_cut) flash.last_step = flash.steps + static_cast<int>(below(random, 40));
-    const canopen::AbortCode code = saves ? node.save(static_cast<std::uint8_t>(sub_index))
-                                          : node.restore(static_cast<std::uint8_t>(sub_index));
+    const canopen::AbortCode code =
+        saves ? node.save(static_cast<std::uint8_t>(sub_index)) : node.restore(static_cast<std::uint8_t>(sub_index));
     const bool had_power = flash.has_power();
     if (had_power && code != canopen::ok) fail("a command with power has failed");
     if (!had_power) ++cuts;
@@ -316,8 +316,8 @@ struct Trial {
   void expect(N& node, const Bus& bus, const Version& version, const Values& expected, const std::string& when) {
     const Values found = found_in(node, bus, version);
     if (found == expected) return;
-    std::string text = when + ": reported " + std::to_string(found.reported) + ", expected " +
-                       std::to_string(expected.reported);
+    std::string text =
+        when + ": reported " + std::to_string(found.reported) + ", expected " + std::to_string(expected.reported);
     for (std::size_t i = 0; i < version.size(); ++i) {
       if (found.values[i] == expected.values[i]) continue;
       char line[64];

@@ -1,5 +1,5 @@
-/// Stored parameters after an update of the firmware: values that fit are loaded, others are reported, listed, and passed
-/// to the application, and "save" does not remove them before the application could use them.
+/// Stored parameters after an update of the firmware: values that fit are loaded, others are reported, listed, and
+/// passed to the application, and "save" does not remove them before the application could use them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -341,9 +341,8 @@ TEST(MigratedParameters, AreDiscardedByTheApplication) {
 TEST(MigratedParameters, CannotBeReplacedByWhatTheNodeWouldReject) {
   MemoryStorage storage = stored();
   canopen::AbortCode code = canopen::ok;
-  auto convert = canopen::on_stored_value([&](const canopen::StoredValue& old) {
-    code = old.replace_by(parameters_4::od::gain{}, 11);
-  });
+  auto convert = canopen::on_stored_value(
+      [&](const canopen::StoredValue& old) { code = old.replace_by(parameters_4::od::gain{}, 11); });
   Powered<parameters_4::Device, MemoryStorage, decltype(convert)> device{storage, 5, convert};
   EXPECT_EQ(code, canopen::AbortCode::value_too_high);
   EXPECT_TRUE(device.reported);

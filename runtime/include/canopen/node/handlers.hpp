@@ -176,8 +176,8 @@ template <class F>
   return {std::move(handler)};
 }
 
-/// Calls `handler(StoredValue)` or `handler(node, StoredValue)` at each reset with each stored value that is not loaded,
-/// or was stored with another `storage.version` of the options. It may replace or discard the value.
+/// Calls `handler(StoredValue)` or `handler(node, StoredValue)` at each reset with each stored value that is not
+/// loaded, or was stored with another `storage.version` of the options. It may replace or discard the value.
 template <class F>
 [[nodiscard]] constexpr StoredValueHandler<F> on_stored_value(F handler) {
   return {std::move(handler)};

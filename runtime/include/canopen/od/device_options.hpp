@@ -23,7 +23,8 @@ enum class Storing : std::uint8_t {
 }
 /// Returns the sub-index of `stored_by`.
 [[nodiscard]] constexpr std::uint8_t sub_index_of(Storing storing) {
-  return static_cast<std::uint8_t>(static_cast<std::uint8_t>(storing) - static_cast<std::uint8_t>(Storing::first_group) + 5);
+  return static_cast<std::uint8_t>(static_cast<std::uint8_t>(storing) -
+                                   static_cast<std::uint8_t>(Storing::first_group) + 5);
 }
 
 struct DeviceOptions {
@@ -87,8 +88,8 @@ struct DeviceOptions {
   std::uint32_t storage_signature_abort_code = 0x0800'0020;
   /// Bits of 6502h for modes that 6060h accepts in addition to those of 6502h in the EDS (CiA 402).
   std::uint32_t drive_additional_modes = 0;
-  /// Number of the meaning of the stored values, which the application changes with the meaning: a value that was stored
-  /// with another one is passed to its function `on_stored_value`.
+  /// Number of the meaning of the stored values, which the application changes with the meaning: a value that was
+  /// stored with another one is passed to its function `on_stored_value`.
   std::uint8_t storage_version = 0;
   /// Parameters are also loaded from images of the first format, which earlier versions of edsc wrote.
   bool storage_first_format = true;

@@ -26,11 +26,11 @@ concept FlashPages = requires(T& pages, std::uint8_t page, std::uint32_t offset,
   { pages.read(page, offset, to) } -> std::same_as<bool>;
 };
 
-/// Keeps a header, the image and, at the end of the page, a copy of the header in each page. The header is written after
-/// the image and the copy after the header: after a power loss the newer page has a valid header and a valid image, or
-/// no copy, so that the other page is used. A page with a copy and without a valid header and image is reported as
-/// damaged, and the older image is used. A page without a copy, of the first format, is read too. The pages must outlive
-/// the storage.
+/// Keeps a header, the image and, at the end of the page, a copy of the header in each page. The header is written
+/// after the image and the copy after the header: after a power loss the newer page has a valid header and a valid
+/// image, or no copy, so that the other page is used. A page with a copy and without a valid header and image is
+/// reported as damaged, and the older image is used. A page without a copy, of the first format, is read too. The pages
+/// must outlive the storage.
 template <FlashPages Pages>
 class FlashStorage {
  public:

@@ -110,7 +110,9 @@ class ParameterLayout {
       case Storing::always: return static_cast<std::uint8_t>(parameter_detail::section_of(index));
       case Storing::with_node_id: return static_cast<std::uint8_t>(ParameterSection::with_node_id);
       case Storing::by_access: break;
-      default: return static_cast<std::uint8_t>(std::countr_zero(canopen::sections_of(sub_index_of(storing(index, sub_index)))));
+      default:
+        return static_cast<std::uint8_t>(
+            std::countr_zero(canopen::sections_of(sub_index_of(storing(index, sub_index)))));
     }
     return parameter_detail::has_access_of_parameter(word) ? as_parameter : not_stored;
   }
@@ -200,7 +202,8 @@ class ParameterLayout {
   static constexpr std::array<std::uint16_t, section_count + 1> firsts = [] {
     std::array<std::uint16_t, section_count + 1> counts{};
     for_each_run([&](std::uint8_t section, StoredRun) { ++counts[section + 1u]; });
-    for (std::size_t i = 0; i < section_count; ++i) counts[i + 1] = static_cast<std::uint16_t>(counts[i + 1] + counts[i]);
+    for (std::size_t i = 0; i < section_count; ++i)
+      counts[i + 1] = static_cast<std::uint16_t>(counts[i + 1] + counts[i]);
     return counts;
   }();
 
@@ -253,9 +256,8 @@ class ParameterLayout {
     bytes += static_cast<std::uint32_t>(stored_format::header_bytes * (section_count + 1));
     for_each_in_ram([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
       if (owners[entry::offset_of(word)] >= parameter_sections) return;
-      const std::size_t value = entry::is_string(word)
-                                    ? stored_format::length_bytes + string_capacity(index, sub_index)
-                                    : entry::wire_bytes(word);
+      const std::size_t value = entry::is_string(word) ? stored_format::length_bytes + string_capacity(index, sub_index)
+                                                       : entry::wire_bytes(word);
       bytes += static_cast<std::uint32_t>(stored_format::header_bytes + value);
     });
     return bytes;

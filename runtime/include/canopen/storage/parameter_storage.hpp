@@ -552,7 +552,8 @@ class ParameterStorage {
       pass.context = record.context;
       if (!put_word(storage, pass, std::uint32_t{record.context} << 16)) return false;
     }
-    if (!put_word(storage, pass, record.index | std::uint32_t{record.sub_index} << 16 | std::uint32_t{record.type} << 24))
+    if (!put_word(storage, pass,
+                  record.index | std::uint32_t{record.sub_index} << 16 | std::uint32_t{record.type} << 24))
       return false;
     if (!stored_format::is_string(record.type)) return true;
     return put(storage, pass, {reinterpret_cast<const std::uint8_t*>(&record.size), sizeof record.size});

@@ -37,9 +37,9 @@ enum class NotLoaded : std::uint8_t {
 
 /// What the application does with a StoredValue.
 struct StoredValueAnswer {
-  std::uint32_t key = 0;            ///< of the object that gets `bytes`
-  std::uint8_t size = 0;            ///< of `bytes`; 0: none
-  bool discarded = false;           ///< or replaced
+  std::uint32_t key = 0;   ///< of the object that gets `bytes`
+  std::uint8_t size = 0;   ///< of `bytes`; 0: none
+  bool discarded = false;  ///< or replaced
   std::array<std::uint8_t, 8> bytes{};
 };
 

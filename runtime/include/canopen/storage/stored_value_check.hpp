@@ -136,9 +136,8 @@ class StoredValueCheck {
   /// default value that is not possible either is an error in the EDS.
   [[nodiscard]] static bool has_better_defaults(EntryAccess<Device> entries, const Rejected& rejected) {
     Rejected left = rejected;
-    for_each_impossible_mapping(entries, [&](std::size_t i) {
-      left[i / 8] = static_cast<std::uint8_t>(left[i / 8] & ~(1u << i % 8));
-    });
+    for_each_impossible_mapping(
+        entries, [&](std::size_t i) { left[i / 8] = static_cast<std::uint8_t>(left[i / 8] & ~(1u << i % 8)); });
     return std::ranges::any_of(left, [](std::uint8_t bits) { return bits != 0; });
   }
 
