@@ -106,7 +106,7 @@ constexpr std::array kinds = {
     ChangeKind{pdo_layout_extended, "pdo-layout-extended", none, none, none, "layout",
                "all values that were in the frame keep their position"},
     // Stored parameters.
-    ChangeKind{stored_value_lost, "stored-value-lost", none, none, none, "stored value:",
+    ChangeKind{stored_value_lost, "stored-value-lost", none, none, none, "stored value lost",
                "a device that has stored it starts with the default value and sends EMCY 6300h, unless its application "
                "converts the value"},
 };

@@ -141,7 +141,7 @@ void add_lost_values(const std::vector<StoredValueChange>& values, Changes& chan
     if (value.fate == StoredFate::kept) continue;
     Change& change =
         changes.add(ChangeId::stored_value_lost, value.entry, value.name, value.old_position, value.new_position);
-    change.old_value = value.why;
+    change.old_value = fmt::format("({})", value.why);
   }
 }
 

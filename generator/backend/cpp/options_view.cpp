@@ -7,6 +7,7 @@
 #include <iterator>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "backend/cpp/json_object.hpp"
 #include "device/options/option_table.hpp"
@@ -16,21 +17,21 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// Entries before objects, so that an entry can differ from its object.
+/// Ascending; an entry comes before its object, so that it can differ from the other entries.
 ordered_json storing_rows(const Options& options) {
-  ordered_json rows = json_array(options.storing.size() + options.stored_by.size());
-  const auto add = [&](const EntrySelector& entry, std::string storing) {
+  std::vector<std::pair<EntrySelector, std::string>> storing;
+  for (const auto& [entry, how] : options.storing) storing.emplace_back(entry, fmt::format("Storing::{}", how));
+  for (const auto& [entry, sub_index] : options.stored_by) {
+    storing.emplace_back(entry, fmt::format("stored_by({})", sub_index));
+  }
+  std::ranges::stable_sort(storing, {}, [](const auto& row) {
+    return std::pair{row.first.index, row.first.sub_index ? unsigned{*row.first.sub_index} : 0x100U};
+  });
+  ordered_json rows = json_array(storing.size());
+  for (auto& [entry, how] : storing) {
     std::string condition = fmt::format("index == 0x{:04X}", entry.index);
     if (entry.sub_index) condition += fmt::format(" && sub_index == 0x{:02X}", *entry.sub_index);
-    rows.push_back(json_object("condition", std::move(condition), "storing", std::move(storing)));
-  };
-  for (const bool of_entries : {true, false}) {
-    for (const auto& [entry, how] : options.storing) {
-      if (entry.sub_index.has_value() == of_entries) add(entry, fmt::format("Storing::{}", how));
-    }
-    for (const auto& [entry, sub_index] : options.stored_by) {
-      if (entry.sub_index.has_value() == of_entries) add(entry, fmt::format("stored_by({})", sub_index));
-    }
+    rows.push_back(json_object("condition", std::move(condition), "storing", std::move(how)));
   }
   return rows;
 }

@@ -86,6 +86,7 @@ TEST(ChangeTable, StandsInTheDocuments) {
     std::string who = kind.breaks_master ? "master" : "";
     if (kind.breaks_pdo) who += who.empty() ? "pdo" : ", pdo";
     if (kind.breaks_source) who += who.empty() ? "source" : ", source";
+    if (kind.id == ChangeId::stored_value_lost) who = "storage";
     const std::string row =
         fmt::format("| `{}` | {} | {}: {} |\n", kind.name, who.empty() ? "-" : who, kind.what, kind.reason);
     EXPECT_NE(document.find(row), std::string::npos) << row;

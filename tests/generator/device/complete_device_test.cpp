@@ -243,8 +243,7 @@ TEST(CompleteDevice, StoresOnCommand) {
   EXPECT_EQ(text.entry(0x1010, 3).default_value->bits, 0U);
   EXPECT_EQ(text.entry(0x1010, 4).default_value->bits, 0U);
   EXPECT_EQ(text.entry(0x1011, 1).default_value->bits, 1U);
-  EXPECT_EQ(rules_of(text.diagnostics),
-            (Rules{"storage-default", "storage-autonomous", "storage-autonomous", "storage-default"}));
+  EXPECT_EQ(rules_of(text.diagnostics), (Rules{"storage-default", "storage-autonomous"}));
 }
 
 TEST(CompleteDevice, KeepsTheBitOfAnApplicationThatStoresByItself) {
