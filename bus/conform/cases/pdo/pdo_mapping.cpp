@@ -7,6 +7,7 @@
 #include <canopen/pdo/pdo_mapping.hpp>
 
 #include "conform/cases/shared/entry_values.hpp"
+#include "device/drive_modes.hpp"
 
 namespace edsc::conform::pdo_area {
 namespace {
@@ -18,6 +19,16 @@ struct Range {
   std::uint64_t low = 0;
   std::uint64_t span = 0;
 };
+
+/// A supported drive mode that is not the present one.
+std::optional<std::uint64_t> other_mode(const std::vector<ModeRange>& modes, std::uint64_t present) {
+  for (const ModeRange& range : modes) {
+    for (int mode = range.low; mode <= range.high; ++mode) {
+      if (mode != static_cast<std::int64_t>(present)) return static_cast<std::uint8_t>(mode);
+    }
+  }
+  return std::nullopt;
+}
 
 Range range_of(const Dut& dut, const Entry& entry) {
   const unsigned bits = entry.type->bits;
@@ -167,6 +178,9 @@ std::optional<std::uint64_t> other_value(const Dut& dut, const Mapped& mapped, s
     return present == half ? 0 : half;
   }
   if (kind != DataClass::unsigned_integer && kind != DataClass::signed_integer) return std::nullopt;
+  if (const auto modes = accepted_modes(dut.sheet(), Options{}, *entry); !modes.empty()) {
+    return other_mode(modes, extended(*entry, present));
+  }
   const Range range = range_of(dut, *entry);
   if (range.span == 0) return std::nullopt;
   const std::uint64_t above = std::min(extended(*entry, present) - range.low, range.span);
