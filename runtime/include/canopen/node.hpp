@@ -199,6 +199,10 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
     if (word == Dictionary::no_sub_index) return AbortCode::no_sub_index;
     if (entry::place_of(word) != entry::Place::ram) return AbortCode::read_only;
     if (const AbortCode code = entries().check(index, sub_index, word, bytes); code != ok) return code;
+    if constexpr (service::DriveModes<Device>::exists) {
+      if (service::DriveModes<Device>::checks(index, sub_index) && !accepts_mode<Device>(index, bytes[0]))
+        return AbortCode::invalid_value;
+    }
     handler_calls_.object_is_set(object_key(index, sub_index));
     if (!entry::is_domain(word) && entries().holds(word, bytes)) return ok;
     // Values set in Initialisation belong to the configuration of the device after a reset.

@@ -3,6 +3,7 @@
 
 #include "canopen/node/service_set.hpp"
 #include "canopen/node/services/bus_errors.hpp"
+#include "canopen/node/services/drive_modes.hpp"
 #include "canopen/node/services/emergency.hpp"
 #include "canopen/node/services/emergency_consumer.hpp"
 #include "canopen/node/services/error_reaction.hpp"
@@ -54,7 +55,8 @@ using NodeServices = ServiceSet<
     service::Rpdos<Device>,
     service::Mpdos<Device>,
     service::ErrorReaction<Device>,
-    service::StoredEds<Device>>;
+    service::StoredEds<Device>,
+    service::DriveModes<Device>>;
 // clang-format on
 
 }  // namespace canopen

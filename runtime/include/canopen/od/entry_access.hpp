@@ -159,15 +159,8 @@ class EntryAccess {
       if (entry::is_boolean(word)) return bytes[0] > 1 ? AbortCode::invalid_value : ok;
     }
     if constexpr (has_limits) {
-      if ((word & entry::limited) != 0 && entry::class_of(word) != entry::Class::special) {
-        const std::uint32_t key = object_key(index, limits_sub_index(index, sub_index));
-        if constexpr (!has_accepted) return check_limits(key, word, bytes.data());
-        if (const AbortCode code = check_limits(key, word, bytes.data()); code != ok) return code;
-      }
-    }
-    if constexpr (has_accepted) {
-      if ((word & entry::limited) != 0 && !Device::dictionary.accepts(index, static_cast<std::int8_t>(bytes[0])))
-        return AbortCode::invalid_value;
+      if ((word & entry::limited) != 0 && entry::class_of(word) != entry::Class::special)
+        return check_limits(object_key(index, limits_sub_index(index, sub_index)), word, bytes.data());
     }
     return ok;
   }
@@ -248,7 +241,6 @@ class EntryAccess {
   }
 
   static constexpr bool has_limits = !Device::dictionary.limits.empty() || !Device::dictionary.wide_limits.empty();
-  static constexpr bool has_accepted = !Device::dictionary.accepted.empty();
   static constexpr std::size_t string_header = sizeof(std::uint16_t);
 
   /// Whether a 00h follows the text; its storage then has one more byte than the capacity.

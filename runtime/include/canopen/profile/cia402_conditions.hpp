@@ -76,12 +76,16 @@ class Conditions {
     switch (activity.mode) {
       case mode::profile_velocity: return at_speed_.lasts(P::template value<object::VelocityWindowTime>(node, 0));
       case mode::homing: return !activity.homing && !axis.moving();
-      case mode::velocity:
-      case mode::profile_torque: return P::has_mode(activity.mode) && activity.at_target;
-      case mode::cyclic_synchronous_velocity:
-      case mode::cyclic_synchronous_torque: return false;
-      default: return at_target_.lasts(P::template value<object::PositionWindowTime>(node, 0));
+      default: break;
     }
+    if constexpr (P::has_mode(mode::velocity) || P::has_mode(mode::profile_torque)) {
+      if (activity.mode == mode::velocity || activity.mode == mode::profile_torque) return activity.at_target;
+    }
+    if constexpr (P::has_mode(mode::cyclic_synchronous_velocity) || P::has_mode(mode::cyclic_synchronous_torque)) {
+      if (activity.mode == mode::cyclic_synchronous_velocity || activity.mode == mode::cyclic_synchronous_torque)
+        return false;
+    }
+    return at_target_.lasts(P::template value<object::PositionWindowTime>(node, 0));
   }
 
   Lasting at_target_{};

@@ -27,7 +27,12 @@ template <class P, class Node>
 /// A value that moves linearly from one set-point to the next in a time.
 class LinearMotion {
  public:
+  /// The next motion has no predecessor.
+  void clear() { begun_ = false; }
+  [[nodiscard]] bool begun() const { return begun_; }
+
   void begin(std::int32_t from, std::int32_t to) {
+    begun_ = true;
     from_ = from;
     to_ = to;
     elapsed_ = Duration{0};
@@ -51,6 +56,7 @@ class LinearMotion {
   std::int32_t from_ = 0;
   std::int32_t to_ = 0;
   Duration elapsed_{0};
+  bool begun_ = false;
 };
 
 /// The data records of interpolated position mode, first in, first out, and the motion between them. One record in each

@@ -62,11 +62,15 @@ class Modes {
   void change(std::int8_t wanted) {
     restart();
     mode_ = wanted;
-    velocity_told_ = following_ = false;
+    velocity_told_ = false;
+    motion_.clear();
   }
 
   /// The drive enters Operation Enabled.
-  void begin() { velocity_told_ = following_ = false; }
+  void begin() {
+    velocity_told_ = false;
+    motion_.clear();
+  }
 
   /// The drive leaves Operation Enabled.
   void end() {
@@ -82,7 +86,8 @@ class Modes {
   /// Continues the motion that was stopped.
   void resume() {
     set_points_.start_again();
-    velocity_told_ = following_ = false;
+    velocity_told_ = false;
+    motion_.clear();
     torque_.clear();
   }
 
@@ -98,7 +103,7 @@ class Modes {
   /// Whether the demand has reached the target of velocity or profile torque mode.
   [[nodiscard]] bool at_target(const A& axis) const {
     if (has_torque && mode_ == mode::profile_torque) return torque_.reached();
-    return velocity_told_ && axis.velocity_demand() == told_velocity_;
+    return has_velocity && velocity_told_ && axis.velocity_demand() == told_velocity_;
   }
 
   /// Whether a set-point of profile or interpolated position mode has not been reached.
@@ -143,7 +148,7 @@ class Modes {
     if constexpr (P::has_mode(mode::homing)) {
       if (mode_ == mode::homing) return take_homing_bits(node, axis, word, rising, halted);
     }
-    word_ = word;
+    if constexpr (has_velocity || has_interpolation) bits_.word = word;
     return false;
   }
 
@@ -198,12 +203,17 @@ class Modes {
       case mode::cyclic_synchronous_position:
         return static_cast<std::uint16_t>(bit_if(operates, statusword::follows_command) |
                                           bit_if(conditions.following_error(), statusword::following_error));
-      case mode::cyclic_synchronous_velocity:
-      case mode::cyclic_synchronous_torque: return bit_if(P::has_mode(mode_) && operates, statusword::follows_command);
-      case mode::interpolated_position:
-        return bit_if(has_interpolation && operates && interpolated_.active(), statusword::interpolates);
-      default: return 0;
+      default: break;
     }
+    if constexpr (has_interpolation) {
+      if (mode_ == mode::interpolated_position)
+        return bit_if(operates && interpolated_.active(), statusword::interpolates);
+    }
+    if constexpr (P::has_mode(mode::cyclic_synchronous_velocity) || P::has_mode(mode::cyclic_synchronous_torque)) {
+      if (mode_ == mode::cyclic_synchronous_velocity || mode_ == mode::cyclic_synchronous_torque)
+        return bit_if(operates, statusword::follows_command);
+    }
+    return 0;
   }
 
   /// Continues a homing after a step of the axis.
@@ -246,7 +256,13 @@ class Modes {
   };
   struct NoTorque : Absent {};
   struct NoInterpolation : Absent {};
-  struct NoMotion {};
+  struct NoMotion : Absent {};
+  /// Of the controlword, for the modes that depend on its bits at each step.
+  struct Bits {
+    std::uint16_t word = 0;
+    bool locked = false;  ///< the ramp of velocity mode was locked at the last step
+  };
+  struct NoBits {};
 
   /// Whether the mode has no target position that is clamped to the software limits.
   [[nodiscard]] bool keeps_software_limits() const {
@@ -266,7 +282,7 @@ class Modes {
 
   template <class Node>
   void interpolate(const Node& node, A& axis, Duration span) {
-    const bool enable = (word_ & controlword::interpolate) != 0;
+    const bool enable = (bits_.word & controlword::interpolate) != 0;
     const std::int32_t position = interpolated_.step(node, enable, axis.position_demand(), span);
     if (enable) follow(node, axis, position);
   }
@@ -277,12 +293,11 @@ class Modes {
                                         [[maybe_unused]] std::int32_t present, [[maybe_unused]] Duration span) {
     if constexpr (interpolates_targets) {
       const Duration period = interpolation_period<P>(node);
-      if (!following_) {
+      if (!motion_.begun()) {
         motion_.begin(present, target);
       } else if (motion_.target() != target) {
         motion_.begin(motion_.value(period), target);
       }
-      following_ = true;
       motion_.step(span, period);
       return motion_.value(period);
     } else {
@@ -364,10 +379,10 @@ class Modes {
   template <class Node>
   void operate_velocity(const Node& node, A& axis) {
     using V = Velocity<P, options>;
-    std::int32_t wanted = (word_ & controlword::use_reference) != 0 ? V::target(node) : 0;
-    if ((word_ & controlword::unlock_ramp) == 0) wanted = locked_ ? told_velocity_ : axis.velocity_demand();
-    locked_ = (word_ & controlword::unlock_ramp) == 0;
-    if ((word_ & controlword::enable_ramp) == 0 || limit_switch_blocks(axis.inputs(), wanted)) wanted = 0;
+    std::int32_t wanted = (bits_.word & controlword::use_reference) != 0 ? V::target(node) : 0;
+    if ((bits_.word & controlword::unlock_ramp) == 0) wanted = bits_.locked ? told_velocity_ : axis.velocity_demand();
+    bits_.locked = (bits_.word & controlword::unlock_ramp) == 0;
+    if ((bits_.word & controlword::enable_ramp) == 0 || limit_switch_blocks(axis.inputs(), wanted)) wanted = 0;
     run_at(axis, wanted, V::ramps(node));
   }
 
@@ -423,9 +438,6 @@ class Modes {
   std::int8_t selected_ = options.initial_mode;
   bool homing_starts_ = false;  ///< with the next step
   bool velocity_told_ = false;
-  bool following_ = false;  ///< `motion_` is in use
-  bool locked_ = false;     ///< the ramp of velocity mode was locked at the last step
-  std::uint16_t word_ = 0;  ///< the controlword
   std::int32_t told_velocity_ = 0;
   Profile told_ramps_{};
   SetPoints set_points_{};
@@ -434,6 +446,7 @@ class Modes {
   [[no_unique_address]] std::conditional_t<has_interpolation, InterpolatedPosition<P, options>, NoInterpolation>
       interpolated_{};
   [[no_unique_address]] std::conditional_t<interpolates_targets, LinearMotion, NoMotion> motion_{};
+  [[no_unique_address]] std::conditional_t<has_velocity || has_interpolation, Bits, NoBits> bits_{};
 };
 
 }  // namespace canopen::cia402
