@@ -1,4 +1,4 @@
-// expect: ValueFor .*every_type::od::integer24_value
+// expect: not of the type of the object .*every_type::od::integer24_value
 // A master cannot write a fraction to an integer.
 #include <canopen/sdo/remote_node.hpp>
 #include <every_type/device.hpp>

@@ -1,4 +1,4 @@
-// expect: RemoteWritable .*every_type::od::integer24_constant
+// expect: the object is ro or const .*every_type::od::integer24_constant
 // A master cannot write an object that can only be read over the bus.
 #include <canopen/sdo/remote_node.hpp>
 #include <every_type/device.hpp>

@@ -1,4 +1,4 @@
-// expect: ConstantFor<every_type::od::access_rw>|is not a constant expression
+// expect: is wider than that of the object .*every_type::od::access_rw
 // A variable whose values may not fit is not converted.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>

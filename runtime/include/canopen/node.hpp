@@ -10,6 +10,9 @@
 #include <type_traits>
 #include <utility>
 
+// The headers whose checks users meet are included first: the compiler lists the files by which it came to them.
+#include "canopen/od/value_for.hpp"
+//
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
 #include "canopen/can/bus_status.hpp"
@@ -27,10 +30,12 @@
 #include "canopen/node/handlers.hpp"
 #include "canopen/node/idle_time.hpp"
 #include "canopen/node/make_node.hpp"
+#include "canopen/node/object_setters.hpp"
 #include "canopen/node/object_values.hpp"
 #include "canopen/node/service_host.hpp"
 #include "canopen/node/services.hpp"
 #include "canopen/node/value_check.hpp"
+#include "canopen/od/device_object.hpp"
 #include "canopen/od/object_store.hpp"
 #include "canopen/pdo/mpdo.hpp"
 #include "canopen/sdo/domain_handlers.hpp"
@@ -48,16 +53,20 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
                                                (std::is_default_constructible_v<Handlers> && ...);
 
  public:
+  using DeviceType = Device;
+
   static_assert(CheckedBus<B>::is_good);
   static_assert(checked_handlers<Device, Node, Handlers...>());
 
+  /// The parameters of handlers are checked here, where the node is complete: the compiler instantiates generic
+  /// lambdas.
   constexpr Node(B& can_bus, NodeId node_id, Handlers... handlers)
       : bus_{can_bus}, handlers_{std::move(handlers)...}, node_id_{node_id} {
-    static_assert(checked_parameters<Node, Handlers...>());
+    (handler_detail::check_parameters<Node, Handlers>(), ...);
   }
   /// For a node-ID passed to `start`. With a bus by value such a node is all zeros, without initial values in flash.
   constexpr explicit Node(B& can_bus, Handlers... handlers) : bus_{can_bus}, handlers_{std::move(handlers)...} {
-    static_assert(checked_parameters<Node, Handlers...>());
+    (handler_detail::check_parameters<Node, Handlers>(), ...);
   }
   /// The same with a default-constructed application.
   constexpr Node(B& can_bus, NodeId node_id) requires(has_default_handlers) : bus_{can_bus}, node_id_{node_id} {}
@@ -157,37 +166,20 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
     serve();
   }
 
+  /// `set` sets an object, whatever its access type: node/object_setters.hpp. If the value has changed, the TPDOs that
+  /// map the object are sent with the next `on_time` or `on_frame`. In a write handler of the same object, this value
+  /// replaces the written one. A parameter in 1000h..1FFFh is checked as for SDO: a PDO can be mapped or get a
+  /// different CAN-ID only while it is not valid.
   using ObjectValues<Node>::get, ObjectValues<Node>::set, ObjectValues<Node>::send_mpdo;
 
   /// Returns the value of an object, whatever its access type.
   template <DictionaryObject O>
   [[nodiscard]] typename O::type get(O = {}) const {
-    return store_.template get<O>();
-  }
-
-  /// Sets an object, whatever its access type. If the value has changed, the TPDOs that map it are sent with the next
-  /// `on_time` or `on_frame`. In a write handler of the same object, this value replaces the written one. This object
-  /// accepts every value of its type: the result is `ok`.
-  template <DictionaryObject O>
-  requires(!can_be_refused<O>) AbortCode set(const typename O::type& value) {
-    static_assert(!std::is_same_v<typename O::type, Domain>, "the memory of a DOMAIN is bound with bind()");
-    return take_over<O>(value);
-  }
-
-  /// The same for an object that can reject a value: value_too_high or value_too_low outside the limits of the EDS,
-  /// invalid_value for a REAL that is NaN. A parameter in 1000h..1FFFh is checked as for SDO: a PDO can be mapped or
-  /// get a different CAN-ID only while it is not valid.
-  template <DictionaryObject O>
-  requires(can_be_refused<O>) [[nodiscard]] AbortCode set(const typename O::type& value) {
-    if (const AbortCode code = check_limits<O>(value); code != ok) return code;
-    if constexpr (is_communication_index(O::index) && std::is_integral_v<typename O::type>) {
-      typename O::type checked = value;
-      const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&checked), (O::bits + 7) / 8};
-      if (const AbortCode code = host().check_write(O::index, O::sub_index, bytes); code != ok) return code;
-      return take_over<O>(checked);
-    } else {
-      return take_over<O>(value);
-    }
+    static_assert(is_in_dictionary<O, Device>, "get: this device does not have the object");
+    static_assert(!is_of_another_device<O, Device>,
+                  "get: this is an object of another device; this device has another one at its index");
+    if constexpr (is_in_dictionary<O, Device>) return store_.template get<O>();
+    return {};
   }
 
   /// Sets an object by index and sub-index, with its bytes as in SDO. Its access type is ignored, handlers are not
@@ -218,8 +210,8 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   /// Reports an error of the application (CiA 301, 7.2.7.1): its emergency error code, the bits of 1001h that it sets
   /// (the generic one is set automatically), and the manufacturer-specific bytes. As with `set`, the EMCY is sent with
   /// the next `on_time` or `on_frame`: `next_deadline` is due at once.
-  void emergency(std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info = no_emergency_info) {
-    emergencies().report(host(), code, bits, info);
+  void emergency(EmergencyCode code, ErrorRegister bits, const EmergencyInfo& info = no_emergency_info) {
+    emergencies().report(host(), code.value(), bits, info);
   }
 
   /// Sets bits of 1001h without an EMCY: an error that has been reported keeps them until they are passed to
@@ -276,10 +268,10 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   /// Sends a value to an object of another node, or of all nodes, as a DAM-MPDO (CiA 301, 7.2.2.5), with the next
   /// `on_time` or `on_frame`. Returns false if the node is not Operational, does not have a valid DAM-TPDO, or too many
   /// are waiting.
-  [[nodiscard]] bool send_mpdo(const MpdoDestination& to, std::uint32_t value) {
+  [[nodiscard]] bool send_mpdo(const MpdoDestination& to, ValueOf<MpdoData> value) {
     static_assert(MpdoService<Device>::sends_destination,
                   "no TPDO of this device is a multiplex PDO or can be made one");
-    return services_.template get<service::Mpdos<Device>>().put(host(), to, value);
+    return services_.template get<service::Mpdos<Device>>().put(host(), to, value.value());
   }
 
   /// Returns the values in RAM. Changes here do not send TPDOs or restart timers. Do not change mapping parameters
@@ -295,6 +287,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   using Host = ServiceHost<Node, Device, HandlerTypes>;
   friend Host;
   friend ObjectValues<Node>;
+  friend ObjectSetters<Node>;
 
   using BusMember = std::conditional_t<std::is_empty_v<B>, B, B&>;
   using Services = NodeServices<Device, Handlers...>;
@@ -364,6 +357,22 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
     boot_up.start();
     enter(NmtState::pre_operational);
     if (starts_itself(store_)) enter(NmtState::operational);
+  }
+
+  /// Checks a value and sets it.
+  template <DictionaryObject O>
+  [[nodiscard]] AbortCode assign(const typename O::type& value) {
+    if constexpr (can_be_refused<O>) {
+      if (const AbortCode code = check_limits<O>(value); code != ok) return code;
+    }
+    if constexpr (can_be_refused<O> && is_communication_index(O::index) && std::is_integral_v<typename O::type>) {
+      typename O::type checked = value;
+      const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&checked), (O::bits + 7) / 8};
+      if (const AbortCode code = host().check_write(O::index, O::sub_index, bytes); code != ok) return code;
+      return take_over<O>(checked);
+    } else {
+      return take_over<O>(value);
+    }
   }
 
   /// Sets a value that has passed all checks.

@@ -74,9 +74,9 @@ TEST(Emcy, HistoryStaysInItsMemoryWhateverTheApplicationSets) {
 TEST(Emcy, KeepsTheInhibitTime) {
   Bench device;
   device.ask("605 2B 15 10 00 64 00 00 00");  // 10 ms
-  device.node.emergency(1, ErrorRegister::generic);
-  device.node.emergency(2, ErrorRegister::generic);
-  device.node.emergency(3, ErrorRegister::generic);
+  device.node.emergency(std::uint16_t{1}, ErrorRegister::generic);
+  device.node.emergency(std::uint16_t{2}, ErrorRegister::generic);
+  device.node.emergency(std::uint16_t{3}, ErrorRegister::generic);
   EXPECT_EQ(device.pass(9999us), "085 01 00 01 00 00 00 00 00");
   EXPECT_EQ(device.pass(1us), "085 02 00 01 00 00 00 00 00");
   EXPECT_EQ(device.pass(9999us), "");

@@ -226,15 +226,26 @@ TEST(Application, GetsNoValuesOfAnRpdoAtWhichItLeavesOperational) {
   EXPECT_EQ(device.node.get(od::byte{}), 0);
 }
 
-/// Maps the RPDO, or the TPDO, of which it gets a value.
+/// Maps the RPDO, or the TPDO, of which it gets a value. A valid PDO keeps its mapping.
 struct Remaps {
+  template <std::uint16_t Number, class Layout, class Node, class CobId>
+  void map(Node& node, CobId cob_id) {
+    while_valid = node.template map<Number, Layout>();
+    const std::uint32_t valid = node.get(cob_id);
+    ASSERT_EQ(node.set(cob_id, valid | 0x8000'0000u), canopen::ok);
+    mapped = node.template map<Number, Layout>();
+    ASSERT_EQ(node.set(cob_id, valid), canopen::ok);
+  }
   void written(od::word, std::uint16_t value, auto& node) {
-    if (value == 1) mapped = node.template map<1, canopen::Rpdo<od::word, od::byte>>();
-    if (value == 2) mapped = node.template map<1, canopen::Rpdo<od::byte>>();
-    if (value == 3) mapped = node.template map<1, canopen::Tpdo<od::byte, od::positions<1>>>();
-    if (value == 4) mapped = node.template map<1, canopen::Tpdo<od::word>>();
+    const od::rpdo_communication_parameter_1::cob_id rpdo{};
+    const od::tpdo_communication_parameter_1::cob_id tpdo{};
+    if (value == 1) map<1, canopen::Rpdo<od::word, od::byte>>(node, rpdo);
+    if (value == 2) map<1, canopen::Rpdo<od::byte>>(node, rpdo);
+    if (value == 3) map<1, canopen::Tpdo<od::byte, od::positions<1>>>(node, tpdo);
+    if (value == 4) map<1, canopen::Tpdo<od::word>>(node, tpdo);
   }
   AbortCode mapped = AbortCode::general;
+  AbortCode while_valid = canopen::ok;
 };
 
 TEST(Application, MayMapAPdoAnewWhenItGetsAValueOfIt) {
@@ -242,6 +253,7 @@ TEST(Application, MayMapAPdoAnewWhenItGetsAValueOfIt) {
     auto device = bench::with<every_service::Device>(Remaps{});
     device.ask(bench::start);
     device.ask(frame);
+    EXPECT_EQ(device.node.application<Remaps>().while_valid, AbortCode::unsupported_access) << frame;
     EXPECT_EQ(device.node.application<Remaps>().mapped, canopen::ok) << frame;
     EXPECT_EQ(device.node.get(od::positions<1>{}), position) << frame;
     device.ask("205 0A 0B 0C 0D 0E 0F 10 11");

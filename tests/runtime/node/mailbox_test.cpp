@@ -77,8 +77,8 @@ TEST(Mailbox, AValueOutsideItsLimitsIsRejectedAtOnce) {
   Mailbox<od::integer8_value, od::integer64_value, od::real32_value> mailbox;
   auto device = bench::with(values_from(mailbox));
   EXPECT_EQ(mailbox.post<od::integer8_value>(100), canopen::ok);
-  EXPECT_EQ(mailbox.post<od::integer8_value>(101), AbortCode::value_too_high);
-  EXPECT_EQ(mailbox.post<od::integer8_value>(-101), AbortCode::value_too_low);
+  EXPECT_EQ(mailbox.post<od::integer8_value>(std::int8_t{101}), AbortCode::value_too_high);
+  EXPECT_EQ(mailbox.post<od::integer8_value>(std::int8_t{-101}), AbortCode::value_too_low);
   EXPECT_EQ(mailbox.post<od::integer64_value>(-4'999'999'999'999), canopen::ok);
   EXPECT_EQ(mailbox.post<od::real32_value>(-1.25f), canopen::ok);
   device.pass(0ms);

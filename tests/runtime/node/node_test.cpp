@@ -52,9 +52,9 @@ TEST(Node, SetsAndGetsObjectsWhateverTheirAccessOnTheBus) {
 
 TEST(Node, RefusesValuesOutsideTheirLimits) {
   Bench device;
-  EXPECT_EQ(device.node.set<od::integer8_value>(101), AbortCode::value_too_high);
-  EXPECT_EQ(device.node.set<od::integer8_value>(-101), AbortCode::value_too_low);
-  EXPECT_EQ(device.node.set<od::unsigned24_value>(0x1000000), AbortCode::value_too_high);
+  EXPECT_EQ(device.node.set<od::integer8_value>(std::int8_t{101}), AbortCode::value_too_high);
+  EXPECT_EQ(device.node.set<od::integer8_value>(std::int8_t{-101}), AbortCode::value_too_low);
+  EXPECT_EQ(device.node.set<od::unsigned24_value>(std::uint32_t{0x1000000}), AbortCode::value_too_high);
   EXPECT_EQ(device.node.set<od::real32_value>(1.6f), AbortCode::value_too_high);
   EXPECT_EQ(device.node.set<od::real32_value>(std::numeric_limits<float>::quiet_NaN()), AbortCode::invalid_value);
   EXPECT_EQ(device.node.get<od::integer8_value>(), 0);

@@ -54,7 +54,7 @@ TEST(PdoLayout, MayStraddleAllBytesOfShiftedBits) {
 
 TEST(PdoLayout, CutsAValueToItsBits) {
   using Layout = canopen::PdoLayout<Entry<1, std::uint8_t, 4>, Entry<2, std::uint8_t, 4>>;
-  EXPECT_EQ(Layout::pack(0xFF, 0), (Data{0x0F}));
+  EXPECT_EQ(Layout::pack(std::uint8_t{0xFF}, 0), (Data{0x0F}));
 }
 
 TEST(PdoLayout, CarriesRealsAndTimes) {
@@ -99,7 +99,7 @@ using Octets = Entry<2, canopen::OctetString<4>>;
 TEST(PdoLayout, FillsTextUpWithZeros) {
   using Layout = canopen::PdoLayout<canopen::FixedString<Text, 8>>;
   EXPECT_EQ(Layout::pack("abc"), (Data{'a', 'b', 'c'}));
-  EXPECT_EQ(Layout::pack("abcdefghij"), (Data{'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'}));
+  EXPECT_EQ(Layout::pack(canopen::VisibleString<10>{"abcdefghij"}), (Data{'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'}));
   EXPECT_EQ(Layout::get<0>(Data{'a', 'b', 'c'}).view(), "abc");
   EXPECT_EQ(Layout::get<0>(Data{'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'}).view(), "abcdefgh");
   EXPECT_EQ(Layout::get<0>(Data{}).view(), "");

@@ -23,30 +23,7 @@ using namespace std::chrono_literals;
 
 using Remote = canopen::RemoteNode<sample::Device, bench::RecordingBus>;
 
-// Which reads and writes compile
-
-template <class O, class V>
-concept CanWrite = requires(Remote& remote, V value) {
-  remote.write<O>(value, TimePoint{});
-};
-template <class O>
-concept CanRead = requires(Remote& remote) {
-  remote.read<O>(TimePoint{});
-};
-
-static_assert(CanWrite<od::controlword, int>);
-static_assert(!CanWrite<od::controlword, float>, "a number loses its fraction");
-static_assert(!CanWrite<od::controlword, bool>);
-static_assert(!CanWrite<od::boolean_value, int>);
-static_assert(CanWrite<od::boolean_value, bool>);
-static_assert(CanWrite<od::real32_value, int>);
-static_assert(!CanWrite<od::statusword, int>, "read-only");
-static_assert(CanRead<od::statusword>);
-static_assert(!CanRead<od::password>, "write-only");
-static_assert(!CanRead<od::visible_string_value>, "a string needs memory");
-
-struct Unknown : canopen::Object<0x5FFF, 0, std::uint8_t, canopen::Access::rw> {};
-static_assert(!CanRead<Unknown> && !CanWrite<Unknown, std::uint8_t>, "the device has no such object");
+// Which reads and writes do not compile: tests/compile_fail.
 
 static_assert(canopen::check_value<od::integer8_value>(100) == canopen::ok);
 static_assert(canopen::check_value<od::integer8_value>(101) == AbortCode::value_too_high);

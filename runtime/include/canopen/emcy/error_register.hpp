@@ -1,6 +1,7 @@
 /// The error register 1001h (CiA 301, 7.5.2.2) and the emergency error codes of the services.
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 
 namespace canopen {
@@ -19,6 +20,39 @@ enum class ErrorRegister : std::uint8_t {
 [[nodiscard]] constexpr ErrorRegister operator|(ErrorRegister a, ErrorRegister b) {
   return static_cast<ErrorRegister>(static_cast<std::uint8_t>(a) | static_cast<std::uint8_t>(b));
 }
+
+namespace emergency_code_detail {
+
+// A constant that is not a code reads the element after the only one: the compiler's message has the name of the array.
+inline constexpr bool is_not_an_emergency_error_code[1] = {};
+
+/// Whether a code has a class of CiA 301, 7.2.7.1: 10xxh to 9xxxh, Fxxxh. 00xxh is "error reset or no error".
+[[nodiscard]] constexpr bool has_class(std::uint64_t code) {
+  return (code >= 0x1000 && code <= 0x9FFF) || (code >= 0xF000 && code <= 0xFFFF);
+}
+
+}  // namespace emergency_code_detail
+
+/// An emergency error code as the parameter of a function. The compiler checks the class of a constant: codes with
+/// swapped bytes do not compile. A variable is a std::uint16_t.
+class EmergencyCode {
+ public:
+  template <std::unsigned_integral Code>
+  requires(sizeof(Code) <= sizeof(std::uint16_t)) constexpr EmergencyCode(Code code)
+      : value_{code} {}  // NOLINT(google-explicit-constructor): a code is one
+  template <std::integral Code>
+  requires(!std::unsigned_integral<Code> || sizeof(Code) > sizeof(std::uint16_t))
+      // NOLINTNEXTLINE(google-explicit-constructor)
+      consteval EmergencyCode(const Code& code)
+      : value_{static_cast<std::uint16_t>(code)} {
+    using namespace emergency_code_detail;
+    if (is_not_an_emergency_error_code[has_class(static_cast<std::uint64_t>(code)) ? 0 : 1]) value_ = 0;
+  }
+  [[nodiscard]] constexpr std::uint16_t value() const { return value_; }
+
+ private:
+  std::uint16_t value_;
+};
 
 /// Emergency error codes (CiA 301, 7.2.7.1, table 26).
 namespace emergency_code {

@@ -82,65 +82,74 @@ class BlockingObjects {
  public:
   BlockingObjects(Sdo& sdo, NodeId node) : sdo_{sdo}, node_{node} {}
 
-  /// Reads a number.
+  /// Reads a number: `read<od::x>()` or `read(od::x{})`.
   template <NumberObject O>
-  requires ObjectOf<O, Device> && RemoteReadable<O>
-  [[nodiscard]] Result<typename O::type> read() {
-    std::array<std::uint8_t, 8> memory{};
-    return number_from<O>(sdo_.read_number(node_, O::index, O::sub_index, memory));
+  [[nodiscard]] Result<typename O::type> read(O = {}) {
+    if constexpr (remote_detail::can_be_read<O, Device>()) {
+      std::array<std::uint8_t, 8> memory{};
+      return number_from<O>(sdo_.read_number(node_, O::index, O::sub_index, memory));
+    }
+    return AbortCode::general;
   }
 
   /// Reads a string. 0607 0012h: it is longer than in the EDS.
   template <StringObject O>
-  requires ObjectOf<O, Device> && RemoteReadable<O>
-  [[nodiscard]] Result<typename O::type> read() {
-    return text_from<O, Device>(sdo_.upload(node_, O::index, O::sub_index));
+  [[nodiscard]] Result<typename O::type> read(O = {}) {
+    if constexpr (remote_detail::can_be_read<O, Device>())
+      return text_from<O, Device>(sdo_.upload(node_, O::index, O::sub_index));
+    return AbortCode::general;
   }
 
   /// Reads the bytes of a DOMAIN.
   template <DomainObject O>
-  requires ObjectOf<O, Device> && RemoteReadable<O>
-  [[nodiscard]] Result<std::vector<std::uint8_t>> read() { return sdo_.upload(node_, O::index, O::sub_index); }
+  [[nodiscard]] Result<std::vector<std::uint8_t>> read(O = {}) {
+    if constexpr (remote_detail::can_be_read<O, Device>()) return sdo_.upload(node_, O::index, O::sub_index);
+    return AbortCode::general;
+  }
 
-  /// Writes a number. A value outside the limits is rejected without sending a frame.
-  template <NumberObject O, ValueFor<O> V>
-  requires ObjectOf<O, Device> && RemoteWritable<O> Result<void> write(V value) {
-    if (const AbortCode code = check_value<O>(value); code != ok) return code;
-    return write_number<O>(static_cast<typename O::type>(value));
+  /// Writes a number, a string or a DOMAIN: `write<od::x>(value)` or `write(od::x{}, value)`. A value outside the
+  /// limits is rejected without sending a frame; 0607 0012h: a string is longer than the capacity of the object.
+  template <DictionaryObject O, class V>
+  Result<void> write(const V& value) {
+    if constexpr (remote_detail::can_be_written<O, Device, std::decay_t<const V&>>()) {
+      if constexpr (NumberObject<O>) {
+        if (const AbortCode code = check_value<O>(value); code != ok) return code;
+        return write_number<O>(static_cast<typename O::type>(value));
+      } else if constexpr (std::convertible_to<const V&, std::string_view>) {
+        const std::string_view text = value;
+        return write_bytes<O>(std::span{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+      } else {
+        return write_bytes<O>(value);
+      }
+    }
+    return AbortCode::general;
+  }
+  template <DictionaryObject O, class V>
+  Result<void> write(O, const V& value) {
+    if constexpr (remote_detail::can_be_written<O, Device, std::decay_t<const V&>>()) return write<O>(value);
+    return AbortCode::general;
+  }
+  template <DictionaryObject O>
+  requires(StringObject<O> || DomainObject<O>) Result<void> write(std::initializer_list<std::uint8_t> bytes) {
+    return write<O>(std::span{bytes.begin(), bytes.size()});
   }
 
   /// Writes a constant, whose limits the compiler checks.
   template <NumberObject O, auto Value>
-  requires ObjectOf<O, Device> && RemoteWritable<O> && ValueFor<decltype(Value), O> Result<void> write() {
-    static_assert(check_value<O>(Value) == ok, "this value is outside the limits of the object");
-    return write_number<O>(static_cast<typename O::type>(Value));
+  Result<void> write() {
+    if constexpr (remote_detail::can_be_written_with<O, Device, Value>())
+      return write_number<O>(static_cast<typename O::type>(Value));
+    return AbortCode::general;
   }
 
-  /// Writes a string or DOMAIN. 0607 0012h: the string is longer than the capacity of the object.
-  template <DictionaryObject O>
-  requires ObjectOf<O, Device> && RemoteWritable<O> &&
-      (StringObject<O> || DomainObject<O>)Result<void> write(std::span<const std::uint8_t> bytes) {
+ private:
+  template <class O>
+  [[nodiscard]] Result<void> write_bytes(std::span<const std::uint8_t> bytes) {
     if constexpr (StringObject<O>) {
       if (bytes.size() > O::type::capacity()) return AbortCode::length_too_high;
     }
     return sdo_.download(node_, O::index, O::sub_index, bytes);
   }
-  template <StringObject O>
-  requires ObjectOf<O, Device> && RemoteWritable<O> Result<void> write(std::string_view text) {
-    return write<O>(std::span{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  }
-
-  /// The same with the object as an argument: `read(od::x{})`, `write(od::x{}, value)`.
-  template <DictionaryObject O>
-  [[nodiscard]] auto read(O) {
-    return read<O>();
-  }
-  template <DictionaryObject O, class V>
-  Result<void> write(O, const V& value) {
-    return write<O>(value);
-  }
-
- private:
   template <class O>
   [[nodiscard]] Result<void> write_number(typename O::type value) {
     const std::uint64_t raw = value_detail::to_bits(value);

@@ -11,6 +11,9 @@
 ///     while (!stop) master.poll(100ms);
 #pragma once
 
+// First, so that the compiler's messages about its checks begin with few including files.
+#include "canopen/sdo/remote_node.hpp"
+//
 #include <algorithm>
 #include <array>
 #include <cstdint>

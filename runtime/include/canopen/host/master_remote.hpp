@@ -53,28 +53,39 @@ class MasterRemote {
   /// Reads an object, and waits for the result while the master goes on: `read(od::x{})` or `read<od::x>()`.
   template <DictionaryObject O>
   [[nodiscard]] auto read(O = {}) {
-    return objects().template read<O>();
+    if constexpr (remote_detail::can_be_read<O, Device>()) {
+      return objects().template read<O>();
+    } else {
+      return Result<typename O::type>{AbortCode::general};
+    }
   }
   /// Writes an object. A value outside the limits is rejected without sending a frame.
   template <DictionaryObject O, class V>
-  Result<void> write(V value) {
-    return objects().template write<O>(value);
+  Result<void> write(const V& value) {
+    if constexpr (remote_detail::can_be_written<O, Device, std::decay_t<const V&>>())
+      return objects().template write<O>(value);
+    return AbortCode::general;
   }
   template <DictionaryObject O, class V>
-  Result<void> write(O, V value) {
-    return write<O>(value);
+  Result<void> write(O, const V& value) {
+    if constexpr (remote_detail::can_be_written<O, Device, std::decay_t<const V&>>())
+      return objects().template write<O>(value);
+    return AbortCode::general;
   }
   /// Writes a constant, whose limits the compiler checks.
-  template <DictionaryObject O, auto Value>
+  template <NumberObject O, auto Value>
   Result<void> write() {
-    return objects().template write<O, Value>();
+    if constexpr (remote_detail::can_be_written_with<O, Device, Value>()) return objects().template write<O, Value>();
+    return AbortCode::general;
   }
 
   /// Starts to read an object and returns; `done(result)` is called from `poll` with a Result of its type, for a DOMAIN
   /// of its bytes, exactly once unless this call is rejected: 060A 0023h, too many requests are pending.
   template <DictionaryObject O, class Done>
-  requires ObjectOf<O, Device> && RemoteReadable<O> Result<void> read(O, Done done) {
-    if constexpr (NumberObject<O>) {
+  Result<void> read(O, Done done) {
+    if constexpr (!remote_detail::can_be_read<O, Device>()) {
+      return AbortCode::general;
+    } else if constexpr (NumberObject<O>) {
       auto& transfer = master_.transfers_.add(
           node_id_, O::index, O::sub_index, [done = std::move(done)](MasterTransfers::Transfer& ended) mutable {
             const std::size_t size = ended.result == ok ? ended.size : 0;
@@ -95,9 +106,12 @@ class MasterRemote {
   /// Starts to write an object and returns; `done(result)` is called from `poll` with a Result<void>, exactly once
   /// unless this call is rejected: 060A 0023h, or a value outside the limits.
   template <DictionaryObject O, class V, class Done>
-  Result<void> write(O object, const V& value, Done done) {
-    Begins begins{master_, std::move(done)};
-    return BlockingObjects<Device, Begins>{begins, node_id_}.write(object, value);
+  Result<void> write([[maybe_unused]] O object, [[maybe_unused]] const V& value, [[maybe_unused]] Done done) {
+    if constexpr (remote_detail::can_be_written<O, Device, std::decay_t<const V&>>()) {
+      Begins begins{master_, std::move(done)};
+      return BlockingObjects<Device, Begins>{begins, node_id_}.write(object, value);
+    }
+    return AbortCode::general;
   }
 
   /// Calls the handler from now on with the values of each TPDO with this layout: `handler(values...)`. Its COB-ID is
@@ -129,16 +143,20 @@ class MasterRemote {
     return New::map_valid(little_endian_number(*cob_id), write);
   }
 
-  /// Sends an RPDO with these values. 060A 0023h: the bus has no room.
+  /// Sends an RPDO with these values. 060A 0023h: the bus has no room; 0609 0031h, 0609 0032h: a value is outside the
+  /// limits of its object, and nothing is sent.
   template <class Layout, class... Values>
   Result<void> send(const Values&... values) {
+    static_assert(sizeof...(Values) == Layout::entries, "send: one value for each entry of the RPDO");
     constexpr std::uint16_t number = master_detail::number_in<Layout, typename Device::Rpdos>;
     static_assert(number != 0, "no RPDO of this device has this layout, or several have");
     const Result<std::uint32_t> cob_id =
         master_.pdo_cob_id(node_id_, static_cast<std::uint16_t>(rpdo_indices.communication + number - 1));
     if (!cob_id) return cob_id.abort_code();
+    if (const AbortCode code = checked<Layout>(std::make_index_sequence<Layout::entries>{}, values...); code != ok)
+      return code;
     Frame frame = frame_of(*cob_id);
-    Layout::pack_into(frame, values...);
+    pack<Layout>(frame, std::make_index_sequence<Layout::entries>{}, values...);
     return master_.bus_.send(frame) ? ok : AbortCode::no_resource;
   }
 
@@ -154,6 +172,36 @@ class MasterRemote {
   }
 
  private:
+  /// The first abort code of the values of a layout.
+  template <class Layout, std::size_t... I, class... Values>
+  [[nodiscard]] static AbortCode checked(std::index_sequence<I...>, const Values&... values) {
+    AbortCode code = ok;
+    static_cast<void>(((code = checked_value<typename Layout::template Entry<I>>(values), code == ok) && ...));
+    return code;
+  }
+  template <class O, class V>
+  [[nodiscard]] static AbortCode checked_value([[maybe_unused]] const V& value) {
+    if constexpr (NumberObject<O> && std::is_arithmetic_v<typename O::type>) {
+      static_assert(remote_detail::has_the_type_of<O, V>, "send: this value is not of the type of the object");
+      if constexpr (remote_detail::has_the_type_of<O, V>) return check_value<O>(value);
+    } else if constexpr (remote_detail::is_text_for<O, V>) {
+      return O::type::from(value).abort_code();
+    }
+    return ok;
+  }
+  template <class O, class V>
+  [[nodiscard]] static typename O::type converted(const V& value) {
+    if constexpr (remote_detail::is_text_for<O, V>) {
+      return O::type::truncated(value);
+    } else {
+      return static_cast<typename O::type>(value);
+    }
+  }
+  template <class Layout, std::size_t... I, class... Values>
+  static void pack(Frame& frame, std::index_sequence<I...>, const Values&... values) {
+    Layout::pack_into(frame, converted<typename Layout::template Entry<I>>(values)...);
+  }
+
   template <class Layout>
   [[nodiscard]] static constexpr std::uint16_t tpdo_index() {
     constexpr std::uint16_t number = master_detail::number_in<Layout, typename Device::Tpdos>;

@@ -395,8 +395,9 @@ template <class A, class... Names>
 template <class Device, class Node, class A>
 [[nodiscard]] constexpr bool check_application() {
   using namespace function;
-  return check_names<A, Writen, OnWrite, OnWritten, OnRead, OnNmtState, OnEmcy, OnPdo, OnStart, OnEvery, OnTick,
-                     OnTimer>() &&
+  return check_names<A, Writen, OnWrite, OnWritten, OnRead, OnNmtState, OnEmcy, OnPdo, OnChange, OnChanged, OnUpdate,
+                     OnReceive, OnReceived, OnStateChange, OnNmt, OnHeartBeat, OnNodeGuarding, OnErrors, Wrote, Wirte,
+                     OnStart, OnEvery, OnTick, OnTimer>() &&
          check_periodic_names<A, Tick, Evry, Each, Periodic, OnTime>() && check_periods<A, Node>() &&
          check_event<Device, Node, A, Start>() && check_objects<Device, Node, A, Write>() &&
          check_objects<Device, Node, A, Written>() && check_objects<Device, Node, A, Read>() &&

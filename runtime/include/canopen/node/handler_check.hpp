@@ -4,16 +4,20 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
+#include "canopen/base/abort_code.hpp"
 #include "canopen/base/label.hpp"
+#include "canopen/base/result.hpp"
 #include "canopen/lss/lss_handler.hpp"
 #include "canopen/node/application.hpp"
 #include "canopen/node/application_check.hpp"
 #include "canopen/node/handlers.hpp"
 #include "canopen/node/mailbox.hpp"
 #include "canopen/od/dictionary.hpp"
+#include "canopen/od/value_for.hpp"
 #include "canopen/sdo/domain_handlers.hpp"
 #include "canopen/storage/storage.hpp"
 
@@ -129,12 +133,80 @@ template <class Device, class Node, class... Handlers>
 
 namespace handler_detail {
 
-/// A handler whose callable accepts the arguments of its event, alone or after the node.
-template <class H, bool Fits>
-struct HandlerParameters {
-  static_assert(Fits, "handler: its parameters are not those of its object or event, alone or after the node");
-  static constexpr bool is_good = true;
+/// The last parameter of a callable that is not a template; `void` for others.
+template <class... Parameters>
+struct LastOf {
+  using type = void;
 };
+template <class First, class... Others>
+struct LastOf<First, Others...> {
+  using type = std::tuple_element_t<sizeof...(Others), std::tuple<First, Others...>>;
+};
+template <class Result, class Class, class... Parameters>
+LastOf<Parameters...> last_of(Result (Class::*)(Parameters...));
+template <class Result, class Class, class... Parameters>
+LastOf<Parameters...> last_of(Result (Class::*)(Parameters...) const);
+template <class Result, class... Parameters>
+LastOf<Parameters...> last_of(Result (*)(Parameters...));
+template <class F>
+struct LastParameter {
+  using type = void;
+};
+template <class F>
+requires requires { last_of(&F::operator()); }
+struct LastParameter<F> : decltype(last_of(&F::operator())) {};
+template <class F>
+requires requires(F function) { last_of(function); }
+struct LastParameter<F> : decltype(last_of(std::declval<F>())) {};
+
+/// Whether a handler accepts all values of an object: a parameter of a narrower type does not.
+template <class O, class F>
+[[nodiscard]] constexpr bool takes_all_values() {
+  using Parameter = std::remove_cvref_t<typename LastParameter<F>::type>;
+  if constexpr (std::is_arithmetic_v<Parameter> && std::is_arithmetic_v<typename O::type>) {
+    return FitsInto<typename O::type, Parameter>;
+  } else {
+    return true;
+  }
+}
+
+template <class H>
+inline constexpr bool takes_all_of = true;
+template <class O, class F>
+inline constexpr bool takes_all_of<WriteHandler<O, F>> = takes_all_values<O, F>();
+template <class O, class F>
+inline constexpr bool takes_all_of<WrittenHandler<O, F>> = takes_all_values<O, F>();
+
+template <class T>
+struct ValueIn {
+  using type = T;
+};
+template <class T>
+struct ValueIn<Result<T>> {
+  using type = T;
+};
+
+/// Whether a read handler returns a value that fits into its object.
+template <class O, class Answer>
+[[nodiscard]] constexpr bool fits_into_object() {
+  using Value = typename ValueIn<std::remove_cvref_t<Answer>>::type;
+  if constexpr (std::is_void_v<Answer> || std::is_same_v<Value, AbortCode>) {
+    return true;
+  } else if constexpr (std::is_arithmetic_v<typename O::type>) {
+    return FitsInto<Value, typename O::type>;
+  } else {
+    return std::is_convertible_v<Value, typename O::type> || TextFor<Value, O>;
+  }
+}
+template <class Node, class H>
+inline constexpr bool supplies_value = true;
+template <class Node, class O, class F>
+inline constexpr bool supplies_value<Node, ReadHandler<O, F>> = [] {
+  if constexpr (std::is_invocable_v<F&>) return fits_into_object<O, std::invoke_result_t<F&>>();
+  if constexpr (!std::is_invocable_v<F&> && std::is_invocable_v<F&, Node&>)
+    return fits_into_object<O, std::invoke_result_t<F&, Node&>>();
+  return true;
+}();
 
 template <class Node, class H>
 inline constexpr bool parameters_fit = true;
@@ -153,28 +225,24 @@ inline constexpr bool takes_all<F, Node, function::ArgumentList<Arguments...>> =
 template <class Node, class Event, class F>
 inline constexpr bool parameters_fit<Node, EventHandler<Event, F>> = takes_all<F, Node, typename Event::Arguments>;
 
-/// The result of a periodic handler.
-template <class H, bool IsNothing>
-struct PeriodicHandlerResult {
-  static_assert(IsNothing, "every: the handler returns nothing");
-  static constexpr bool is_good = true;
-};
-
 template <class Node, class H>
 inline constexpr bool result_fits = true;
 template <class Node, class P, class F>
 requires(takes<F, Node>) inline constexpr bool result_fits<Node, PeriodicHandler<P, F>> =
     std::is_void_v<decltype(call(std::declval<F&>(), std::declval<Node&>()))>;
 
-}  // namespace handler_detail
-
-/// Whether the node can call each of these handlers. `Node` must be complete, because the compiler instantiates generic
-/// lambdas with it.
-template <class Node, class... Handlers>
-[[nodiscard]] constexpr bool checked_parameters() {
-  return (true && ... &&
-          (handler_detail::HandlerParameters<Handlers, handler_detail::parameters_fit<Node, Handlers>>::is_good &&
-           handler_detail::PeriodicHandlerResult<Handlers, handler_detail::result_fits<Node, Handlers>>::is_good));
+/// Checks the parameters and the result of a handler.
+template <class Node, class Handler>
+constexpr void check_parameters() {
+  static_assert(parameters_fit<Node, Handler>,
+                "handler: its parameters are not those of its object or event, alone or after the node");
+  static_assert(takes_all_of<Handler>, "handler: its parameter is not of the type of its object or a wider one");
+  static_assert(
+      !parameters_fit<Node, Handler> || supplies_value<Node, Handler>,
+      "on_read: the handler returns the type of its object or a narrower one, a Result of it, an AbortCode or "
+      "nothing");
+  static_assert(!parameters_fit<Node, Handler> || result_fits<Node, Handler>, "every: the handler returns nothing");
 }
 
+}  // namespace handler_detail
 }  // namespace canopen

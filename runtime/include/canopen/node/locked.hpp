@@ -3,14 +3,16 @@
 ///     std::mutex mutex;
 ///     canopen::Locked pump{node, mutex};
 ///     pump.on_time(now());                       // the task of the node
-///     pump.set<od::pressure>(420);               // another task
+///     pump.set(od::pressure{}, 420);             // another task
 ///     pump.with([](auto& locked) { ... });       // several calls, or those that are not listed here
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <type_traits>
 #include <utility>
 
+#include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
 #include "canopen/base/lock.hpp"
 #include "canopen/can/bus_status.hpp"
@@ -18,6 +20,7 @@
 #include "canopen/can/node_id.hpp"
 #include "canopen/emcy/error_register.hpp"
 #include "canopen/nmt/nmt.hpp"
+#include "canopen/node/object_setters.hpp"
 #include "canopen/od/object.hpp"
 
 namespace canopen {
@@ -27,8 +30,10 @@ namespace canopen {
 /// afterwards. With an InterruptLock no interrupt is served during `on_frame` and `on_time`; a Mailbox does not have
 /// this delay. The node and the lock must outlive this object.
 template <class Node, Lock L = NoLock>
-class Locked {
+class Locked : public ObjectSetters<Locked<Node, L>> {
  public:
+  using DeviceType = typename Node::DeviceType;
+
   constexpr explicit Locked(Node& node) requires(std::is_same_v<L, NoLock>) : node_{node} {}
   constexpr Locked(Node& node, L& lock) : node_{node}, lock_{lock} {}
 
@@ -69,14 +74,15 @@ class Locked {
     with([&](Node& node) { node.request(command, now); });
   }
   template <DictionaryObject O>
-  [[nodiscard]] typename O::type get() {
+  [[nodiscard]] typename O::type get(O = {}) {
     return with([](Node& node) { return node.template get<O>(); });
   }
-  template <DictionaryObject O>
-  auto set(const typename O::type& value) {
-    return with([&](Node& node) { return node.template set<O>(value); });
+  using ObjectSetters<Locked>::set;
+  template <std::uint16_t Number, class Layout>
+  [[nodiscard]] AbortCode map() {
+    return with([](Node& node) { return node.template map<Number, Layout>(); });
   }
-  void emergency(std::uint16_t code, ErrorRegister bits) {
+  void emergency(EmergencyCode code, ErrorRegister bits) {
     with([&](Node& node) { node.emergency(code, bits); });
   }
   void emergency_over(ErrorRegister bits) {
@@ -84,6 +90,13 @@ class Locked {
   }
 
  private:
+  friend ObjectSetters<Locked>;
+
+  template <DictionaryObject O>
+  [[nodiscard]] AbortCode assign(const typename O::type& value) {
+    return with([&](Node& node) { return node.template set<O>(value); });
+  }
+
   using LockMember = std::conditional_t<std::is_empty_v<L>, L, L&>;
 
   struct Guard {

@@ -3,7 +3,7 @@
 ///     canopen::Mailbox<od::pressure, od::temperature> measured;
 ///     auto sensor = canopen::make_node<Device>(bus, NodeId{5}, canopen::values_from(measured));
 ///
-///     extern "C" void ADC1_IRQHandler() { measured.post<od::temperature>(ADC1->DR); }
+///     extern "C" void ADC1_IRQHandler() { measured.post(od::temperature{}, converted(ADC1->DR)); }
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,11 @@
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/shared_value.hpp"
+#include "canopen/node/object_setters.hpp"
 #include "canopen/node/value_check.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/value.hpp"
+#include "canopen/od/value_for.hpp"
 
 namespace canopen {
 
@@ -29,17 +31,48 @@ class Mailbox {
                 "the memory of a DOMAIN is bound with bind()");
 
  public:
-  /// Replaces the posted value.
+  /// Replaces the posted value. A value has the type of its object or a narrower one, or is a constant, whose limits
+  /// the compiler checks; anything else does not compile.
   template <DictionaryObject O>
-  requires(!can_be_refused<O>) void post(const typename O::type& value) { slot<O>().publish(value); }
+  requires(!can_be_refused<O>) void post(O, std::type_identity_t<ParameterFor<O>> value) {
+    slot<O>().publish(value_for_detail::value_in(value));
+  }
+  template <DictionaryObject O>
+  requires(!can_be_refused<O>) void post(std::type_identity_t<ParameterFor<O>> value) { post(O{}, value); }
 
   /// The same for an object with limits. value_too_high, value_too_low: outside the limits of the EDS; invalid_value: a
   /// REAL is NaN. The value posted before remains.
-  template <DictionaryObject O>
-  requires(can_be_refused<O>) [[nodiscard]] AbortCode post(const typename O::type& value) {
+  template <LimitedObject O, FitsInto<typename O::type> V>
+  [[nodiscard]] AbortCode post(O, V value) {
     const AbortCode code = check_limits<O>(value);
     if (code == ok) slot<O>().publish(value);
     return code;
+  }
+  template <LimitedObject O, FitsInto<typename O::type> V>
+  [[nodiscard]] AbortCode post(V value) {
+    return post(O{}, value);
+  }
+  /// A constant is not refused.
+  template <LimitedObject O>
+  void post(O, std::type_identity_t<ConstantFor<O>> value) {
+    slot<O>().publish(value.value());
+  }
+  template <LimitedObject O>
+  AbortCode post(std::type_identity_t<ConstantFor<O>> value) {
+    slot<O>().publish(value.value());
+    return ok;
+  }
+
+  /// A text of a length that is known at run time only. length_too_high: it is longer than the string of the object.
+  template <StringObject O, TextFor<O> V>
+  [[nodiscard]] AbortCode post(O, const V& text) {
+    const auto string = O::type::from(text);
+    if (string) slot<O>().publish(*string);
+    return string.abort_code();
+  }
+  template <StringObject O, TextFor<O> V>
+  [[nodiscard]] AbortCode post(const V& text) {
+    return post(O{}, text);
   }
 
   // ---- the context of the node ----

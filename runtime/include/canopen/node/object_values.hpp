@@ -13,6 +13,7 @@
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/result.hpp"
+#include "canopen/node/object_setters.hpp"
 #include "canopen/node/value_check.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object.hpp"
@@ -31,59 +32,14 @@ namespace object_values_detail {
 template <class O>
 concept Arithmetic = NumberObject<O> && std::is_arithmetic_v<typename O::type>;
 
-/// A type whose values all fit into another one.
-template <class V, class T>
-concept FitsInto = std::same_as<V, T> ||
-                   (value_for_detail::Integer<V>&& value_for_detail::Integer<T>&& std::cmp_greater_equal(
-                        std::numeric_limits<V>::min(), std::numeric_limits<T>::min()) &&
-                    std::cmp_less_equal(std::numeric_limits<V>::max(), std::numeric_limits<T>::max())) ||
-                   (std::same_as<V, float> && std::same_as<T, double>);
-
-template <class Object, class Value>
-struct SetValue {
-  static_assert(!Arithmetic<Object>, "set: the value is not of the type of the object");
-  static constexpr bool is_good = !Arithmetic<Object>;
-};
-
 }  // namespace object_values_detail
 
-/// Base of a node. A value has the type of its object, or is a constant, whose limits the compiler checks: a constant
-/// outside does not compile, and neither does a number of another type. Without a tag, the object is a template
-/// argument: `node.get<od::pressure>()`.
+/// Base of a node: what it does with objects by their tags. Without a tag, the object is a template argument:
+/// `node.get<od::pressure>()`.
 template <class N>
-class ObjectValues {
+class ObjectValues : public ObjectSetters<N> {
  public:
-  /// Also a value of a narrower type.
-  template <object_values_detail::Arithmetic O, object_values_detail::FitsInto<typename O::type> V>
-  requires(!can_be_refused<O>) AbortCode set(O, V value) { return node().template set<O>(value); }
-  template <object_values_detail::Arithmetic O, object_values_detail::FitsInto<typename O::type> V>
-  requires(can_be_refused<O>) [[nodiscard]] AbortCode set(O, V value) { return node().template set<O>(value); }
-
-  /// A constant is not refused.
-  template <object_values_detail::Arithmetic O>
-  requires(!is_communication_index(O::index)) void set(O, std::type_identity_t<ConstantFor<O>> value) {
-    static_cast<void>(node().template set<O>(value.value()));
-  }
-  /// A parameter of a service is refused if it may not be changed now.
-  template <object_values_detail::Arithmetic O>
-  requires(is_communication_index(O::index)) [[nodiscard]] AbortCode
-      set(O, std::type_identity_t<ConstantFor<O>> value) {
-    return node().template set<O>(value.value());
-  }
-
-  /// The same for a constant of the type `int`: `set<od::target_position, 4'000>()`.
-  template <object_values_detail::Arithmetic O, auto Value>
-  requires(ValueFor<decltype(Value), O>) AbortCode set() {
-    static_assert(check_value<O>(Value) == ok, "this value is outside the limits of the object");
-    return node().template set<O>(static_cast<typename O::type>(Value));
-  }
-
-  /// A string, a time or a DOMAIN; a value of any other type does not compile.
-  template <DictionaryObject O, class V>
-  requires(!object_values_detail::Arithmetic<O> || !ValueFor<V, O>) AbortCode set(O, const V& value) {
-    if constexpr (object_values_detail::SetValue<O, V>::is_good) return node().template set<O>(value);
-    return ok;
-  }
+  using ObjectSetters<N>::set;
 
   /// Returns an element of an array of numbers by its run-time sub-index: `get(od::outputs{}, i)`. no_sub_index: it
   /// does not exist.
@@ -101,10 +57,12 @@ class ObjectValues {
   /// Sets an element, with the checks of `set`. no_sub_index: it does not exist.
   template <template <std::uint8_t> class Array>
   requires object_values_detail::Arithmetic<Array<whole_array>>
-  [[nodiscard]] AbortCode set(Array<whole_array>, std::uint8_t sub_index, typename Array<whole_array>::type value) {
+  [[nodiscard]] AbortCode set(Array<whole_array>, std::uint8_t sub_index,
+                              std::type_identity_t<ValueOf<Array<whole_array>>> value) {
     using Element = Array<whole_array>;
     if (sub_index == 0) return AbortCode::no_sub_index;
-    const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&value), (Element::bits + 7) / 8};
+    typename Element::type element = value.value();
+    const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&element), (Element::bits + 7) / 8};
     if constexpr (is_communication_index(Element::index)) {
       if (const AbortCode code = node().host().check_write(Element::index, sub_index, bytes); code != ok) return code;
     }
@@ -112,13 +70,17 @@ class ObjectValues {
   }
 
   /// Maps these objects into TPDO or RPDO `Number`: `node.map<2, canopen::Tpdo<od::pressure, od::temperature>>()`. The
-  /// PDO must have a dynamic mapping; its communication parameter stays as it is.
+  /// PDO must have a dynamic mapping; its communication parameter stays as it is. 0601 0000h: the PDO is valid, and its
+  /// mapping may not change (CiA 301, 7.5.2.36 and 7.5.2.38): set bit 31 of its COB-ID before, and clear it afterwards.
+  /// An object that the device cannot map in this direction does not compile.
   template <std::uint16_t Number, class Layout>
-  AbortCode map() {
-    using Device = typename N::Host::Device;
+  [[nodiscard]] AbortCode map() {
+    using Device = typename N::DeviceType;
     return Remapping<Device, Number, Layout>::map(
-        [this](std::uint16_t index, std::uint8_t sub_index, std::uint32_t value, std::size_t bytes) {
-          return node().set(index, sub_index, {reinterpret_cast<const std::uint8_t*>(&value), bytes});
+        [this](std::uint16_t index, std::uint8_t sub_index, std::uint32_t value, std::size_t size) {
+          const std::span bytes{reinterpret_cast<std::uint8_t*>(&value), size};
+          const AbortCode code = node().host().check_write(index, sub_index, bytes);
+          return code != ok ? code : node().set(index, sub_index, bytes);
         });
   }
 

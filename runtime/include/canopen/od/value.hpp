@@ -8,6 +8,9 @@
 #include <span>
 #include <string_view>
 
+#include "canopen/base/abort_code.hpp"
+#include "canopen/base/result.hpp"
+
 namespace canopen {
 
 /// TIME_OF_DAY (CiA 301, 7.1.6.5): 48 bits, with the same layout in memory and on the wire.
@@ -36,54 +39,100 @@ struct StringStorage {
   static constexpr std::size_t capacity() { return Capacity; }
 };
 
-/// VISIBLE_STRING: ISO 646 text without a terminating zero.
+/// VISIBLE_STRING: ISO 646 text without a terminating zero. A literal converts to it; one that is longer than the
+/// capacity does not compile.
 template <std::size_t Capacity>
 struct VisibleString : StringStorage<Capacity> {
   constexpr VisibleString() = default;
-  /// Truncates text that is longer than the capacity.
-  constexpr VisibleString(std::string_view text) {  // NOLINT(google-explicit-constructor): text converts to it
-    while (this->size < text.size() && this->size < Capacity) {
-      this->bytes[this->size] = static_cast<std::uint8_t>(text[this->size]);
-      ++this->size;
+  template <std::size_t Size>
+  consteval VisibleString(const char (&literal)[Size]) {  // NOLINT(google-explicit-constructor): text converts to it
+    static_assert(Size <= Capacity + 1, "the text is longer than the string");
+    for (const char character : literal) {
+      if (character == 0) break;
+      this->bytes[this->size++] = static_cast<std::uint8_t>(character);
     }
   }
-  constexpr VisibleString(const char* text)
-      : VisibleString{std::string_view{text}} {}  // NOLINT(google-explicit-constructor)
+
+  /// Returns the string with this text; 0607 0012h if it is longer than the capacity.
+  [[nodiscard]] static constexpr Result<VisibleString> from(std::string_view text) {
+    if (text.size() > Capacity) return AbortCode::length_too_high;
+    return truncated(text);
+  }
+  /// Returns the string with the first bytes of a text, as many as it has room for.
+  [[nodiscard]] static constexpr VisibleString truncated(std::string_view text) {
+    VisibleString string;
+    while (string.size < text.size() && string.size < Capacity) {
+      string.bytes[string.size] = static_cast<std::uint8_t>(text[string.size]);
+      ++string.size;
+    }
+    return string;
+  }
 
   [[nodiscard]] std::string_view view() const {
     return {reinterpret_cast<const char*>(this->bytes.data()), this->size};
   }
 };
 
-/// OCTET_STRING: any bytes.
+/// OCTET_STRING: any bytes. A list of constants converts to it; one that is longer than the capacity does not compile.
 template <std::size_t Capacity>
 struct OctetString : StringStorage<Capacity> {
   constexpr OctetString() = default;
-  constexpr OctetString(std::initializer_list<std::uint8_t> octets)
-      : OctetString{std::span<const std::uint8_t>{octets.begin(), octets.size()}} {}
-  /// Truncates bytes beyond the capacity.
-  constexpr OctetString(std::span<const std::uint8_t> octets) {  // NOLINT(google-explicit-constructor)
-    while (this->size < octets.size() && this->size < Capacity) {
-      this->bytes[this->size] = octets[this->size];
-      ++this->size;
+  consteval OctetString(std::initializer_list<std::uint8_t> octets) {
+    for (const std::uint8_t octet : octets) this->bytes[this->size++] = octet;
+  }
+
+  /// Returns the string with these bytes; 0607 0012h if they are more than the capacity.
+  [[nodiscard]] static constexpr Result<OctetString> from(std::span<const std::uint8_t> octets) {
+    if (octets.size() > Capacity) return AbortCode::length_too_high;
+    return truncated(octets);
+  }
+  /// Returns the string with the first ones of these bytes, as many as it has room for.
+  [[nodiscard]] static constexpr OctetString truncated(std::span<const std::uint8_t> octets) {
+    OctetString string;
+    while (string.size < octets.size() && string.size < Capacity) {
+      string.bytes[string.size] = octets[string.size];
+      ++string.size;
     }
+    return string;
   }
 
   [[nodiscard]] constexpr std::span<const std::uint8_t> view() const { return {this->bytes.data(), this->size}; }
 };
 
-/// UNICODE_STRING: UTF-16 code units, low byte first. The capacity is in bytes.
+/// UNICODE_STRING: UTF-16 code units, low byte first. The capacity is in bytes. A literal converts to it; one that is
+/// longer than the capacity does not compile.
 template <std::size_t Capacity>
 struct UnicodeString : StringStorage<Capacity> {
   constexpr UnicodeString() = default;
-  /// Truncates code units beyond the capacity.
-  constexpr UnicodeString(std::u16string_view text) {  // NOLINT(google-explicit-constructor)
-    for (const char16_t unit : text) {
-      if (this->size + 2u > Capacity) break;
-      this->bytes[this->size] = static_cast<std::uint8_t>(unit & 0xFF);
-      this->bytes[this->size + 1u] = static_cast<std::uint8_t>(unit >> 8);
-      this->size = static_cast<std::uint16_t>(this->size + 2);
+  template <std::size_t Size>
+  consteval UnicodeString(const char16_t (&literal)[Size]) {  // NOLINT(google-explicit-constructor)
+    static_assert(2 * (Size - 1) <= Capacity, "the text is longer than the string");
+    for (const char16_t unit : literal) {
+      if (unit == 0) break;
+      append(unit);
     }
+  }
+
+  /// Returns the string with this text; 0607 0012h if it is longer than the capacity.
+  [[nodiscard]] static constexpr Result<UnicodeString> from(std::u16string_view text) {
+    if (2 * text.size() > Capacity) return AbortCode::length_too_high;
+    return truncated(text);
+  }
+  /// Returns the string with the first code units of a text, as many as it has room for.
+  [[nodiscard]] static constexpr UnicodeString truncated(std::u16string_view text) {
+    UnicodeString string;
+    for (const char16_t unit : text) {
+      if (string.size + 2u > Capacity) break;
+      string.append(unit);
+    }
+    return string;
+  }
+
+ private:
+  constexpr void append(char16_t unit) {
+    this->bytes[this->size] = static_cast<std::uint8_t>(unit & 0xFF);
+    this->bytes[this->size + 1u] = static_cast<std::uint8_t>(unit >> 8);
+    this->size = static_cast<std::uint16_t>(this->size + 2);
   }
 };
 

@@ -7,7 +7,9 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include "canopen/od/object.hpp"
 #include "canopen/od/value.hpp"
@@ -23,7 +25,7 @@ concept StringValue = requires(T value) {
 
 /// Text, which ends at its first 00h; an octet string is as long as its entry.
 template <class T>
-concept TextValue = StringValue<T> && std::constructible_from<T, const char*>;
+concept TextValue = StringValue<T> && std::same_as<decltype(std::declval<const T&>().view()), std::string_view>;
 
 /// Returns the bits of a value as on the wire; above those of its type, signed values are sign-extended.
 template <class T>

@@ -14,6 +14,8 @@
 #include <span>
 
 #include "canopen/can/node_id.hpp"
+#include "canopen/od/access.hpp"
+#include "canopen/od/object.hpp"
 
 namespace canopen {
 
@@ -23,6 +25,9 @@ struct MpdoDestination {
   std::uint16_t index;
   std::uint8_t sub_index;
 };
+
+/// The value of a DAM-MPDO, for the compiler's messages. A signed value is sent as the bits of an unsigned one.
+struct MpdoData : Object<0x0000, 0, std::uint32_t, Access::rw> {};
 
 /// The data bytes of an MPDO.
 class Mpdo {

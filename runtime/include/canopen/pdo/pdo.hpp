@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
@@ -11,6 +12,7 @@
 #include "canopen/can/frame.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object.hpp"
+#include "canopen/od/value_for.hpp"
 #include "canopen/pdo/pdo_codec.hpp"
 
 namespace canopen {
@@ -162,27 +164,32 @@ struct PdoLayout {
     return position;
   }();
 
-  /// Returns the data bytes for these values.
-  [[nodiscard]] static constexpr Data pack(const typename Objects::type&... values) {
+  /// Returns the data bytes for these values. A value has the type of its object or a narrower one, or is a constant,
+  /// whose limits the compiler checks; anything else does not compile. Limits of other values are not checked: the
+  /// receiver does.
+  [[nodiscard]] static constexpr Data pack(ParameterFor<Objects>... values) {
     Data data{};
-    pack_aligned<1>(data, values...);
+    pack_aligned<1>(data, value_for_detail::value_in(values)...);
     return data;
   }
 
   /// Writes these values to the first `size` bytes.
-  static constexpr void pack_into(Data& data, const typename Objects::type&... values) {
-    pack_aligned<1>(data, values...);
+  static constexpr void pack_into(Data& data, ParameterFor<Objects>... values) {
+    pack_aligned<1>(data, value_for_detail::value_in(values)...);
   }
 
-  /// The same for data at an address that is a multiple of four, as in a frame.
-  static constexpr void pack_into_words(Data& data, const typename Objects::type&... values) {
+  /// The same for values of exactly the types of the objects, and data at an address that is a multiple of four, as in
+  /// a frame.
+  template <class... Types>
+  requires(std::same_as<Types, typename Objects::type>&&...) static constexpr void pack_into_words(
+      Data& data, const Types&... values) {
     pack_aligned<pdo_detail::frame_data_align>(data, values...);
   }
 
   /// The same for a frame; sets its length.
-  static constexpr void pack_into(Frame& frame, const typename Objects::type&... values) {
+  static constexpr void pack_into(Frame& frame, ParameterFor<Objects>... values) {
     frame.size = size;
-    pack_aligned<pdo_detail::frame_data_align>(frame.data, values...);
+    pack_aligned<pdo_detail::frame_data_align>(frame.data, value_for_detail::value_in(values)...);
   }
 
   /// Returns the values in these data bytes.
@@ -221,32 +228,34 @@ struct PdoLayout {
 
   /// Sets the value of entry `I`. All other bits keep their value.
   template <std::size_t I>
-  static constexpr void set(Data& data, const typename Entry<I>::type& value) {
-    pdo_detail::replace<offsets[I], Entry<I>::bits>(data, value);
+  static constexpr void set(Data& data, ParameterFor<Entry<I>> value) {
+    pdo_detail::replace<offsets[I], Entry<I>::bits>(data, value_for_detail::value_in(value));
   }
   template <std::size_t I>
-  static constexpr void set(Frame& frame, const typename Entry<I>::type& value) {
-    pdo_detail::replace<offsets[I], Entry<I>::bits, pdo_detail::frame_data_align>(frame.data, value);
+  static constexpr void set(Frame& frame, ParameterFor<Entry<I>> value) {
+    pdo_detail::replace<offsets[I], Entry<I>::bits, pdo_detail::frame_data_align>(frame.data,
+                                                                                  value_for_detail::value_in(value));
   }
 
   /// Sets the value of an object. All other bits keep their value.
   template <DictionaryObject O>
-  static constexpr void set(Data& data, const typename O::type& value) {
-    set<position_of<O>>(data, value);
+  static constexpr void set(Data& data, ParameterFor<O> value) {
+    set<position_of<O>>(data, value_for_detail::value_in(value));
   }
   template <DictionaryObject O>
-  static constexpr void set(Frame& frame, const typename O::type& value) {
-    set<position_of<O>>(frame, value);
+  static constexpr void set(Frame& frame, ParameterFor<O> value) {
+    set<position_of<O>>(frame, value_for_detail::value_in(value));
   }
 
   /// Sets the value of entry `I`, whose bits must be zero.
   template <std::size_t I>
-  static constexpr void put(Data& data, const typename Entry<I>::type& value) {
-    pdo_detail::put<offsets[I], Entry<I>::bits>(data, value);
+  static constexpr void put(Data& data, ParameterFor<Entry<I>> value) {
+    pdo_detail::put<offsets[I], Entry<I>::bits>(data, value_for_detail::value_in(value));
   }
   template <std::size_t I>
-  static constexpr void put(Frame& frame, const typename Entry<I>::type& value) {
-    pdo_detail::put<offsets[I], Entry<I>::bits, pdo_detail::frame_data_align>(frame.data, value);
+  static constexpr void put(Frame& frame, ParameterFor<Entry<I>> value) {
+    pdo_detail::put<offsets[I], Entry<I>::bits, pdo_detail::frame_data_align>(frame.data,
+                                                                              value_for_detail::value_in(value));
   }
 
   /// Calls `visit.template operator()<O, I>()` for each entry in order.

@@ -11,6 +11,7 @@
 #include "canopen/can/cob_id.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/pdo/pdo.hpp"
+#include "canopen/pdo/pdo_check.hpp"
 #include "canopen/pdo/pdo_list.hpp"
 
 namespace canopen {
@@ -25,14 +26,6 @@ template <class Layout>
 inline constexpr bool is_rpdo = false;
 template <class... Objects>
 inline constexpr bool is_rpdo<Rpdo<Objects...>> = true;
-
-/// An object of a new mapping.
-template <class Device, class Label, class Object>
-struct RemappedObject {
-  static_assert(Device::dictionary.has(Object::index, Object::sub_index),
-                "PDO mapping: this device does not have the object");
-  static constexpr bool is_good = true;
-};
 
 /// The PDO with a new mapping. `Number` is RpdoNumber or TpdoNumber.
 template <class Device, class Number, std::size_t Entries, std::size_t Capacity>
@@ -53,20 +46,22 @@ struct Remapping {
   static constexpr PdoIndices first = transmit ? tpdo_indices : rpdo_indices;
   static constexpr std::uint16_t communication = first.communication + Number - 1;
   static constexpr std::uint16_t mapping = first.mapping + Number - 1;
-  static_assert(pdo_detail::RemappedPdo<Device, std::conditional_t<transmit, TpdoNumber<Number>, RpdoNumber<Number>>,
-                                        Layout::entries, mapping_capacity(Device::dictionary, mapping)>::is_good);
+  using Pdo = std::conditional_t<transmit, TpdoNumber<Number>, RpdoNumber<Number>>;
+  static_assert(
+      pdo_detail::RemappedPdo<Device, Pdo, Layout::entries, mapping_capacity(Device::dictionary, mapping)>::is_good);
+  static_assert(decltype(pdo_detail::checked_entries<Device::dictionary, Pdo, Device::granularity>(
+      static_cast<const Layout*>(nullptr)))::hold);
 
   /// The values of the sub-indices from 1 on.
   static constexpr std::array<std::uint32_t, Layout::entries> entries = [] {
     std::array<std::uint32_t, Layout::entries> values{};
-    Layout::for_each([&]<class O, std::size_t I>() {
-      static_assert(pdo_detail::RemappedObject<Device, pdo_detail::LabelOf<O>, O>::is_good);
-      values[I] = (object_key(O::index, O::sub_index) << 8) | O::bits;
-    });
+    Layout::for_each(
+        [&]<class O, std::size_t I>() { values[I] = (object_key(O::index, O::sub_index) << 8) | O::bits; });
     return values;
   }();
 
-  /// Calls `write(index, sub_index, value, bytes)` for the mapping parameter, until it returns an abort code.
+  /// Calls `write(index, sub_index, value, bytes)` for the mapping parameter, until it returns an abort code. The PDO
+  /// must not be valid (CiA 301, 7.5.2.36 and 7.5.2.38).
   template <class Write>
   [[nodiscard]] static AbortCode map(Write&& write) {
     if (const AbortCode code = write(mapping, std::uint8_t{0}, 0u, 1u); code != ok) return code;

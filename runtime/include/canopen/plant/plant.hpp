@@ -74,13 +74,17 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
 
   /// Sends a value with the next PDO, which an event-driven TPDO sends at once. value_too_high or value_too_low: it is
   /// outside the limits of the node's object, and the last value is kept.
-  template <SentBy<Network> S, object_values_detail::FitsInto<typename S::type> V>
-  requires(!can_be_refused<typename S::receiver>) AbortCode set(S, V value) { return store<S>(value); }
-  template <SentBy<Network> S, object_values_detail::FitsInto<typename S::type> V>
+  template <SentBy<Network> S>
+  requires(!can_be_refused<typename S::receiver>) AbortCode
+      set(S, std::type_identity_t<ParameterFor<typename S::receiver>> value) {
+    return store<S>(value_for_detail::value_in(value));
+  }
+  template <SentBy<Network> S, FitsInto<typename S::type> V>
   requires(can_be_refused<typename S::receiver>) [[nodiscard]] AbortCode set(S, V value) { return store<S>(value); }
   /// A constant, whose limits the compiler checks.
   template <SentBy<Network> S>
-  void set(S, std::type_identity_t<ConstantFor<typename S::receiver>> value) {
+  requires(can_be_refused<typename S::receiver>) void set(
+      S, std::type_identity_t<ConstantFor<typename S::receiver>> value) {
     static_cast<void>(store<S>(value.value()));
   }
 
@@ -161,7 +165,7 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
   };
 
   template <class S>
-  [[nodiscard]] AbortCode store(typename S::type value) {
+  [[nodiscard]] AbortCode store(const typename S::type& value) {
     if (const AbortCode code = check_limits<typename S::receiver>(value); code != ok) return code;
     return node_.template set<typename S::object>(value);
   }

@@ -20,6 +20,7 @@
 #include "canopen/can/frame.hpp"
 #include "canopen/can/node_id.hpp"
 #include "canopen/od/access.hpp"
+#include "canopen/od/device_object.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/value.hpp"
 #include "canopen/od/value_for.hpp"
@@ -39,6 +40,62 @@ concept RemoteReadable = DictionaryObject<O> && readable(O::access);
 template <class O>
 concept RemoteWritable = DictionaryObject<O> && writable(O::access);
 
+namespace remote_detail {
+
+// Conditions of a transfer. The compiler's message has the name with its arguments.
+
+template <class O, class Device>
+inline constexpr bool device_has = Device::dictionary.has(O::index, O::sub_index);
+template <class O, class Device>
+inline constexpr bool is_of_device = !device_has<O, Device> || !is_of_another_device<O, Device>;
+template <class O>
+inline constexpr bool is_readable = readable(O::access);
+template <class O>
+inline constexpr bool is_writable = writable(O::access);
+template <class O, class V>
+inline constexpr bool has_the_type_of = NumberObject<O>
+                                            ? ValueFor<V, O>
+                                            : std::is_convertible_v<V, std::span<const std::uint8_t>> ||
+                                                  (StringObject<O> && std::is_convertible_v<V, std::string_view>);
+template <class O, auto Value>
+inline constexpr bool is_within_the_limits_of = true;
+template <class O, auto Value>
+requires ValueFor<decltype(Value), O>
+inline constexpr bool is_within_the_limits_of<O, Value> = check_value<O>(Value) == ok;
+
+/// A string, or a literal, for a string object.
+template <class O, class V>
+inline constexpr bool is_text_for = TextFor<std::decay_t<const V&>, O>;
+
+/// An object of this device that SDO can read.
+template <class O, class Device>
+[[nodiscard]] constexpr bool can_be_read() {
+  static_assert(device_has<O, Device>, "read: this device does not have the object");
+  static_assert(is_of_device<O, Device>, "read: this is an object of another device");
+  static_assert(is_readable<O>, "read: the object is wo");
+  return device_has<O, Device> && is_of_device<O, Device> && is_readable<O>;
+}
+
+/// An object of this device that SDO can write with a value of this type. Limits are checked when it is written.
+template <class O, class Device, class V>
+[[nodiscard]] constexpr bool can_be_written() {
+  constexpr bool exists = device_has<O, Device> && is_of_device<O, Device> && is_writable<O>;
+  static_assert(device_has<O, Device>, "write: this device does not have the object");
+  static_assert(is_of_device<O, Device>, "write: this is an object of another device");
+  static_assert(is_writable<O>, "write: the object is ro or const");
+  static_assert(!exists || has_the_type_of<O, V>, "write: this value is not of the type of the object");
+  return exists && has_the_type_of<O, V>;
+}
+
+/// The same with a constant.
+template <class O, class Device, auto Value>
+[[nodiscard]] constexpr bool can_be_written_with() {
+  static_assert(is_within_the_limits_of<O, Value>, "write: this value is outside the limits of the object");
+  return is_within_the_limits_of<O, Value> && can_be_written<O, Device, decltype(Value)>();
+}
+
+}  // namespace remote_detail
+
 /// Typed SDO client of one node. An SDO has one client, so do not use it for a node that an NmtMaster or SdoQueue
 /// accesses: two clients receive each other's segments.
 ///
@@ -55,40 +112,48 @@ class RemoteNode {
 
   /// Starts to read an object; `value<O>()` then returns it. 060A 0023h while busy.
   template <NumberObject O>
-  requires ObjectOf<O, Device> && RemoteReadable<O> Result<void> read(TimePoint now) {
-    return begun(client_.template read<O>(now));
+  Result<void> read(TimePoint now) {
+    if constexpr (remote_detail::can_be_read<O, Device>()) return begun(client_.template read<O>(now));
+    return AbortCode::general;
   }
 
   /// Starts to read a string or DOMAIN into memory; `data()` then returns its bytes.
   template <DictionaryObject O>
-  requires ObjectOf<O, Device> && RemoteReadable<O> &&
-      (StringObject<O> || DomainObject<O>)Result<void> read(std::span<std::uint8_t> memory, TimePoint now) {
-    return begun(client_.upload(O::index, O::sub_index, memory, now));
+  requires(StringObject<O> || DomainObject<O>) Result<void> read(std::span<std::uint8_t> memory, TimePoint now) {
+    if constexpr (remote_detail::can_be_read<O, Device>())
+      return begun(client_.upload(O::index, O::sub_index, memory, now));
+    return AbortCode::general;
   }
 
   /// Starts to write an object. A value outside the limits is rejected at once and not sent.
-  template <NumberObject O, ValueFor<O> V>
-  requires ObjectOf<O, Device> && RemoteWritable<O> Result<void> write(V value, TimePoint now) {
-    if (const AbortCode code = check_value<O>(value); code != ok) return code;
-    return begun(client_.template write<O>(static_cast<typename O::type>(value), now));
+  template <NumberObject O, class V>
+  Result<void> write(V value, TimePoint now) {
+    if constexpr (remote_detail::can_be_written<O, Device, V>()) {
+      if (const AbortCode code = check_value<O>(value); code != ok) return code;
+      return begun(client_.template write<O>(static_cast<typename O::type>(value), now));
+    }
+    return AbortCode::general;
   }
 
   /// Starts to write a constant.
   template <NumberObject O, auto Value>
-  requires ObjectOf<O, Device> && RemoteWritable<O> && ValueFor<decltype(Value), O> Result<void> write(TimePoint now) {
-    static_assert(check_value<O>(Value) == ok, "this value is outside the limits of the object");
-    return begun(client_.template write<O>(static_cast<typename O::type>(Value), now));
+  Result<void> write(TimePoint now) {
+    if constexpr (remote_detail::can_be_written_with<O, Device, Value>())
+      return begun(client_.template write<O>(static_cast<typename O::type>(Value), now));
+    return AbortCode::general;
   }
 
   /// Starts to write a string or DOMAIN from memory. A string longer than the capacity of the object is rejected at
   /// once with 0607 0012h.
   template <DictionaryObject O>
-  requires ObjectOf<O, Device> && RemoteWritable<O> &&
-      (StringObject<O> || DomainObject<O>)Result<void> write(std::span<const std::uint8_t> bytes, TimePoint now) {
-    if constexpr (StringObject<O>) {
-      if (bytes.size() > O::type::capacity()) return AbortCode::length_too_high;
+  requires(StringObject<O> || DomainObject<O>) Result<void> write(std::span<const std::uint8_t> bytes, TimePoint now) {
+    if constexpr (remote_detail::can_be_written<O, Device, std::span<const std::uint8_t>>()) {
+      if constexpr (StringObject<O>) {
+        if (bytes.size() > O::type::capacity()) return AbortCode::length_too_high;
+      }
+      return begun(client_.download(O::index, O::sub_index, bytes, now));
     }
-    return begun(client_.download(O::index, O::sub_index, bytes, now));
+    return AbortCode::general;
   }
 
   /// Returns the value that `read<O>` has read, or why it is missing. 060A 0023h while busy.
