@@ -11,12 +11,13 @@ help() {
   sources   each source and public header compiles alone and passes clang-tidy; each gate detects a planted fault
   quick     the gates; the generated code, the short tests of the command line, the conformance test of the reference
             devices; the unit and trace tests (about 3 minutes after a build)
+  odr       no two sources of edsc define different types of one name (g++ with -flto)
   test      a release build with all tests but those of the other gears
   asan      the GoogleTest programs (unit and trace tests) and a short run of each fuzz target with AddressSanitizer
             and UBSan
   firmware  the images of the reference devices for Cortex-M under QEMU
 
-Without a gear: gates, test, asan, firmware. The last two use the program edsc of the release build, and build it there
+Without a gear: gates, odr, test, asan, firmware. The last two use the program edsc of the release build, and build it there
 if it is missing. The time of each test is printed at the end of a gear, slowest first.
 HELP
 }
@@ -36,10 +37,10 @@ run() {
 }
 
 gears=("$@")
-[ $# -gt 0 ] || gears=(gates test asan firmware)
+[ $# -gt 0 ] || gears=(gates odr test asan firmware)
 for gear in "${gears[@]}"; do
   case $gear in
-    gates | sources | quick | test | asan | firmware) ;;
+    gates | sources | quick | odr | test | asan | firmware) ;;
     -h | --help) help; exit ;;
     *) echo "unknown gear $gear; see ./test.sh --help" >&2; exit 2 ;;
   esac

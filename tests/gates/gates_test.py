@@ -145,6 +145,15 @@ class Sources(Copy):
                    "std::string moved_twice(std::string text) { std::string a = std::move(text); return a + text; }\n}\n")
         self.expect_failure(self.sources(), "-Werror=conversion", "[bugprone-use-after-move")
 
+    def test_two_types_of_one_name_are_reported(self) -> None:
+        """In two sources that are compiled as parts of two files."""
+        for name, member in (("generator/text/suggestion.cpp", "int*"), ("generator/eds/number.cpp", "double")):
+            self.plant(name, f"namespace edsc {{\nstruct Planted {{\n  {member} value = {{}};\n}};\n"
+                             f"Planted planted({member} value);\nPlanted planted({member} value) {{ return {{value}}; }}\n}}\n")
+        subprocess.run(["cmake", "--preset", "odr"], cwd=self.folder, capture_output=True, check=True)
+        result = subprocess.run(["cmake", "--build", "--preset", "odr"], cwd=self.folder, capture_output=True, text=True)
+        self.expect_failure(result, "violates the C++ One Definition Rule", "struct Planted")
+
 
 if __name__ == "__main__":
     unittest.main(argv=[sys.argv[0], *sys.argv[3:]], verbosity=2)
