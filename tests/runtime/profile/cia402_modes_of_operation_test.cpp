@@ -4,6 +4,7 @@
 #include <canopen/node.hpp>
 #include <canopen/node/mailbox.hpp>
 #include <canopen/node/value_check.hpp>
+#include <canopen/storage/stored_value_check.hpp>
 #include <cia402_drive/device.hpp>
 #include <cstdint>
 #include <every_mode/device.hpp>
@@ -94,6 +95,18 @@ TEST(ModesOfOperation, AreThoseOf6502hByTheApplication) {
     const std::uint8_t bytes[] = {static_cast<std::uint8_t>(mode)};
     EXPECT_EQ(device.node.set(0x6060, 0, bytes), expected) << mode;
     EXPECT_EQ(canopen::check_value<Mode>(mode), expected) << mode;
+  }
+}
+
+TEST(ModesOfOperation, AreThoseOf6502hInAStorage) {
+  using Check = canopen::StoredValueCheck<every_mode::Device>;
+  for (const std::uint16_t index : {std::uint16_t{0x6060}, std::uint16_t{0x6860}}) {
+    for (int mode = -128; mode <= 127; ++mode) {
+      const std::uint8_t bytes[] = {static_cast<std::uint8_t>(mode)};
+      EXPECT_EQ(Check::is_possible(index, 0, every_mode::dictionary.find(index, 0), bytes),
+                is_supported(mode, index == 0x6060 ? every : 0x4))
+          << mode;
+    }
   }
 }
 

@@ -100,6 +100,9 @@ class StoredValueCheck {
   [[nodiscard]] static bool is_possible(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                         std::span<const std::uint8_t> bytes) {
     if (EntryAccess<Device>::check_value(index, sub_index, word, bytes) != ok) return false;
+    if constexpr (!Device::dictionary.accepted.empty()) {
+      if (!bytes.empty() && !Device::dictionary.accepts(index, static_cast<std::int8_t>(bytes[0]))) return false;
+    }
     if constexpr (checked_count != 0) {
       for (const Checked& row : checked) {
         if (row.index == index && row.sub_index == sub_index) return is_possible(row.what, number_in(bytes));
