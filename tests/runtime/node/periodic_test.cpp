@@ -118,6 +118,24 @@ TEST(Start, SeesStoredValues) {
   EXPECT_EQ(seen, 9);
 }
 
+/// Members with the names of functions that a node calls: data, and a function for the class alone.
+TEST(Start, IsAPublicFunction) {
+  class Machine {
+   public:
+    void on_state(NmtState) { start(); }
+    void tick() { ++starts; }
+    int starts = 0;
+    int each = 0;
+    int read = 0;
+
+   private:
+    void start() { ++starts; }
+    int periodic = 0;
+  };
+  auto device = bench::with<rk5c::Device>(Machine{});
+  EXPECT_EQ(device.node.application<Machine>().starts, 2) << "by its on_state alone";
+}
+
 TEST(Start, IsCalledForEachHandlerInTheirOrder) {
   std::string calls;
   struct First {

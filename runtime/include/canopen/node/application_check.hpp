@@ -362,14 +362,17 @@ struct MisspeltPeriodicFunction {
   static constexpr bool is_good = true;
 };
 
+template <class Function, class A, class... Values>
+inline constexpr bool is_callable_with = requires(A& application, Values... values) {
+  Function::call(application, values...);
+};
+
 template <class A, class Name>
 [[nodiscard]] constexpr bool is_periodic() {
-  if constexpr (Name::template is_declared<A>) {
-    constexpr bool has_period = takes_first<Name, A, AnyPeriod> && !takes_first<Name, A, NoPeriod>;
-    return has_period || (std::is_same_v<Name, function::Tick> && !none_fits<Name, A, AnyReference, TimePoint>);
-  } else {
-    return false;
-  }
+  constexpr bool has_period =
+      (is_callable_with<Name, A, AnyPeriod> && !is_callable_with<Name, A, NoPeriod>) ||
+      (is_callable_with<Name, A, AnyPeriod, AnyReference> && !is_callable_with<Name, A, NoPeriod, AnyReference>);
+  return has_period || (std::is_same_v<Name, function::Tick> && is_callable_with<Name, A, AnyReference, TimePoint>);
 }
 
 template <class A, class... Names>

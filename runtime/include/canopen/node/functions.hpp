@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "canopen/can/node_id.hpp"
@@ -17,6 +18,12 @@ namespace canopen::function {
 template <class... Arguments>
 struct ArgumentList {};
 
+/// Converts to references to each type: stands for the node.
+struct AnyNode {
+  template <class T>
+  operator T&() const;  // NOLINT(google-explicit-constructor)
+};
+
 /// What a call returns if no function of the application fits.
 struct NoneFits {};
 
@@ -24,7 +31,8 @@ struct NoneFits {};
 // A template argument cannot be the name of a function. Therefore, a macro makes the rows. Of each:
 //   object       index of the object without which a device never calls the function; 0: every device may call it
 //   Arguments    of an event
-//   Declares     with an application as the other base: the name is ambiguous if the application has it
+//   Both         with an application as the other base: the name is ambiguous if the application has it
+//   is_declared  whether the application has a function of this name; a member of another kind is not one
 //   call         calls the function; is not viable if no overload fits
 //   OrNone       the application with a function for all other arguments
 #define CANOPEN_FUNCTION(Row, function_name, needed_object, ...)                                    \
@@ -33,7 +41,11 @@ struct NoneFits {};
     using Arguments = ArgumentList<__VA_ARGS__>;                                                    \
     struct Name { void function_name(); };                                                          \
     template <class A> struct Both : A, Name {};                                                    \
-    template <class A> static constexpr bool is_declared = !requires { &Both<A>::function_name; };  \
+    template <class A> static constexpr bool is_other =                                             \
+        requires { typename A::function_name; } ||                                                  \
+        requires { requires !std::is_function_v<std::remove_reference_t<decltype(A::function_name)>>; };\
+    template <class A> static constexpr bool is_declared =                                          \
+        !requires { &Both<A>::function_name; } && !is_other<A>;                                     \
     template <class A> struct OrNone : A {                                                          \
       using A::function_name;                                                                       \
       static NoneFits function_name(...);                                                           \
@@ -56,7 +68,13 @@ CANOPEN_FUNCTION(Read, read, 0, );
 
 /// Power-on, the first call that an application gets: default and stored values have been set, the boot-up message
 /// follows. A reset by NMT does not call it again: it enters Initialisation.
-CANOPEN_FUNCTION(Start, start, 0, );
+CANOPEN_FUNCTION(StartOfAnyAccess, start, 0, );
+struct Start : StartOfAnyAccess {
+  /// A private function of this common name is left alone.
+  template <class A> static constexpr bool is_declared = StartOfAnyAccess::is_declared<A> &&
+      (requires { &A::start; } || requires(A& application) { application.start(); } ||
+       requires(A& application, AnyNode node) { application.start(node); });
+};
 /// `every(Milliseconds<10>)`: a function with a period, in each NMT state. Returns nothing.
 CANOPEN_FUNCTION(Every, every, 0, );
 

@@ -37,11 +37,8 @@ struct NoPeriod {
   requires(!Period<std::remove_cv_t<T>>) operator T&() const;  // NOLINT(google-explicit-constructor): a value
 };
 
-/// Converts to each type and to references: fits each parameter except `T&&`.
-struct AnyReference {
-  template <class T>
-  operator T&() const;  // NOLINT(google-explicit-constructor): stands for a value or the node
-};
+/// Fits each parameter except `T&&`.
+using AnyReference = function::AnyNode;
 
 /// Whether no function of an application fits; more than one may.
 template <class Function, class A, class... Values>
