@@ -24,6 +24,18 @@ TEST(SdoClient, TellsTheServerThatTheApplicationEndsTheTransfer) {
   EXPECT_FALSE(client.client.busy());
 }
 
+/// A server that has lost the transfer, by its time-out or a reset, does not know the entry.
+TEST(SdoClient, EndsWithAnAbortOfASegmentWithoutAnEntry) {
+  Client client;
+  client.upload();
+  EXPECT_EQ(client.answer("80 00 00 00 01 00 04 05"), "") << "of a segment of an earlier transfer";
+  EXPECT_EQ(client.answer("80 12 20 00 01 00 04 05"), "40 12 20 00 00 00 00 00");
+  EXPECT_EQ(client.answer("41 12 20 00 0A 00 00 00"), "60 00 00 00 00 00 00 00");
+  EXPECT_EQ(client.answer("80 00 00 00 01 00 04 05"), "");
+  EXPECT_FALSE(client.client.busy());
+  EXPECT_EQ(client.client.result(), AbortCode::command_specifier);
+}
+
 TEST(SdoClient, IsBusyUntilItsAbortIsSent) {
   Client client;
   client.upload();

@@ -68,7 +68,10 @@ class SdoClientTransfer {
   bool on_response(const sdo::Data& answer) {
     const bool is_segment = receives_segments() && answer[0] != sdo::abort_command;
     if (!is_segment) {
-      const bool earlier = sdo::has_multiplexer(answer) ? sdo::multiplexer_of(answer) != entry() : is_initiating();
+      // A server that has no transfer, as after its time-out, aborts a segment with 0000h:00.
+      const bool without_entry = answer[0] == sdo::abort_command && sdo::multiplexer_of(answer) == 0;
+      const bool earlier =
+          sdo::has_multiplexer(answer) && !without_entry ? sdo::multiplexer_of(answer) != entry() : is_initiating();
       if (earlier) return false;
     }
     const AbortCode code = is_segment ? take_block_segment(answer) : handle(answer);
