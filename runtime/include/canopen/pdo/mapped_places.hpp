@@ -52,9 +52,10 @@ class MappedPlaces {
   /// Maximum number of objects in the mapping of each PDO; 0: static.
   static constexpr std::array<std::uint8_t, count> capacities = [] {
     std::array<std::uint8_t, count> rows{};
-    Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      rows[I] = mapping_capacity(Device::dictionary, Indices.mapping + Pdo::number - 1);
-    });
+    for (std::size_t i = 0; i < count; ++i) {
+      rows[i] =
+          mapping_capacity(Device::dictionary, static_cast<std::uint16_t>(Indices.mapping + Pdos::numbers[i] - 1));
+    }
     return rows;
   }();
   static constexpr bool any = std::ranges::any_of(capacities, [](std::uint8_t capacity) { return capacity != 0; });

@@ -21,9 +21,9 @@ class ParameterColumn {
 
   static constexpr std::array<entry::Word, count> words = [] {
     std::array<entry::Word, count> rows{};
-    Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      rows[I] = Device::dictionary.find(static_cast<std::uint16_t>(First + Pdo::number - 1), SubIndex);
-    });
+    for (std::size_t i = 0; i < count; ++i) {
+      rows[i] = Device::dictionary.find(static_cast<std::uint16_t>(First + Pdos::numbers[i] - 1), SubIndex);
+    }
     return rows;
   }();
 

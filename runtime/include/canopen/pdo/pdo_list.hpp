@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -34,9 +35,28 @@ struct NumberedPdo : Layout {
   static constexpr std::uint16_t number = Number;
 };
 
+namespace pdo_detail {
+
+/// The keys of the objects of a PDO, in their order.
+template <class Pdo>
+inline constexpr std::array<std::uint32_t, Pdo::entries> keys_of = [] {
+  std::array<std::uint32_t, Pdo::entries> keys{};
+  Pdo::for_each([&]<class O, std::size_t I>() { keys[I] = object_key(O::index, O::sub_index); });
+  return keys;
+}();
+
+}  // namespace pdo_detail
+
+/// A device has up to 512 PDOs of a direction. What is needed of each of them is in arrays: a function for each PDO
+/// whose name contains the list takes the compiler time that grows with the third power of their number.
 template <class... Pdos>
 struct PdoList {
   static constexpr std::size_t count = sizeof...(Pdos);
+
+  // Of each PDO:
+  static constexpr std::array<std::uint16_t, count> numbers{Pdos::number...};
+  static constexpr std::array<std::uint8_t, count> sizes{Pdos::size...};  ///< data bytes of the default mapping
+  static constexpr std::array<std::span<const std::uint32_t>, count> keys{pdo_detail::keys_of<Pdos>...};
 
   /// Calls `visit.template operator()<Pdo, I>()` for each PDO in order.
   template <class Visit>
@@ -47,7 +67,8 @@ struct PdoList {
  private:
   template <class Visit, std::size_t... I>
   [[gnu::always_inline]] static constexpr void visit_all([[maybe_unused]] Visit& visit, std::index_sequence<I...>) {
-    (visit.template operator()<Pdos, I>(), ...);
+    // Not a fold: Clang accepts 256 operands at most.
+    [[maybe_unused]] const bool visited[] = {true, (visit.template operator()<Pdos, I>(), true)...};
   }
 };
 
@@ -71,33 +92,54 @@ struct PdoList {
 
 namespace pdo_detail {
 
-template <const Dictionary& D, PdoIndices Indices, class Taken, class List>
-struct Served;
-template <const Dictionary& D, PdoIndices Indices, class... Taken>
-struct Served<D, Indices, PdoList<Taken...>, PdoList<>> {
-  using type = PdoList<Taken...>;
+/// Whether a PDO maps an object, or can do so, and its COB-ID is in the dictionary.
+template <const Dictionary& D, PdoIndices Indices, class P>
+inline constexpr bool is_served = (P::entries > 0 || mapping_capacity(D, Indices.mapping + P::number - 1) > 0) &&
+                                  D.has(Indices.communication + P::number - 1, pdo_parameter::cob_id);
+
+/// The PDOs of several lists.
+template <class... Lists>
+struct Joined;
+template <>
+struct Joined<> {
+  using type = PdoList<>;
 };
-template <const Dictionary& D, PdoIndices Indices, class... Taken, class P, class... Rest>
-struct Served<D, Indices, PdoList<Taken...>, PdoList<P, Rest...>> {
-  static constexpr bool maps = P::entries > 0 || mapping_capacity(D, Indices.mapping + P::number - 1) > 0;
-  static constexpr bool serves = maps && D.has(Indices.communication + P::number - 1, pdo_parameter::cob_id);
-  using type = typename Served<D, Indices, std::conditional_t<serves, PdoList<Taken..., P>, PdoList<Taken...>>,
-                               PdoList<Rest...>>::type;
+template <class... A>
+struct Joined<PdoList<A...>> {
+  using type = PdoList<A...>;
+};
+template <class... A, class... B, class... Rest>
+struct Joined<PdoList<A...>, PdoList<B...>, Rest...> : Joined<PdoList<A..., B...>, Rest...> {};
+template <class... A, class... B, class... C, class... D, class... E, class... F, class... G, class... H, class... Rest>
+struct Joined<PdoList<A...>, PdoList<B...>, PdoList<C...>, PdoList<D...>, PdoList<E...>, PdoList<F...>, PdoList<G...>,
+              PdoList<H...>, Rest...> : Joined<PdoList<A..., B..., C..., D..., E..., F..., G..., H...>, Rest...> {};
+
+template <class List>
+struct Whole {
+  using type = List;
+};
+
+template <const Dictionary& D, PdoIndices Indices, class List>
+struct Served;
+template <const Dictionary& D, PdoIndices Indices, class... P>
+struct Served<D, Indices, PdoList<P...>> {
+  static constexpr bool all = [] {
+    bool every = true;
+    for (const bool serves : {true, is_served<D, Indices, P>...}) every = every && serves;
+    return every;
+  }();
+  using type =
+      typename std::conditional_t<all, Whole<PdoList<P...>>,
+                                  Joined<std::conditional_t<is_served<D, Indices, P>, PdoList<P>, PdoList<>>...>>::type;
 };
 
 /// Whether the PDOs of a list are numbered from 1 without gaps.
 template <class Pdos>
 inline constexpr bool counts_from_one = [] {
-  bool counts = true;
-  Pdos::for_each([&]<class Pdo, std::size_t I>() { counts = counts && Pdo::number == I + 1; });
-  return counts;
-}();
-
-template <class Pdos>
-inline constexpr std::array<std::uint16_t, Pdos::count> numbers_of = [] {
-  std::array<std::uint16_t, Pdos::count> numbers{};
-  Pdos::for_each([&]<class Pdo, std::size_t I>() { numbers[I] = Pdo::number; });
-  return numbers;
+  for (std::size_t i = 0; i < Pdos::count; ++i) {
+    if (Pdos::numbers[i] != i + 1) return false;
+  }
+  return true;
 }();
 
 }  // namespace pdo_detail
@@ -108,7 +150,7 @@ template <class Pdos>
   if constexpr (pdo_detail::counts_from_one<Pdos>) {
     return static_cast<std::uint16_t>(place + 1);
   } else {
-    return pdo_detail::numbers_of<Pdos>[place];
+    return Pdos::numbers[place];
   }
 }
 
@@ -121,13 +163,13 @@ template <class Pdos>
     return place < Pdos::count ? place : Pdos::count;
   } else {
     std::size_t i = 0;
-    while (i < Pdos::count && pdo_detail::numbers_of<Pdos>[i] != place + 1) ++i;
+    while (i < Pdos::count && Pdos::numbers[i] != place + 1) ++i;
     return i;
   }
 }
 
 /// The PDOs of a list that map an object, or can do so, and whose COB-ID is in the dictionary.
 template <const Dictionary& D, PdoIndices Indices, class List>
-using ServedPdos = typename pdo_detail::Served<D, Indices, PdoList<>, List>::type;
+using ServedPdos = typename pdo_detail::Served<D, Indices, List>::type;
 
 }  // namespace canopen

@@ -2,6 +2,8 @@
 /// by the generator and pdo/pdo_check.hpp.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -93,7 +95,7 @@ class TpdoCanIds {
       return 0;
     }
     if (plain_[base] != 0) return plain_[base];
-    for (std::uint32_t id = 1; id <= highest_node_id && id <= base; ++id) {
+    for (std::uint32_t id = 1; with_node_id_count_ > 0 && id <= highest_node_id && id <= base; ++id) {
       if (with_node_id_[base - id] != 0) return with_node_id_[base - id];
     }
     return 0;
@@ -102,7 +104,7 @@ class TpdoCanIds {
   constexpr void add(const PdoCobId& pdo, std::size_t place) {
     const std::uint32_t base = CobId{pdo.cob_id}.can_id();
     (pdo.plus_node_id ? with_node_id_ : plain_)[base] = static_cast<std::uint16_t>(place + 1);
-    if (!pdo.plus_node_id) ++plain_count_;
+    ++(pdo.plus_node_id ? with_node_id_count_ : plain_count_);
   }
 
  private:
@@ -111,17 +113,29 @@ class TpdoCanIds {
   std::uint16_t plain_[can_ids] = {};
   std::uint16_t with_node_id_[can_ids] = {};
   unsigned plain_count_ = 0;
+  unsigned with_node_id_count_ = 0;
 };
 
-[[nodiscard]] constexpr CobIdClash find_extended_clash(const PdoCobId* pdos, std::size_t count, std::size_t second) {
-  for (std::size_t first = 0; first < count; ++first) {
-    const PdoCobId& a = pdos[first];
-    const PdoCobId& b = pdos[second];
-    const bool may_share = a.receive && b.receive;  // several RPDOs may consume one frame
-    if (first == second || may_share || !CobId{a.cob_id}.valid() || !CobId{a.cob_id}.extended()) continue;
-    if (CobId{a.cob_id}.can_id() == CobId{b.cob_id}.can_id() && a.plus_node_id == b.plus_node_id) {
-      return first < second ? CobIdClash{true, first, second} : CobIdClash{true, second, first};
-    }
+/// Of both directions (CiA 301, 7.5.2.35 and 7.5.2.37).
+inline constexpr std::size_t max_pdos = 1024;
+
+/// The same for 29-bit CAN-IDs: PDOs with the same one are neighbours when sorted by it.
+[[nodiscard]] constexpr CobIdClash find_extended_clash(const PdoCobId* pdos, std::size_t count) {
+  std::array<std::uint16_t, max_pdos> sorted{};
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < count && size < max_pdos; ++i) {
+    const CobId cob_id{pdos[i].cob_id};
+    if (cob_id.valid() && cob_id.extended()) sorted[size++] = static_cast<std::uint16_t>(i);
+  }
+  const auto key = [pdos](std::uint16_t i) {
+    return CobId{pdos[i].cob_id}.can_id() << 1 | (pdos[i].plus_node_id ? 1U : 0U);
+  };
+  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(size),
+            [key](std::uint16_t a, std::uint16_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+  for (std::size_t i = 1; i < size; ++i) {
+    const std::uint16_t first = sorted[i - 1], second = sorted[i];
+    const bool may_share = pdos[first].receive && pdos[second].receive;  // several RPDOs may consume one frame
+    if (!may_share && key(first) == key(second)) return {true, first, second};
   }
   return {};
 }
@@ -135,18 +149,14 @@ class TpdoCanIds {
   for (const bool receive : {false, true}) {
     for (std::size_t i = 0; i < count; ++i) {
       const CobId cob_id{pdos[i].cob_id};
-      if (pdos[i].receive != receive || !cob_id.valid()) continue;
-      if (cob_id.extended()) {
-        if (const CobIdClash clash = pdo_detail::find_extended_clash(pdos, count, i); clash.found) return clash;
-        continue;
-      }
+      if (pdos[i].receive != receive || !cob_id.valid() || cob_id.extended()) continue;
       if (const std::size_t user = tpdos.user_of(pdos[i]); user != 0) {
         return user - 1 < i ? CobIdClash{true, user - 1, i} : CobIdClash{true, i, user - 1};
       }
       if (!receive) tpdos.add(pdos[i], i);
     }
   }
-  return {};
+  return pdo_detail::find_extended_clash(pdos, count);
 }
 
 }  // namespace canopen

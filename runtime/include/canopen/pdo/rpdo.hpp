@@ -155,11 +155,7 @@ class RpdoService {
 
   using Data = std::array<std::uint8_t, 8>;
 
-  static constexpr std::array<std::uint8_t, count> sizes = [] {
-    std::array<std::uint8_t, count> rows{};
-    Pdos::for_each([&]<class Pdo, std::size_t I>() { rows[I] = Pdo::size; });
-    return rows;
-  }();
+  static constexpr std::array<std::uint8_t, count> sizes = Pdos::sizes;
 
   template <std::uint8_t SubIndex>
   using Column = ParameterColumn<Device, Pdos, rpdo_indices.communication, SubIndex>;
@@ -320,7 +316,9 @@ class RpdoService {
   template <class Host, class... Pdo, std::size_t... I>
   static void take_static([[maybe_unused]] std::size_t which, [[maybe_unused]] const Data& data,
                           [[maybe_unused]] Host host, PdoList<Pdo...>, std::index_sequence<I...>) {
-    (take_if<Pdo, Mapped::capacities[I] == 0>(which == I, data, host), ...);
+    // Not a fold: Clang accepts 256 operands at most.
+    [[maybe_unused]] const bool tried[] = {true,
+                                           (take_if<Pdo, Mapped::capacities[I] == 0>(which == I, data, host), true)...};
   }
 
   template <class Pdo, bool IsStatic, class Host>

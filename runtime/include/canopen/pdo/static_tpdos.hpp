@@ -1,9 +1,11 @@
 /// The TPDOs of a device with static mapping: which objects they contain, and their data.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 #include <utility>
 
 #include "canopen/od/dictionary.hpp"
@@ -12,6 +14,24 @@
 #include "canopen/pdo/pdo_list.hpp"
 
 namespace canopen {
+
+namespace pdo_detail {
+
+template <class Pdo, class Device, std::size_t... I>
+void pack_objects([[maybe_unused]] const ObjectStore<Device>& store, std::array<std::uint8_t, 8>& data,
+                  std::index_sequence<I...>) {
+  Pdo::pack_into_words(data, store.template get<typename Pdo::template Entry<I>>()...);
+}
+
+template <class Pdo, bool IsStatic, class Device>
+void pack_if([[maybe_unused]] bool it_is, [[maybe_unused]] const ObjectStore<Device>& store,
+             [[maybe_unused]] std::array<std::uint8_t, 8>& data) {
+  if constexpr (IsStatic) {
+    if (it_is) pack_objects<Pdo>(store, data, std::make_index_sequence<Pdo::entries>{});
+  }
+}
+
+}  // namespace pdo_detail
 
 /// The objects of the TPDOs of a device whose mapping is static.
 template <class Device, class Pdos>
@@ -22,44 +42,50 @@ struct StaticTpdos {
 
   static constexpr std::size_t mapped_objects = [] {
     std::size_t sum = 0;
-    Pdos::for_each([&]<class Pdo, std::size_t I>() { sum += Mapped::capacities[I] == 0 ? Pdo::entries : 0; });
+    for (std::size_t i = 0; i < count; ++i) sum += Mapped::capacities[i] == 0 ? Pdos::keys[i].size() : 0;
     return sum;
   }();
 
-  /// index << 16 | sub-index << 8 | position of the TPDO, for each statically mapped object.
-  static constexpr std::array<std::uint32_t, mapped_objects> carriers = [] {
-    static_assert(count <= 0x100);
-    std::array<std::uint32_t, mapped_objects> rows{};
+  /// The key of an object, then the position of its TPDO. The positions of more than 256 TPDOs have 9 bits, with which
+  /// the key does not fit into 32 bits.
+  using Row = std::conditional_t<(count > 0x100), std::uint64_t, std::uint32_t>;
+  static constexpr unsigned place_bits = count > 0x100 ? 9 : 8;
+  static_assert(count <= std::size_t{1} << place_bits, "a device has 512 TPDOs at most (CiA 301, 7.5.2.37)");
+
+  [[nodiscard]] static constexpr std::uint32_t key_in(Row row) { return static_cast<std::uint32_t>(row >> place_bits); }
+  [[nodiscard]] static constexpr std::size_t place_in(Row row) { return row & ((1U << place_bits) - 1U); }
+
+  /// Each statically mapped object.
+  static constexpr std::array<Row, mapped_objects> carriers = [] {
+    std::array<Row, mapped_objects> rows{};
     std::size_t at = 0;
-    Pdos::for_each([&]<class Pdo, std::size_t I>() {
-      if constexpr (Mapped::capacities[I] == 0) {
-        Pdo::for_each([&]<class O, std::size_t>() {
-          rows[at++] = (object_key(O::index, O::sub_index) << 8) | static_cast<std::uint32_t>(I);
-        });
-      }
-    });
+    for (std::size_t i = 0; i < count; ++i) {
+      if (Mapped::capacities[i] != 0) continue;
+      for (const std::uint32_t key : Pdos::keys[i]) rows[at++] = static_cast<Row>(Row{key} << place_bits | i);
+    }
     return rows;
   }();
+
+  /// The same, ascending: the TPDOs that map an object are neighbours.
+  static constexpr std::array<Row, mapped_objects> sorted = [] {
+    std::array<Row, mapped_objects> rows = carriers;
+    std::sort(rows.begin(), rows.end());
+    return rows;
+  }();
+  /// The position in `sorted` of the first TPDO that maps an object, and their number.
+  [[nodiscard]] static constexpr std::size_t first_of(std::uint32_t key) {
+    const Row lowest = static_cast<Row>(Row{key} << place_bits);
+    return static_cast<std::size_t>(std::lower_bound(sorted.begin(), sorted.end(), lowest) - sorted.begin());
+  }
+  [[nodiscard]] static constexpr std::size_t count_of(std::uint32_t key) { return first_of(key + 1) - first_of(key); }
 
   /// Writes the values of the objects of one TPDO to data, which must be zero and aligned to four bytes.
   template <class... Pdo, std::size_t... I>
   static void pack([[maybe_unused]] std::size_t which, [[maybe_unused]] const ObjectStore<Device>& store,
                    [[maybe_unused]] Data& data, PdoList<Pdo...>, std::index_sequence<I...>) {
-    (pack_if<Pdo, Mapped::capacities[I] == 0>(which == I, store, data), ...);
-  }
-
- private:
-  template <class Pdo, bool IsStatic>
-  static void pack_if([[maybe_unused]] bool it_is, [[maybe_unused]] const ObjectStore<Device>& store,
-                      [[maybe_unused]] Data& data) {
-    if constexpr (IsStatic) {
-      if (it_is) pack_objects<Pdo>(store, data, std::make_index_sequence<Pdo::entries>{});
-    }
-  }
-
-  template <class Pdo, std::size_t... I>
-  static void pack_objects([[maybe_unused]] const ObjectStore<Device>& store, Data& data, std::index_sequence<I...>) {
-    Pdo::pack_into_words(data, store.template get<typename Pdo::template Entry<I>>()...);
+    // Not a fold: Clang accepts 256 operands at most.
+    [[maybe_unused]] const bool tried[] = {
+        true, (pdo_detail::pack_if<Pdo, Mapped::capacities[I] == 0>(which == I, store, data), true)...};
   }
 };
 

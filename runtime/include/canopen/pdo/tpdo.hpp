@@ -62,7 +62,23 @@ class TpdoService {
   template <DictionaryObject O>
   bool changed([[maybe_unused]] EntryAccess<Device> entries) {
     bool carried = false;
-    if constexpr (Device::triggers_event(O::index, O::sub_index)) {
+    if constexpr (!Device::triggers_event(O::index, O::sub_index)) {
+      // never sent because of this object
+    } else if constexpr (count > few) {
+      constexpr std::uint32_t key = object_key(O::index, O::sub_index);
+      constexpr std::size_t first = Static::first_of(key), carriers = Static::count_of(key);
+      for (std::size_t i = first; i < first + carriers; ++i) {
+        slots_[Static::place_in(Static::sorted[i])].flags |= changed_bit;
+        carried = true;
+      }
+      if constexpr (has_dynamic_mapping) {
+        for (std::size_t i = 0; i < count; ++i) {
+          if (!Mapped::is_dynamic(i) || !Mapped::carries(i, entries, key)) continue;
+          slots_[i].flags |= changed_bit;
+          carried = true;
+        }
+      }
+    } else {
       Pdos::for_each([&]<class Pdo, std::size_t I>() {
         if constexpr (Mapped::capacities[I] != 0) {
           if (!Mapped::carries(I, entries, object_key(O::index, O::sub_index))) return;
@@ -80,8 +96,8 @@ class TpdoService {
   void changed([[maybe_unused]] EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index) {
     if (!Device::triggers_event(index, sub_index)) return;
     const std::uint32_t key = object_key(index, sub_index);
-    for (const std::uint32_t row : Static::carriers) {
-      if (row >> 8 == key) slots_[row & 0xFF].flags |= changed_bit;
+    for (const auto row : Static::carriers) {
+      if (Static::key_in(row) == key) slots_[Static::place_in(row)].flags |= changed_bit;
     }
     if constexpr (has_dynamic_mapping) {
       for (std::size_t i = 0; i < count; ++i) {
@@ -92,8 +108,8 @@ class TpdoService {
 
   /// Whether a TPDO maps an object now, or can do so: `changed` must be called for it.
   [[nodiscard]] static bool carries(EntryAccess<Device> entries, std::uint32_t key) {
-    for (const std::uint32_t row : Static::carriers) {
-      if (row >> 8 == key) return true;
+    for (const auto row : Static::carriers) {
+      if (Static::key_in(row) == key) return true;
     }
     if constexpr (has_dynamic_mapping) {
       for (std::size_t i = 0; i < count; ++i) {
@@ -122,8 +138,8 @@ class TpdoService {
     if constexpr (has_dynamic_mapping) {
       if (Mapped::is_dynamic(which)) return Mapped::for_each_object(which, entries, visit);
     }
-    for (const std::uint32_t row : Static::carriers) {
-      if ((row & 0xFF) == which) visit(row >> 8);
+    for (const auto row : Static::carriers) {
+      if (Static::place_in(row) == which) visit(Static::key_in(row));
     }
   }
 
@@ -207,6 +223,10 @@ class TpdoService {
   }
 
  private:
+  /// Up to this number of TPDOs, `changed` is compiled for each of them: it is faster, but the number of functions is
+  /// that of objects times that of TPDOs.
+  static constexpr std::size_t few = 16;
+
   static constexpr std::uint8_t last_cyclic = 240;
   static constexpr std::uint8_t inactive = 251;  ///< not valid, not mapped, or the node is not Operational
   static constexpr std::uint8_t remote_synchronous = 252;
@@ -225,11 +245,7 @@ class TpdoService {
   using enum TpdoSlot::Flag;
 
   /// Data bytes of TPDOs with static mapping.
-  static constexpr std::array<std::uint8_t, count> sizes = [] {
-    std::array<std::uint8_t, count> rows{};
-    Pdos::for_each([&]<class Pdo, std::size_t I>() { rows[I] = Pdo::size; });
-    return rows;
-  }();
+  static constexpr std::array<std::uint8_t, count> sizes = Pdos::sizes;
 
   [[nodiscard]] static std::uint32_t cob_id_of(std::size_t i, EntryAccess<Device> entries) {
     return Column<pdo_parameter::cob_id>::get(entries, i, CobId::invalid_bit);
