@@ -17,6 +17,7 @@ void check_device(const Device& device, const DataSheet& sheet, const Options& o
   check_cob_ids(context);
   check_pdo_communication(context);
   check_pdo_mapping(context);
+  check_writes(context);
   check_mpdos(context);
   check_profile(context);
   check_names(context);

@@ -25,6 +25,8 @@ void check_communication_values(const RuleContext& context);
 void check_cob_ids(const RuleContext& context);
 /// PDO communication parameters, and that each PDO has both of its parameters.
 void check_pdo_communication(const RuleContext& context);
+/// Writable entries that no write can change, and default values that the device would reject in a write.
+void check_writes(const RuleContext& context);
 /// PDO mapping parameters as a whole; single entries are checked by mark_broken_pdos().
 void check_pdo_mapping(const RuleContext& context);
 /// Multiplex PDOs and their lists.

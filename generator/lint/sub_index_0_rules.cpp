@@ -7,8 +7,10 @@
 namespace edsc {
 namespace {
 
+constexpr std::uint16_t error_history = 0x1003;
+
 /// Objects whose sub-index 0 is not the highest sub-index, but a variable number: of errors, of mapped objects.
-bool counts(std::uint16_t index) { return index == 0x1003 || contains(mapping_parameters, index); }
+bool counts(std::uint16_t index) { return index == error_history || contains(mapping_parameters, index); }
 
 void check_value(const RuleContext& context, const Object& object, const Entry& count) {
   if (!count.default_value || counts(object.index)) return;
@@ -26,6 +28,16 @@ void check_count(const RuleContext& context, const Object& object) {
     context.report("sub-index-0-type", context.place_of(count, &EntryDescription::data_type),
                    fmt::format("{} is {}; sub-index 0 must be UNSIGNED8", named(count), count.type->name), {},
                    std::string{count.type->name});
+  }
+  const canopen::AccessRow& access = canopen::row_of(count.access);
+  if (object.index == error_history && !(access.readable && access.writable)) {
+    const ObjectDescription* const description = context.sheet.find(object.index);
+    const bool is_compact = description != nullptr && !description->compact_sub_obj.empty();
+    return context.report(
+        "sub-index-0-access", count.access_position,
+        fmt::format("{} has access {}; it must be rw, because a write of 0 deletes the errors (CiA 301, 7.5.2.4){}",
+                    named(count), access.name, is_compact ? "; describe it in [1003sub0]" : ""),
+        {}, "1003h");
   }
   const bool may_change = counts(object.index);
   if (!canopen::readable(count.access) || (canopen::writable(count.access) && !may_change)) {

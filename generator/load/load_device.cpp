@@ -11,6 +11,7 @@
 
 #include "backend/cpp/identifier.hpp"
 #include "backend/cpp/name_objects.hpp"
+#include "device/pdo/locked_parameters.hpp"
 #include "device/resolve.hpp"
 #include "diagnostics/quote.hpp"
 #include "diagnostics/rule.hpp"
@@ -150,6 +151,7 @@ void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagn
                       "option stored_eds: 1021h holds an EDS, but this file is not an EDS");
   }
   loaded.device = resolve_device(loaded.sheet, loaded.options, settings.node_id, diagnostics);
+  imply_options(*loaded.device, loaded.options, diagnostics);
   name_objects(*loaded.device, loaded.options, settings.name);
   if (settings.check) check_device(*loaded.device, loaded.sheet, loaded.options, diagnostics);
 }

@@ -106,7 +106,11 @@ inline constexpr OptionRow rows[] = {
     {pdo, "inhibit_time_unit", "inhibit_time_unit", number, "unit of the inhibit time 1800h..19FFh:03, in us", "100",
      "", 1, 32767},  // less than half of the time after which canopen::TimePoint wraps
     {pdo, "inhibit_time_writable_while_valid", "inhibit_time_writable_while_valid", flag,
-     "1800h..19FFh:03 may be written while the PDO is valid; if false, 0800 0022h", "false"},
+     "1800h..19FFh:03 may be written while the PDO is valid; if false, 0800 0022h. Implied if no TPDO can be disabled",
+     "false"},
+    {pdo, "sync_start_writable_while_valid", "sync_start_writable_while_valid", flag,
+     "1800h..19FFh:06 may be written while the PDO is valid; if false, 0800 0022h. Implied if no TPDO can be disabled",
+     "false"},
     {pdo, "event_driven_on_change", "event_driven_on_change", flag,
      "TPDOs of transmission types 254 and 255 are sent when a mapped object changes and on entering Operational; if false, on "
      "the event timer only",
@@ -115,7 +119,8 @@ inline constexpr OptionRow rows[] = {
      "a TPDO of transmission type 0 is sent at the next SYNC after a mapped object has changed; if false, at every SYNC",
      "true"},
     {pdo, "mapping_writable_while_valid", "pdo_mapping_writable_while_valid", flag,
-     "1600h..17FFh and 1A00h..1BFFh may be written while the PDO is valid if sub-index 0 is 0; if false, 0601 0000h",
+     "1600h..17FFh and 1A00h..1BFFh may be written while the PDO is valid if sub-index 0 is 0; if false, 0601 0000h. Implied "
+     "if no PDO with a writable mapping can be disabled",
      "false"},
     {pdo, "mapping_abort_code", "pdo_mapping_abort_code", abort_code,
      "abort code for a number of mapped objects that does not give a valid mapping", "\"0x06040042\""},

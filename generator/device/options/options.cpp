@@ -190,6 +190,21 @@ std::uint32_t Options::inhibit_time_unit() const {
   return stated == runtime.end() ? usual_inhibit_time_unit : stated->value;
 }
 
+bool Options::states(const OptionRow& row) const {
+  return std::ranges::find(runtime, &row, &RuntimeOption::row) != runtime.end();
+}
+
+bool Options::is_set(const OptionRow& row) const {
+  const auto stated = std::ranges::find(runtime, &row, &RuntimeOption::row);
+  return stated != runtime.end() && stated->value != 0;
+}
+
+void Options::set(const RuntimeOption& option) {
+  const auto after = std::ranges::find_if(
+      runtime, [&](const RuntimeOption& one) { return one.row->flat_name > option.row->flat_name; });
+  runtime.insert(after, option);
+}
+
 Options read_options(const SourceFile& source, NameCheck is_name, Diagnostics& diagnostics) {
   OptionFile file{source, diagnostics};
   Options options;

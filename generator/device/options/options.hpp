@@ -122,6 +122,13 @@ struct Options {
     return std::ranges::find(settable, EntryKey{index, sub_index}) != settable.end();
   }
 
+  /// Whether the options file, or an implied option, states an option of the runtime.
+  [[nodiscard]] bool states(const OptionRow& row) const;
+  /// Whether a flag of the runtime is true; false is its default.
+  [[nodiscard]] bool is_set(const OptionRow& row) const;
+  /// Adds an option of the runtime that is not stated.
+  void set(const RuntimeOption& option);
+
   /// The unit of the inhibit times of PDOs in microseconds.
   [[nodiscard]] std::uint32_t inhibit_time_unit() const;
 };

@@ -45,6 +45,8 @@ struct DeviceOptions {
   std::uint16_t inhibit_time_unit = 100;
   /// 1800h..19FFh:03 may change while the PDO is valid. If false: 0800 0022h.
   bool inhibit_time_writable_while_valid = false;
+  /// 1800h..19FFh:06 may change while the PDO is valid. If false: 0800 0022h.
+  bool sync_start_writable_while_valid = false;
   /// TPDOs of transmission types 254 and 255 are sent when a mapped object changes and on entering Operational. If
   /// false, only their event timer sends them.
   bool event_driven_on_change = true;

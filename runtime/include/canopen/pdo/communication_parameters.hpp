@@ -83,6 +83,7 @@ template <class Device>
     case pdo_parameter::sync_start:
       if (!tpdo) return ok;
       if (bytes[0] > highest_sync_counter) return AbortCode::invalid_value;
+      if (Device::options.sync_start_writable_while_valid) return ok;
       break;
     default: return ok;
   }
