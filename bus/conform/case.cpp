@@ -12,7 +12,7 @@ constexpr AreaRow area_rows[] = {
      "PDO",
      {pdo_parameter_cases, tpdo_event_cases, tpdo_sync_cases, tpdo_silence_cases, new_mapping_cases,
       refused_mapping_cases}},
-    {"4", "Object dictionary", {dictionary_cases}},
+    {"4", "Object dictionary", {dictionary_cases, write_cases}},
     {"5", "Emergency", {emergency_cases}},
     {"6", "SYNC", {sync_cases}},
     {"7", "Error control", {guarding_cases, heartbeat_cases, error_control_cases}},

@@ -103,6 +103,7 @@ struct AreaRow {
 [[nodiscard]] std::span<const CaseRow> new_mapping_cases();
 [[nodiscard]] std::span<const CaseRow> refused_mapping_cases();
 [[nodiscard]] std::span<const CaseRow> dictionary_cases();
+[[nodiscard]] std::span<const CaseRow> write_cases();
 [[nodiscard]] std::span<const CaseRow> emergency_cases();
 [[nodiscard]] std::span<const CaseRow> sync_cases();
 [[nodiscard]] std::span<const CaseRow> guarding_cases();

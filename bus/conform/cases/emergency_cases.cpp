@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <canopen/emcy/error_register.hpp>
+#include <canopen/od/access.hpp>
 
 #include "conform/cases/shared/setup.hpp"
 
@@ -20,6 +21,11 @@ constexpr auto generic_bit = static_cast<std::uint8_t>(ErrorRegister::generic);
 
 /// The time that a device may need to send an EMCY. The maximum inhibit time of 1015h is 6.5 s; usual ones are shorter.
 constexpr Duration to_report = milliseconds{1000};
+
+/// A value other than 0 for 1003h:00.
+constexpr AbortRule no_number_of_errors{
+    {canopen::AbortCode::invalid_value, canopen::AbortCode::value_too_high},
+    {canopen::AbortCode::general, canopen::AbortCode::read_only, canopen::AbortCode::unsupported_access}};
 
 /// A present error of the device.
 struct Raised {
@@ -180,6 +186,22 @@ void history_follows(Dut& dut) {
   });
 }
 
+/// A write of 0 to 1003h:00 deletes the errors; another value is refused. Errors of a device at a bus are only deleted
+/// with the permission to change what it stores.
+void delete_history(Dut& dut) {
+  dut.need(error_history, 1);
+  const Entry& count = dut.need(error_history);
+  if (!canopen::readable(count.access) || !canopen::writable(count.access)) {
+    dut.fail_by_sheet("sub-index-0-access", "1003h:00 of the EDS has the access rw",
+                      std::string{canopen::row_of(count.access).name});
+  }
+  if (dut.read_number(error_history) != 0) dut.need_permission(Permission::store);
+  constexpr std::uint8_t none = 0, one = 1;
+  dut.expect_abort(dut.command(error_history, 0, {&one, 1}), no_number_of_errors, "1 written to 1003h:00");
+  dut.expect_done(dut.command(error_history, 0, {&none, 1}), "0 written to 1003h:00, which deletes the errors");
+  dut.expect_equal(dut.read_number(error_history), 0, "1003h:00 after 0 was written");
+}
+
 constexpr CaseRow rows[] = {
     {"5.1", "1014h holds the default COB-ID of EMCY", "CiA 301, 7.5.2.17", Level::read, Permission::none, cob_id},
     {"5.2", "The error register 1001h can be read, and bit 0 is set if another bit is set", "CiA 301, 7.5.2.2",
@@ -192,6 +214,8 @@ constexpr CaseRow rows[] = {
      Level::communication, Permission::none, register_follows},
     {"5.6", "The error history 1003h begins with the error of the last EMCY", "CiA 301, 7.5.2.4", Level::communication,
      Permission::none, history_follows},
+    {"5.7", "A write of 0 to 1003h:00 deletes the errors, and other values are refused", "CiA 301, 7.5.2.4",
+     Level::communication, Permission::none, delete_history},
 };
 
 }  // namespace

@@ -26,6 +26,7 @@
 #include <utility>
 #include <vector>
 
+#include "configure/configure_node.hpp"
 #include "conform/dut/abort_rule.hpp"
 #include "conform/dut/stimuli.hpp"
 #include "conform/sheet_findings.hpp"
@@ -116,6 +117,8 @@ class Dut {
   void write(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number);
   /// Writes without reading the present value: "save", "load", and what a case undoes itself.
   [[nodiscard]] SdoOutcome command(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value);
+  /// Writes the values in the sequence of CiA 301 (`order_writes`). They are put back when the case ends.
+  [[nodiscard]] ConfigurationResult write_in_order(const std::vector<ConfigurationValue>& values);
   /// Reads an entry that the case then writes frame by frame. The value is put back when the case ends.
   void remember(std::uint16_t index, std::uint8_t sub_index);
 

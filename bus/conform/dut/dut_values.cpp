@@ -73,6 +73,12 @@ void Dut::remember(std::uint16_t index, std::uint8_t sub_index) {
   }
 }
 
+ConfigurationResult Dut::write_in_order(const std::vector<ConfigurationValue>& values) {
+  for (const ConfigurationValue& value : values) remember(value.entry.index, value.entry.sub_index);
+  const ConfigurationHooks hooks{[](std::size_t, std::size_t) {}, [] { return false; }};
+  return configure_node(sdo_, plan_configuration(values, &sheet_), hooks);
+}
+
 void Dut::remember_entry(const LiveEntry& wanted) {
   const Key key{wanted.index, wanted.sub_index};
   if (changed_.contains(key) || unreadable_.contains(key) || is_left_out(wanted)) return;
