@@ -135,7 +135,7 @@ Json as_json(const LiveEntry& entry, const SdoOutcome& outcome, std::span<const 
     json["value"] = json_value(entry.type, bytes);
     json["text"] = value_of(entry, bytes);
   } else {
-    json["abort_code"] = static_cast<std::uint32_t>(outcome.code);
+    json["abort_code"] = canopen::code_in_frame(outcome.code);
     json["text"] = failure_text(outcome);
   }
   return json;

@@ -71,7 +71,7 @@ struct Observed {
       ended_by_device = true;
     } else if (canopen::sdo::multiplexer_of(frame.data) != entry) {
       foreign_abort = ForeignAbort{canopen::sdo::index_of(frame.data), frame.data[3],
-                                   static_cast<AbortCode>(canopen::sdo::word_of(frame.data))};
+                                   canopen::abort_code_from(canopen::sdo::word_of(frame.data))};
     }
   }
 };
@@ -84,7 +84,7 @@ constexpr AbortCode protocol_codes[] = {AbortCode::toggle_bit, AbortCode::timeou
 
 std::string abort_text(AbortCode code) {
   std::string text;
-  append_abort(text, static_cast<std::uint32_t>(code), ", ");
+  append_abort(text, canopen::code_in_frame(code), ", ");
   return text;
 }
 

@@ -58,7 +58,7 @@ inline void append_abort(std::string& text, std::uint32_t code, std::string_view
   append_hex(text, code >> 16, 4);
   text += ' ';
   append_hex_number(text, code, 4);
-  text.append(separator).append(canopen::to_text(static_cast<canopen::AbortCode>(code)));
+  text.append(separator).append(canopen::to_text(canopen::abort_code_from(code)));
 }
 
 /// `181`; eight digits for an extended CAN-ID.

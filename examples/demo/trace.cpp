@@ -84,7 +84,7 @@ std::uint16_t index_of(const Frame& frame) { return static_cast<std::uint16_t>(f
 std::string abort_text(const Frame& frame) {
   const auto code = static_cast<std::uint32_t>(bits_of(frame, 32, 32));
   return fmt::format("abort {:04X} {:04X}h {}", code >> 16, code & 0xFFFF,
-                     canopen::to_text(static_cast<canopen::AbortCode>(code)));
+                     canopen::to_text(canopen::abort_code_from(code)));
 }
 
 std::string_view state_name(unsigned state) {

@@ -42,7 +42,7 @@ SdoOutcome begin_upload(Dut& dut, const LiveEntry& entry) {
   SdoOutcome outcome;
   if (answer && (*answer)[0] == canopen::sdo::abort_command) {
     outcome.end = SdoEnd::refused;
-    outcome.code = static_cast<AbortCode>(canopen::sdo::word_of(*answer));
+    outcome.code = canopen::abort_code_from(canopen::sdo::word_of(*answer));
     return outcome;
   }
   if (!answer) outcome.end = SdoEnd::no_answer;

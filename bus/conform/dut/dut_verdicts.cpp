@@ -45,7 +45,7 @@ void Dut::expect_abort(const std::optional<sdo::Data>& data, const AbortRule& ru
   if (data && (*data)[0] == sdo::abort_command) {
     transfer_open_ = false;
     outcome.end = SdoEnd::refused;
-    outcome.code = static_cast<canopen::AbortCode>(sdo::word_of(*data));
+    outcome.code = canopen::abort_code_from(sdo::word_of(*data));
   } else if (data) {
     outcome.bytes.assign(data->begin(), data->end());
   }

@@ -64,6 +64,26 @@ TEST(SdoClient, DropsAnAbortThatFindsNoRoomForALongTime) {
   EXPECT_EQ(client.upload(), "A4 12 20 00 7F 04 00 00");
 }
 
+TEST(SdoClient, ReportsTheCodeOfAnAbortAsSent) {
+  for (const std::uint32_t sent : {0x0000'0000u, 0x0800'0000u, 0x0000'0001u, 0xFFFF'FFFFu, 0x0602'0000u}) {
+    Client client{{.timeout = 100ms}};
+    client.upload();
+    canopen::sdo::Data abort = bench::bytes_of("80 12 20 00");
+    canopen::sdo::put_word(abort, sent);
+    EXPECT_EQ(client.answer(bench::text_of(abort)), "");
+    EXPECT_FALSE(client.client.busy());
+    EXPECT_NE(client.client.result(), canopen::ok) << sent;
+    EXPECT_EQ(code_in_frame(client.client.result()), sent);
+  }
+}
+
+TEST(SdoClient, DoesNotTakeAnAbortWithCodeZeroForAnErrorOfAnotherKind) {
+  Client client{{.timeout = 100ms}};
+  client.upload();
+  client.answer("80 12 20 00 00 00 00 00");
+  EXPECT_EQ(to_text(client.client.result()), "not an abort code of CiA 301");
+}
+
 TEST(SdoClient, LateSegmentsOfABlockUploadBelongToNoOtherTransfer) {
   Client client;
   client.upload();

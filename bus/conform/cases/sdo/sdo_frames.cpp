@@ -15,7 +15,7 @@ constexpr std::uint8_t command_mask = 0xE0;
 constexpr std::uint8_t size_mask = 0x0C;                 ///< expedited: n
 constexpr std::size_t max_bytes = std::size_t{1} << 16;  ///< maximum for a value that is read frame by frame
 
-canopen::AbortCode abort_code(const SdoFrame& frame) { return static_cast<canopen::AbortCode>(sdo::word_of(frame)); }
+canopen::AbortCode abort_code(const SdoFrame& frame) { return canopen::abort_code_from(sdo::word_of(frame)); }
 
 bool is_abort(const SdoFrame& frame) { return frame[0] == sdo::abort_command; }
 

@@ -39,6 +39,9 @@ enum class AbortCode : std::uint32_t {
   device_state = 0x0800'0022,
   no_dictionary = 0x0800'0023,
   no_data = 0x0800'0024,
+  /// The other side has sent an abort with code 0000 0000h, which CiA 301 does not define. An SDO client reports this
+  /// value, which is not sent, because 0 is `ok`.
+  sent_as_zero = 0xED5C'0000,
 };
 
 /// No error; a handler returns it to accept an access.
@@ -88,7 +91,17 @@ inline constexpr AbortCodeText abort_code_texts[] = {
   for (const auto& row : abort_code_texts) {
     if (row.code == code) return row.text;
   }
-  return "unknown abort code";
+  return code == AbortCode::sent_as_zero ? "not an abort code of CiA 301" : "unknown abort code";
+}
+
+/// Returns the code as it is in the frame of the abort.
+[[nodiscard]] constexpr std::uint32_t code_in_frame(AbortCode code) {
+  return code == AbortCode::sent_as_zero ? 0 : static_cast<std::uint32_t>(code);
+}
+
+/// Returns the code of the frame of an abort, for results in which 0 means success.
+[[nodiscard]] constexpr AbortCode abort_code_from(std::uint32_t in_frame) {
+  return in_frame == 0 ? AbortCode::sent_as_zero : static_cast<AbortCode>(in_frame);
 }
 
 }  // namespace canopen

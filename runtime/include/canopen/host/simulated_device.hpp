@@ -184,7 +184,7 @@ class Session {
       answer += "ok\n";
     } else {
       std::array<char, 20> text;
-      std::snprintf(text.data(), text.size(), "refused %08X\n", static_cast<unsigned>(code));
+      std::snprintf(text.data(), text.size(), "refused %08X\n", unsigned{code_in_frame(code)});
       answer += text.data();
     }
     return true;

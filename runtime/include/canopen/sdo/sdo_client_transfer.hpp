@@ -89,7 +89,7 @@ class SdoClientTransfer {
     finish(code);
     request(sdo::abort_command);
     sdo::put_multiplexer(request_, index_, sub_index_);
-    sdo::put_word(request_, static_cast<std::uint32_t>(code));
+    sdo::put_word(request_, code_in_frame(code));
   }
 
   /// Ends the transfer without a further request.
@@ -153,7 +153,7 @@ class SdoClientTransfer {
   [[nodiscard]] AbortCode handle(const sdo::Data& answer) {
     const sdo::ServerCommand command = sdo::server_command(answer[0]);
     if (command == sdo::ServerCommand::abort) {
-      aborted(static_cast<AbortCode>(sdo::word_of(answer)));
+      aborted(abort_code_from(sdo::word_of(answer)));
       return ok;
     }
     switch (state_) {
@@ -201,7 +201,7 @@ class SdoClientTransfer {
       fall_back(code);
       initiate_download();
     } else {
-      finish(code == ok ? AbortCode::general : code);
+      finish(code);
     }
   }
 

@@ -124,8 +124,7 @@ class NetworkSimulation final : private StationLog {
   [[nodiscard]] bool is_logged() { return events_++ < max_events; }
 
   void refused(std::size_t node, std::uint16_t index, std::uint8_t sub_index, AbortCode code) override {
-    std::printf("refused %zu %u %u %" PRIu32 "\n", node, unsigned{index}, unsigned{sub_index},
-                static_cast<std::uint32_t>(code));
+    std::printf("refused %zu %u %u %" PRIu32 "\n", node, unsigned{index}, unsigned{sub_index}, code_in_frame(code));
   }
   void emergency(std::size_t node, std::uint16_t code, std::uint8_t error_register) override {
     if (!is_logged()) return;
