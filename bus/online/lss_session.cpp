@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <canopen/nmt/error_control.hpp>
 #include <iterator>
 #include <string_view>
+
+#include "online/sdo_access.hpp"
 
 namespace edsc {
 namespace {
@@ -59,7 +62,7 @@ LssResult LssSession::perform(LssService service, Begin begin) {
   switch (master_.outcome()) {
     case LssOutcome::done: return {"", master_.value()};
     case LssOutcome::refused: return {refusal_text(service, master_.error()), 0};
-    case LssOutcome::no_answer: return {"no answer", 0};
+    case LssOutcome::no_answer: return {"no answer", 0, true};
   }
   return {};
 }
@@ -149,26 +152,55 @@ LssResult LssSession::confirm(const LssAddress& address) {
 
 std::string LssSession::reason_for_silence() {
   if (!identify_non_configured().done()) return "no device without node-ID answers";
-  return "a device without node-ID answers LSS, but not Fastscan, which it may not support; with no other device on "
-         "the bus, \"edsc lss BUS state configuration\" and \"inquire\" show its numbers for \"assign\"";
+  return "a device without node-ID answers LSS, but did not answer the first Fastscan request, sent twice; it may be "
+         "slow (--step) or not have Fastscan: with no other device on the bus, \"edsc lss BUS state configuration\" and "
+         "\"inquire\" show its numbers for \"assign\"";
+}
+
+LssResult LssSession::find(LssAddress& address, std::uint8_t known, bool above) {
+  constexpr unsigned attempts = 3;
+  LssResult confirmed;
+  for (unsigned i = 0; i != attempts; ++i) {
+    LssAddress found = address;
+    const LssResult scanned = fastscan(found, known, above);
+    if (!scanned.done()) return i == 0 ? scanned : confirmed;
+    confirmed = confirm(found);
+    if (confirmed.done()) {
+      address = found;
+      return confirmed;
+    }
+    switch_state(LssState::waiting);
+  }
+  return confirmed;
+}
+
+bool LssSession::responds(std::uint8_t node_id, canopen::Duration time) {
+  const canopen::TimePoint end = bus_.now() + time;
+  for (canopen::TimePoint now = bus_.now(); now < end; now = bus_.now()) {
+    const std::optional<canopen::Frame> frame = bus_.receive(end - now);
+    if (Interruption::noted()) throw Interrupted{};
+    if (!frame) continue;
+    const auto message = canopen::error_control_message(*frame);
+    if (message && message->node_id.value() == node_id) return true;
+  }
+  SdoAccess access{bus_, canopen::NodeId{node_id}, {}};
+  return access.upload(0x1000, 0).end != SdoEnd::no_answer;
 }
 
 LssResult LssSession::find_unconfigured(const std::function<void(const LssAddress&)>& found, const LssAddress& among,
                                         std::uint8_t known) {
   switch_state(LssState::waiting);
   LssAddress address = among;
-  LssResult result = fastscan(address, known);
+  LssResult result = find(address, known);
   for (std::size_t count = 0; result.done() && count != max_slaves; ++count) {
     const LssAddress last = address;
-    const LssResult confirmed = confirm(address);
     switch_state(LssState::waiting);
-    if (!confirmed.done()) return confirmed;
     found(address);
-    result = fastscan(address, known, true);
+    result = find(address, known, true);
     if (result.done() && address == last) return {"found " + to_text(address) + " again", 0};
   }
   switch_state(LssState::waiting);
-  return {};
+  return result.is_silence ? LssResult{} : result;
 }
 
 std::string to_text(const LssAddress& address) {

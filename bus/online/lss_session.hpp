@@ -13,6 +13,7 @@ namespace edsc {
 struct LssResult {
   std::string failure;  ///< empty on success
   std::uint32_t value = 0;
+  bool is_silence = false;  ///< no slave has responded
 
   [[nodiscard]] bool done() const { return failure.empty(); }
 };
@@ -43,11 +44,18 @@ class LssSession {
   /// in the other numbers. `above`: the next one above `address`.
   [[nodiscard]] LssResult fastscan(canopen::LssAddress& address, std::uint8_t known, bool above = false);
 
-  /// Why Fastscan did not find a slave: a slave without node-ID may not support Fastscan.
+  /// Why Fastscan did not find a slave: whether a slave without node-ID responds to another service.
   [[nodiscard]] std::string reason_for_silence();
 
   /// Checks with the four inquiries that one slave is in configuration state and has this address.
   [[nodiscard]] LssResult confirm(const canopen::LssAddress& address);
+
+  /// `fastscan` and `confirm`; the address may be wrong because of late responses, so that a slave that does not
+  /// confirm it is searched again, twice.
+  [[nodiscard]] LssResult find(canopen::LssAddress& address, std::uint8_t known, bool above = false);
+
+  /// Whether a node sends its boot-up message or a heartbeat within this time, or responds to SDO after it.
+  [[nodiscard]] bool responds(std::uint8_t node_id, canopen::Duration time);
 
   /// Finds all slaves without node-ID, ascending by address, whose first `known` numbers match `among`. `found` is
   /// called for each slave that has confirmed its address. All slaves are in waiting state before, after, and during

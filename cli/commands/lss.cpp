@@ -34,7 +34,7 @@ constexpr unsigned automatic = 0;
 
 struct Settings {
   std::string bus;
-  unsigned timeout_ms = 100;
+  unsigned timeout_ms = 500;
   unsigned step_ms = 20;
   std::string format = "text";
   std::optional<std::uint32_t> vendor, product, revision, serial;
@@ -157,10 +157,34 @@ std::string assign_selected(LssSession& session, const Settings& settings) {
 /// Selects the slave with these numbers; Fastscan finds those that are not given, in `address`.
 std::string select_or_find(LssSession& session, LssAddress& address, std::uint8_t known) {
   if (known == 4) return problem_of("select", session.select(address));
-  if (!session.fastscan(address, known).done()) return problem_of("fastscan", {session.reason_for_silence(), 0});
-  const LssResult confirmed = session.confirm(address);
-  if (!confirmed.done()) session.switch_state(LssState::waiting);
-  return problem_of("fastscan", confirmed);
+  LssResult found = session.find(address, known);
+  if (found.is_silence) found.failure = session.reason_for_silence();
+  return problem_of("fastscan", found);
+}
+
+bool is_node_id(const LssResult& inquired) {
+  return inquired.done() && inquired.value != canopen::unconfigured_node_id.value();
+}
+
+/// Checks that the device has the new node-ID, after the slaves are in waiting state. A device that had another one
+/// uses the new one after a reset of its communication.
+std::string confirm_node_id(LssSession& session, const Settings& settings, const LssResult& before,
+                            const LssResult& after) {
+  constexpr canopen::Duration boot_time = canopen::from_milliseconds(2000);
+  if (settings.node_id == canopen::unconfigured_node_id.value()) return "";
+  if (is_node_id(before) && before.value != settings.node_id) {
+    if (is_node_id(after) && after.value != settings.node_id && after.value != before.value) {
+      return fmt::format("the device accepted node-ID {}, but reports {}", settings.node_id, after.value);
+    }
+    print_visibly(stderr, "edsc: node-ID {} is used after \"edsc nmt BUS reset-communication {}\"\n", settings.node_id,
+                  before.value);
+    return "";
+  }
+  if (session.responds(settings.node_id, boot_time)) return "";
+  return fmt::format(
+      "the device accepted node-ID {}, but no node with it has sent a boot-up message or a heartbeat in two seconds, or "
+      "responds to SDO",
+      settings.node_id);
 }
 
 /// All slaves are in waiting state before and after.
@@ -169,8 +193,11 @@ std::string assign(LssSession& session, const Settings& settings) {
   session.switch_state(LssState::waiting);
   std::string problem = select_or_find(session, address, known_numbers(settings));
   if (!problem.empty()) return problem;
+  const LssResult before = session.inquire_node_id();
   problem = assign_selected(session, settings);
+  const LssResult after = problem.empty() ? session.inquire_node_id() : LssResult{};
   session.switch_state(LssState::waiting);
+  if (problem.empty()) problem = confirm_node_id(session, settings, before, after);
   if (!problem.empty()) return problem;
   if (settings.format == "json") {
     print({{"version", 1}, {"address", address_json(address)}, {"node_id", settings.node_id}});

@@ -1,8 +1,13 @@
 /// The services of the LSS master, frame by frame.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <canopen/lss/lss_master.hpp>
+#include <deque>
+#include <random>
+#include <sstream>
 #include <string>
+#include <utility>
 
 #include "lss_bench.hpp"
 
@@ -189,7 +194,6 @@ TEST(LssMaster, EndsEachServiceWhenNoSlaveAnswers) {
       {[](Master& m, TimePoint now) { return m.inquire_node_id(now); }, 100ms},
       {[](Master& m, TimePoint now) { return m.identify_remote_slave({}, now); }, 100ms},
       {[](Master& m, TimePoint now) { return m.identify_non_configured_remote_slave(now); }, 100ms},
-      {[](Master& m, TimePoint now) { return m.fastscan(now); }, 20ms},
   };
   for (const Row& row : rows) {
     const auto number = &row - rows;
@@ -252,12 +256,14 @@ TEST(LssMaster, ScansBitByBit) {
   EXPECT_TRUE(bench.master.fastscan(bench.now));
   EXPECT_EQ(bench.bus.take(), "7E5 51 00 00 00 00 80 00 00");
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
-  EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 00 1F 00 00");
-  EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 80 1E 00 00");  // no response: bit 31 is 1
+  EXPECT_EQ(bench.pass(200ms), "7E5 51 00 00 00 00 1F 00 00");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 00 1F 00 00");  // no response: it may be lost
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 80 1E 00 00");  // none again: bit 31 is 1
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 80 1D 00 00");
-  for (int bit = 28; bit >= 0; --bit) bench.pass(20ms);
+  for (int bit = 28; bit >= 0; --bit) bench.pass(40ms);
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 FE FF FF BF 00 00 00");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 FF FF FF BF 00 00 01");
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 00 00 00 00 1F 01 01");
@@ -267,11 +273,26 @@ TEST(LssMaster, EndsAFastscanWhoseSlaveIsGone) {
   MasterBench bench;
   EXPECT_TRUE(bench.master.fastscan(bench.now));
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
-  bench.pass(34 * 20ms);  // the reset, 32 bits, and the complete number
+  bench.pass(200ms + 64 * 20ms + 20ms - 1us);  // the reset, 32 bits twice, and the complete number
+  EXPECT_EQ(bench.pass(1us), "7E5 04 00 00 00 00 00 00 00 | 7E5 51 00 00 00 00 80 00 00") << "from the beginning";
+  EXPECT_EQ(bench.pass(200ms), "7E5 51 00 00 00 00 80 00 00");
+  bench.pass(200ms);
   EXPECT_FALSE(bench.master.busy());
   EXPECT_EQ(bench.master.outcome(), LssOutcome::no_answer);
   EXPECT_TRUE(bench.master.fastscan(bench.now));
   EXPECT_EQ(bench.bus.take(), "7E5 51 00 00 00 00 80 00 00");
+}
+
+TEST(LssMaster, AFastscanWithoutAnAnswerAsksTwice) {
+  MasterBench bench;
+  EXPECT_TRUE(bench.master.fastscan(bench.now));
+  EXPECT_FALSE(bench.master.fastscan(bench.now));
+  EXPECT_EQ(bench.bus.take(), "7E5 51 00 00 00 00 80 00 00");
+  EXPECT_EQ(bench.pass(200ms), "7E5 51 00 00 00 00 80 00 00");
+  EXPECT_EQ(bench.pass(200ms), "");
+  EXPECT_FALSE(bench.master.busy());
+  EXPECT_EQ(bench.master.outcome(), LssOutcome::no_answer);
+  EXPECT_FALSE(bench.master.next_deadline());
 }
 
 TEST(LssMaster, ChecksTheNumbersThatAreKnown) {
@@ -281,7 +302,7 @@ TEST(LssMaster, ChecksTheNumbersThatAreKnown) {
   std::string sent = bench.bus.take();
   for (int step = 0; step < 5; ++step) {
     bench.hear("7E4 4F 00 00 00 00 00 00 00");
-    sent += " | " + bench.pass(20ms);
+    sent += " | " + bench.pass(step == 0 ? 200ms : 20ms);
   }
   EXPECT_EQ(sent,
             "7E5 51 00 00 00 00 80 00 00 | 7E5 51 93 00 00 00 00 00 01 | 7E5 51 52 4B 35 43 00 01 02 | "
@@ -296,16 +317,19 @@ TEST(LssMaster, LooksForASlaveAboveAnAddress) {
   std::string sent = bench.bus.take();
   for (int step = 0; step < 4; ++step) {
     bench.hear("7E4 4F 00 00 00 00 00 00 00");
-    sent += " | " + bench.pass(20ms);
+    sent += " | " + bench.pass(step == 0 ? 200ms : 20ms);
   }
   EXPECT_EQ(sent,
             "7E5 51 00 00 00 00 80 00 00 | 7E5 51 01 00 00 00 00 00 01 | 7E5 51 02 00 00 00 00 01 02 | "
             "7E5 51 03 00 00 00 00 02 03 | 7E5 51 F6 FF FF FF 01 03 03");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 F6 FF FF FF 01 03 03");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 F8 FF FF FF 03 03 03");  // no response: the next 0
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 F8 FF FF FF 02 03 03");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 F8 FF FF FF 02 03 03");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 FC FF FF FF 01 03 03");  // no response: bit 2 is 1
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
+  EXPECT_EQ(bench.pass(20ms), "7E5 51 FC FF FF FF 00 03 03");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 FC FF FF FF 00 03 03");
   EXPECT_EQ(bench.pass(20ms), "7E5 51 FD FF FF FF 00 03 00");
   bench.hear("7E4 4F 00 00 00 00 00 00 00");
@@ -324,6 +348,108 @@ TEST(LssMaster, FindsNothingAboveTheHighestAddress) {
   }
   EXPECT_EQ(bench.master.outcome(), LssOutcome::no_answer);
   EXPECT_LT(steps, 100);
+}
+
+// Slaves that respond late, and lost frames. The slave is written after CiA 305, figure "Fastscan".
+
+struct SlowSlave {
+  LssAddress address;
+  std::deque<std::pair<TimePoint, int>> responses{};  ///< their times
+  int position = 0;
+  bool configuration = false;
+
+  /// Returns whether it responds.
+  bool on_request(const canopen::Frame& frame) {
+    if (frame.data[0] == 0x04) configuration = frame.data[1] != 0;
+    if (frame.data[0] != 0x51 || configuration) return false;
+    const unsigned bit = frame.data[5], number = frame.data[6], next = frame.data[7];
+    if (bit == 0x80) {
+      position = 0;
+      return true;
+    }
+    if (bit > 31 || static_cast<int>(number) != position) return false;
+    const std::uint32_t own[] = {address.vendor_id, address.product_code, address.revision_number,
+                                 address.serial_number};
+    const std::uint32_t asked =
+        static_cast<std::uint32_t>(frame.data[1]) | static_cast<std::uint32_t>(frame.data[2]) << 8 |
+        static_cast<std::uint32_t>(frame.data[3]) << 16 | static_cast<std::uint32_t>(frame.data[4]) << 24;
+    if ((own[number] >> bit) != (asked >> bit)) return false;
+    if (bit == 0 && next < number) configuration = true;
+    if (bit == 0) position = static_cast<int>(next);
+    return true;
+  }
+};
+
+/// Scans one slave whose response times and losses are those of `delay` (negative: lost).
+template <class Delay>
+LssOutcome scan_slow(const LssAddress& address, LssAddress& found, bool& selected, Delay delay) {
+  MasterBench bench;
+  SlowSlave slave{address};
+  EXPECT_TRUE(bench.master.fastscan(bench.now));
+  const auto deliver = [&] {
+    std::istringstream frames{bench.bus.take()};
+    std::string line;
+    while (std::getline(frames, line, '|')) {
+      if (!slave.on_request(bench::frame(line))) continue;
+      const int milliseconds = delay();
+      if (milliseconds < 0) continue;
+      TimePoint due = bench.now + std::chrono::milliseconds{milliseconds};
+      if (!slave.responses.empty()) due = std::max(due, slave.responses.back().first);  // in order
+      slave.responses.push_back({due, 0});
+    }
+  };
+  deliver();
+  for (int calls = 0; bench.master.busy() && calls < 2'000'000; ++calls) {
+    bench.now = bench.now + 1ms;
+    while (!slave.responses.empty() && slave.responses.front().first <= bench.now) {
+      slave.responses.pop_front();
+      bench.master.on_frame(bench::frame("7E4 4F 00 00 00 00 00 00 00"), bench.now);
+    }
+    if (bench.master.next_deadline() && *bench.master.next_deadline() <= bench.now) bench.master.on_time(bench.now);
+    deliver();
+  }
+  found = bench.master.address();
+  selected = slave.configuration;
+  return bench.master.outcome();
+}
+
+TEST(LssMaster, FindsASlowSlave) {
+  for (const int milliseconds : {0, 1, 15, 25, 40, 90, 150, 190}) {
+    SCOPED_TRACE(milliseconds);
+    LssAddress found;
+    bool selected = false;
+    EXPECT_EQ(scan_slow(bench::rk5c_address, found, selected, [&] { return milliseconds; }), LssOutcome::done);
+    EXPECT_EQ(found, bench::rk5c_address);
+    EXPECT_TRUE(selected);
+  }
+}
+
+TEST(LssMaster, FindsASlaveWhoseResponseTimeVaries) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(seed);
+    std::mt19937 random{seed};
+    LssAddress found;
+    bool selected = false;
+    const auto delay = [&] { return static_cast<int>(random() % 40); };
+    EXPECT_EQ(scan_slow(bench::rk5c_address, found, selected, delay), LssOutcome::done);
+    EXPECT_EQ(found, bench::rk5c_address);
+    EXPECT_TRUE(selected);
+  }
+}
+
+TEST(LssMaster, FindsASlaveOneOfWhoseResponsesIsLostOrVeryLate) {
+  for (const int exception : {-1, 35, 60, 150}) {
+    for (int which = 0; which < 80; which += 5) {
+      SCOPED_TRACE(std::to_string(exception) + " " + std::to_string(which));
+      LssAddress found;
+      bool selected = false;
+      int count = 0;
+      const auto delay = [&] { return count++ == which ? exception : 2; };
+      EXPECT_EQ(scan_slow(bench::rk5c_address, found, selected, delay), LssOutcome::done);
+      EXPECT_EQ(found, bench::rk5c_address);
+      EXPECT_TRUE(selected);
+    }
+  }
 }
 
 }  // namespace

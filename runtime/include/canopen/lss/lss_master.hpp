@@ -1,10 +1,13 @@
 /// LSS master: finds slaves and configures their node-IDs and bit rate (CiA 305), one service at a time.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "canopen/base/clock.hpp"
 #include "canopen/can/frame.hpp"
@@ -20,8 +23,9 @@ struct LssTimeouts {
   Duration answer = from_milliseconds(100);
   /// Store configuration: a slave may have to erase a page of flash before it responds.
   Duration store = from_milliseconds(1000);
-  /// Each step of Fastscan. It is always waited for in full, because several slaves may respond to the same request.
-  /// Long enough for both frames at 20 kbit/s and more; 10 kbit/s needs 30 ms.
+  /// Each step of Fastscan, at least. It is always waited for in full, because several slaves may respond to the same
+  /// request, and becomes twice the longest response time that has been measured; the first step takes ten times as
+  /// long. Long enough for both frames at 20 kbit/s and more; 10 kbit/s needs 30 ms.
   Duration fastscan_step = from_milliseconds(20);
 };
 
@@ -108,23 +112,26 @@ class LssMaster {
 
   /// Asks whether slaves without node-ID exist. Done: at least one does.
   [[nodiscard]] bool identify_non_configured_remote_slave(TimePoint now) {
-    return begin(lss::Command::identify_non_configured, 0, lss::Command::identified_non_configured, timeouts_.answer,
-                 now);
+    return begin(lss::Command::identify_non_configured, 0, lss::Command::identified_non_configured, answer_time(), now);
   }
 
   /// Finds one slave without node-ID and switches it to the configuration state; `address()` is its address. If there
-  /// are several slaves, it finds the one with the lowest numbers. 133 steps.
+  /// are several slaves, it finds the one with the lowest numbers. 133 steps. A step without a response is repeated
+  /// once, because a frame may be lost or late. A number that no slave confirms was changed by late responses: the scan
+  /// starts again with longer steps, up to four times. Inquire the address of the slave to be certain.
   [[nodiscard]] bool fastscan(TimePoint now) { return fastscan({}, 0, now); }
 
   /// The same for slaves whose first `known` numbers, 0..4, are those of `address`: 33 steps fewer for each, one more
   /// to check it.
   [[nodiscard]] bool fastscan(const LssAddress& address, std::uint8_t known, TimePoint now) {
     if (busy() || known > 4) return false;
-    words_ = {address.vendor_id, address.product_code, address.revision_number, address.serial_number};
+    from_ = {address.vendor_id, address.product_code, address.revision_number, address.serial_number};
     known_ = known;
-    number_ = 0;
-    bit_ = lss::fastscan_reset;
-    start(lss::Command::fastscan, lss::Command::fastscan, lss::Command::identified, timeouts_.fastscan_step, now);
+    is_above_ = false;
+    restarts_ = 0;
+    step_ = std::max(timeouts_.fastscan_step, std::min(slowest_ * 2u, longest_step));
+    begin_scan();
+    ask(now);
     return true;
   }
 
@@ -133,15 +140,17 @@ class LssMaster {
   /// must be in the waiting state. Up to 140 steps more than a Fastscan.
   [[nodiscard]] bool fastscan_above(const LssAddress& address, std::uint8_t known, TimePoint now) {
     if (!fastscan(address, known, now)) return false;
+    is_above_ = true;
     branch_ = 4;
     climb();
     return true;
   }
 
   /// Accepts a response; other frames are ignored.
-  void on_frame(const Frame& frame, [[maybe_unused]] TimePoint now) {
+  void on_frame(const Frame& frame, TimePoint now) {
     if (!busy() || to_send_ <= last_ || !lss::is_lss(frame, lss::response_id)) return;
     if (answer_ == lss::Command::none || frame.data[0] != static_cast<std::uint8_t>(answer_)) return;
+    if (!answered_) measure(now);
     answered_ = true;
     if (several_may_answer()) return;
     value_ = lss::word_of(frame);
@@ -153,7 +162,7 @@ class LssMaster {
     flush(now);
     if (!busy() || now < deadline_) return;
     if (to_send_ <= last_) return finish(LssOutcome::no_answer);
-    if (scanning()) return next_step(now);
+    if (scanning()) return answered_ || is_repeated_ || confirming_ ? next_step(now) : repeat(now);
     finish(answered_ || answer_ == lss::Command::none ? LssOutcome::done : LssOutcome::no_answer);
   }
 
@@ -180,8 +189,11 @@ class LssMaster {
 
  private:
   [[nodiscard]] bool begin(lss::Command command, std::uint32_t word, TimePoint now) {
-    return begin(command, word, command, timeouts_.answer, now);
+    return begin(command, word, command, answer_time(), now);
   }
+
+  /// Returns the time for a response: longer if one took longer than half of `LssTimeouts::answer`.
+  [[nodiscard]] Duration answer_time() const { return std::max(timeouts_.answer, slowest_ * 2u); }
 
   [[nodiscard]] bool begin(lss::Command command, std::uint32_t word, lss::Command answer, Duration wait,
                            TimePoint now) {
@@ -192,7 +204,7 @@ class LssMaster {
   }
 
   [[nodiscard]] bool begin_sequence(lss::Command first, lss::Command last, lss::Command answer, TimePoint now) {
-    start(first, last, answer, timeouts_.answer, now);
+    start(first, last, answer, answer_time(), now);
     return true;
   }
 
@@ -204,6 +216,7 @@ class LssMaster {
     wait_ = wait;
     value_ = 0;
     answered_ = false;
+    is_repeated_ = false;
     busy_ = true;
     deadline_ = now + (wait.count() != 0 ? wait : timeouts_.answer);
     flush(now);
@@ -216,6 +229,8 @@ class LssMaster {
       if (!bus_.send(request())) return;
     }
     deadline_ = now + wait_;
+    if (!is_repeated_) asked_at_ = now;
+    sent_at_ = now;
     if (wait_.count() == 0) finish(LssOutcome::done);
   }
 
@@ -248,22 +263,81 @@ class LssMaster {
     return answer_ == lss::Command::identified || answer_ == lss::Command::identified_non_configured;
   }
 
+  /// Notes how long a slave needs to respond. In a Fastscan, a slave that needs longer than half a step may respond to
+  /// the next step: the steps become longer from this one on.
+  void measure(TimePoint now) {
+    const Duration time = now - asked_at_;
+    is_measured_ = true;
+    slowest_ = std::max(slowest_, std::min(time, longest_step));
+    if (!scanning()) return;
+    step_ = std::max(step_, std::min(time * 2u, longest_step));
+    deadline_ = std::max(deadline_, sent_at_ + step_);
+  }
+
   // Fastscan: for each number its bits from the highest on, then the whole number once more. Above an address: the
   // address is followed up to a number in which each 0, from the lowest bit on, is requested as a 1; if a slave
   // responds, its lower bits and the other numbers are scanned as usual.
 
   [[nodiscard]] bool scanning() const { return last_ == static_cast<std::uint8_t>(lss::Command::fastscan); }
 
+  /// Starts with the first number.
+  void begin_scan() {
+    for (std::size_t i = 0; i < from_.size(); ++i) words_[i] = from_[i];
+    is_path_repeated_ = false;
+    begin_path();
+  }
+  void begin_path() {
+    number_ = 0;
+    bit_ = lss::fastscan_reset;
+    confirming_ = false;
+  }
+
+  /// Sends the present step. The response time of the slaves is not known in the first one, and was wrong if the scan
+  /// starts again.
+  void ask(TimePoint now) {
+    const bool is_first = bit_ == lss::fastscan_reset && (!is_measured_ || restarts_ != 0);
+    start(lss::Command::fastscan, lss::Command::fastscan, lss::Command::identified,
+          is_first ? std::max(step_, timeouts_.fastscan_step * 10u) : step_, now);
+  }
+
+  /// Sends the present step again: the request or the response may be lost or late.
+  void repeat(TimePoint now) {
+    to_send_ = first_;
+    is_repeated_ = true;
+    deadline_ = now + wait_;
+    flush(now);
+  }
+
+  /// No slave has the number that has been found. Starts again with longer steps; a slave whose confirmation was lost
+  /// may be in the configuration state.
+  void scan_again(TimePoint now) {
+    constexpr std::uint8_t max_restarts = 4;
+    if (restarts_ == max_restarts) return finish(LssOutcome::no_answer);
+    ++restarts_;
+    step_ = std::min(step_ * 2u, longest_step);
+    static_cast<void>(bus_.send(lss::make_frame(lss::request_id, lss::Command::switch_state_global,
+                                                static_cast<std::uint32_t>(LssState::waiting))));
+    begin_scan();
+    branch_ = no_branch;
+    if (is_above_) {
+      branch_ = 4;
+      climb();
+    }
+    if (busy_) ask(now);
+  }
+
   void next_step(TimePoint now) {
     if (bit_ == lss::fastscan_reset) {
       if (!answered_) return finish(LssOutcome::no_answer);
       begin_number();
     } else if (confirming_) {
-      if (!answered_ && branch_ == no_branch) return finish(LssOutcome::no_answer);
+      if (!answered_ && branch_ == no_branch) return scan_again(now);
       if (number_ == 3) return finish(LssOutcome::done);
       if (answered_) {
         ++number_;
         begin_number();
+      } else if (!std::exchange(is_path_repeated_, true)) {
+        begin_path();
       } else {
         branch_ = number_ + 1;  // no slave has the number of the address, but one above it may exist
         climb();
@@ -286,8 +360,7 @@ class LssMaster {
         --bit_;
       }
     }
-    if (!busy_) return;
-    start(lss::Command::fastscan, lss::Command::fastscan, lss::Command::identified, timeouts_.fastscan_step, now);
+    if (busy_) ask(now);
   }
 
   void begin_number() {
@@ -304,9 +377,8 @@ class LssMaster {
   void climb() {
     if (branch_ <= known_) return finish(LssOutcome::no_answer);
     --branch_;
-    number_ = 0;
-    bit_ = lss::fastscan_reset;
-    confirming_ = false;
+    is_path_repeated_ = false;
+    begin_path();
   }
 
   /// Searches for a 0 from `bit_` on.
@@ -317,12 +389,18 @@ class LssMaster {
   }
 
   static constexpr std::uint8_t no_branch = 0xFF;
+  static constexpr Duration longest_step = std::chrono::seconds{1};
 
   B& bus_;
   LssTimeouts timeouts_;
   std::array<std::uint32_t, 6> words_{};  ///< of the commands first_..last_; in a Fastscan the address
+  std::array<std::uint32_t, 4> from_{};   ///< fastscan: the address with the known numbers
   std::uint32_t value_ = 0;
   TimePoint deadline_{};
+  TimePoint asked_at_{};  ///< when the request was sent first
+  TimePoint sent_at_{};   ///< when it was sent last
+  Duration slowest_{0};   ///< longest response time
+  Duration step_{0};
   Duration wait_{0};
   std::uint8_t first_ = 0;
   std::uint8_t to_send_ = 0;  ///< above last_: all frames have been sent
@@ -334,6 +412,11 @@ class LssMaster {
   std::uint8_t bit_ = 0;             ///< fastscan: BitCheck
   std::uint8_t branch_ = no_branch;  ///< above an address: the number that differs from it
   std::uint32_t asked_ = 0;          ///< the number with the changed bit
+  std::uint8_t restarts_ = 0;
+  bool is_measured_ = false;       ///< `slowest_` is valid
+  bool is_above_ = false;          ///< fastscan above an address
+  bool is_path_repeated_ = false;  ///< above an address: its numbers are checked for the second time
+  bool is_repeated_ = false;       ///< the step was sent for the second time
   bool confirming_ = false;
   bool answered_ = false;
   bool busy_ = false;
