@@ -22,7 +22,7 @@ class DriveMaster {
       log_(boot_text(node, result));
     };
     master_.on_event = [this](canopen::NmtMasterEvent event, canopen::NodeId node, canopen::NmtState state) {
-      log_(event_text(node, event, state));
+      log_(event_text(event, node, state));
       if (event == canopen::NmtMasterEvent::lost) position_.reset();
     };
     master_.on_network_started = [this] { listen(); };

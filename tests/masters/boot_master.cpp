@@ -70,7 +70,7 @@ int main(int argc, char** argv) {
     master.on_configure = [&](NodeId node_id) { return configure(master, node_id); };
     master.on_booted = [](NodeId node_id, const canopen::BootResult& result) { log(boot_text(node_id, result)); };
     master.on_event = [](canopen::NmtMasterEvent event, NodeId node_id, canopen::NmtState state) {
-      log(event_text(node_id, event, state));
+      log(event_text(event, node_id, state));
     };
     master.on_network_started = [] { log("network started"); };
     master.start();

@@ -240,7 +240,7 @@ struct Boot : testing::Test {
       log.push_back(boot_text(node_id, result));
     };
     master->on_event = [this](canopen::NmtMasterEvent event, NodeId node_id, canopen::NmtState state) {
-      if (event != canopen::NmtMasterEvent::state_changed) log.push_back(event_text(node_id, event, state));
+      if (event != canopen::NmtMasterEvent::state_changed) log.push_back(event_text(event, node_id, state));
     };
   }
   canopen::VirtualBus bus;
@@ -355,9 +355,9 @@ TEST(MasterText, TellsNodeEntryReasonAndNumbers) {
             "node 5: product code 1018h:02 is not the one of 1F86h: expected 00010001h, seen 00020001h");
   EXPECT_EQ(boot_text(NodeId{5}, {BootStatus::configuration, canopen::AbortCode::value_too_high, 0x2001, 3}),
             "node 5: configuration failed: 2001h:03: 0609 0031h, value too high");
-  EXPECT_EQ(event_text(NodeId{5}, canopen::NmtMasterEvent::lost, canopen::NmtState::operational),
+  EXPECT_EQ(event_text(canopen::NmtMasterEvent::lost, NodeId{5}, canopen::NmtState::operational),
             "node 5: lost, last state operational");
-  EXPECT_EQ(event_text(NodeId{5}, canopen::NmtMasterEvent::boot_up, canopen::NmtState::initialisation),
+  EXPECT_EQ(event_text(canopen::NmtMasterEvent::boot_up, NodeId{5}, canopen::NmtState::initialisation),
             "node 5: boot-up");
 }
 

@@ -70,6 +70,14 @@ struct Desk {
     master.on_time(now);
     return bus.take();
   }
+  /// Node 5 sends `count` heartbeats with this distance; returns what the master sends at the last one.
+  std::string beat(int count, canopen::Duration period) {
+    for (; count > 1; --count) {
+      EXPECT_EQ(take("705 7F"), "");
+      EXPECT_EQ(pass(period), "");
+    }
+    return take("705 7F");
+  }
   Lines log() { return std::exchange(told.log, {}); }
 
   bench::RecordingBus bus;

@@ -32,6 +32,8 @@ constexpr auto asks_date = "605 40 20 10 01 00 00 00 00";
 constexpr auto asks_time = "605 40 20 10 02 00 00 00 00";
 constexpr auto writes_dcf = "605 2F 01 20 00 2A 00 00 00";
 constexpr auto dcf_written = "585 60 01 20 00 00 00 00 00";
+constexpr auto reads_dcf = "605 40 01 20 00 00 00 00 00";
+constexpr auto dcf_read = "585 4F 01 20 00 2A 00 00 00";
 
 /// 2026-11-24 is day 15668 (3D34h) since 1984-01-01; 12:00 is 43,200,000 ms (0293 2E00h).
 NmtSlave dated() {
@@ -59,11 +61,12 @@ TEST(NmtBoot, ASlaveWithTheExpectedDateAndTimeIsNotConfigured) {
   EXPECT_EQ(identify(desk), asks_date);
   EXPECT_EQ(desk.take(same_date), asks_time);
   EXPECT_FALSE(desk.master.configuration_is_current(NodeId{5}));
-  EXPECT_EQ(desk.take(same_time), "");
+  EXPECT_EQ(desk.take(same_time), reads_dcf);
+  EXPECT_EQ(desk.take(dcf_read), "");
   EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 configure"})) << "what the application sets at each boot-up";
   EXPECT_TRUE(desk.master.configuration_is_current(NodeId{5}));
   desk.master.configured(NodeId{5}, canopen::ok, desk.now);
-  EXPECT_EQ(desk.bus.take(), "000 01 05");
+  EXPECT_EQ(desk.pass(20ms), "000 01 05");
 }
 
 TEST(NmtBoot, ASlaveWithAnotherDateOrTimeIsConfigured) {
@@ -80,7 +83,8 @@ TEST(NmtBoot, ASlaveWithAnotherDateOrTimeIsConfigured) {
       next = desk.take(time);
     }
     EXPECT_EQ(next, writes_dcf);
-    EXPECT_EQ(desk.take(dcf_written), "");
+    EXPECT_EQ(desk.take(dcf_written), reads_dcf);
+    EXPECT_EQ(desk.take(dcf_read), "");
     EXPECT_FALSE(desk.master.configuration_is_current(NodeId{5}));
     EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 configure"}));
   }
@@ -98,8 +102,9 @@ TEST(NmtBoot, ASlaveThatLosesItsConfigurationIsConfiguredAtItsNextBootUp) {
   identify(desk);
   desk.take(same_date);
   desk.take(same_time);
+  desk.take(dcf_read);
   desk.master.configured(NodeId{5}, canopen::ok, desk.now);
-  desk.bus.take();
+  desk.pass(20ms);
   EXPECT_EQ(desk.take("705 00"), asks_device_type);
   EXPECT_EQ(desk.take(device_type), asks_date);
   EXPECT_EQ(desk.take("585 43 20 10 01 00 00 00 00"), writes_dcf) << "a changed parameter sets 1020h to 0";
@@ -122,7 +127,8 @@ TEST(NmtBoot, RestoresTheDefaultValuesOnceAndConfiguresAfterTheReset) {
   EXPECT_EQ(desk.take("585 60 11 10 01 00 00 00 00"), "000 81 05") << "restored with the reset";
   EXPECT_EQ(desk.take("705 00"), asks_device_type);
   EXPECT_EQ(desk.take(device_type), writes_dcf);
-  EXPECT_EQ(desk.take(dcf_written), "");
+  EXPECT_EQ(desk.take(dcf_written), reads_dcf);
+  EXPECT_EQ(desk.take(dcf_read), "");
   EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 boot-up", "5 configure"}));
   EXPECT_EQ(desk.take("705 00"), asks_device_type);
   EXPECT_EQ(desk.take(device_type), "605 23 11 10 01 6C 6F 61 64") << "again with the next boot-up";
@@ -150,7 +156,8 @@ TEST(NmtBoot, ACurrentConfigurationIsNotRestored) {
   Desk desk{{both}};
   EXPECT_EQ(identify(desk), asks_date);
   desk.take(same_date);
-  EXPECT_EQ(desk.take(same_time), "");
+  EXPECT_EQ(desk.take(same_time), reads_dcf);
+  EXPECT_EQ(desk.take(dcf_read), "");
   EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 configure"}));
 }
 

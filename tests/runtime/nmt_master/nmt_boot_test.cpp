@@ -46,7 +46,7 @@ TEST(NmtBoot, ASlaveWhoseHeartbeatTimeIsWrittenIsWatchedFromItsNextHeartbeatOn) 
   EXPECT_EQ(desk.pass(90ms), "");
   EXPECT_EQ(desk.take("585 60 17 10 00 00 00 00 00"), "");  // the new period begins here
   EXPECT_EQ(desk.pass(149ms), "");
-  EXPECT_EQ(desk.take("705 7F"), "000 01 05");
+  EXPECT_EQ(desk.beat(3, 150ms), "000 01 05") << "its rate has been measured";
   EXPECT_EQ(desk.pass(299ms), "");
   EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 configure", "5 0", "network started"}));
 }
@@ -55,7 +55,7 @@ TEST(NmtBoot, ASlaveThatKeepsAHeartbeatTimeInTimeMayRefuseAnother) {
   Desk desk{{slave(5, 300)}};
   EXPECT_EQ(ask_for_heartbeat_time(desk, "585 4B 17 10 00 FA 00 00 00"), "605 2B 17 10 00 96 00 00 00");
   EXPECT_EQ(desk.take("585 80 17 10 00 02 00 01 06"), "");
-  EXPECT_EQ(desk.take("705 7F"), "000 01 05");
+  EXPECT_EQ(desk.beat(3, 250ms), "000 01 05");
   EXPECT_EQ(desk.log(), (Lines{"5 boot-up", "5 configure", "5 0", "network started"}));
 }
 
@@ -134,11 +134,13 @@ TEST(NmtBoot, TellsThatALossWillNotBeNoticed) {
   desk.take(device_type);
   desk.log();
   desk.master.configured(NodeId{5}, canopen::ok, desk.now);
+  EXPECT_EQ(desk.pass(19ms), "") << "a late response would be a fault";
+  EXPECT_EQ(desk.pass(1ms), "000 01 05");
   EXPECT_EQ(desk.log(), (Lines{"5 0", "5 not watched: no heartbeat time and no guard time in the network list"}));
 }
 
 TEST(NmtBoot, EveryEventAndStateHasAText) {
-  for (int event = 0; event <= static_cast<int>(NmtMasterEvent::not_watched); ++event) {
+  for (int event = 0; event <= static_cast<int>(NmtMasterEvent::restarted); ++event) {
     EXPECT_NE(to_text(static_cast<NmtMasterEvent>(event)), "unknown event");
   }
   EXPECT_EQ(to_text(static_cast<NmtMasterEvent>(99)), "unknown event");
@@ -174,11 +176,21 @@ TEST(NmtBoot, BootsWhenTheBusHasRoomAgainWhereverItHadNone) {
         configured = true;
       }
     };
+    struct Response {
+      const char* request;
+      const char* response;
+    };
+    constexpr Response responses[] = {{"605 40 00 10 00", device_type},
+                                      {"605 40 17 10 00", "585 4B 17 10 00 00 00 00 00"},
+                                      {"605 2B 17 10 00", "585 60 17 10 00 00 00 00 00"}};
     const auto run = [&] {
-      for (const char* text :
-           {"705 00", device_type, "585 4B 17 10 00 00 00 00 00", "585 60 17 10 00 00 00 00 00", "705 7F"}) {
-        step(text);
-        desk.pass(1ms);
+      step("705 00");
+      for (int time = 0; time < 500; ++time) {
+        const std::string sent = desk.pass(1ms);
+        for (const Response& row : responses) {
+          if (sent.find(row.request) != std::string::npos) step(row.response);
+        }
+        if (time % 50 == 49) step("705 7F");
       }
     };
     run();

@@ -18,7 +18,8 @@
 
 namespace master_bench {
 
-inline constexpr const char* event_names[] = {"boot-up", "state", "unexpected state", "toggle error", "lost", "back"};
+inline constexpr const char* event_names[] = {"boot-up", "state", "unexpected state", "toggle error",
+                                              "lost",    "back",  "not watched",      "restarted"};
 
 /// Records the events of the master.
 struct Host {

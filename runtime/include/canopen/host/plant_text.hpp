@@ -37,6 +37,7 @@ namespace canopen {
     case PlantFaultKind::pdo_missing:
     case PlantFaultKind::pdo_too_short: return text + ": RPDO " + std::to_string(fault.rpdo) + " of the master";
     case PlantFaultKind::boot:
+    case PlantFaultKind::restarted:
     case PlantFaultKind::not_watched:
     case PlantFaultKind::emergency_over: break;
   }

@@ -8,7 +8,7 @@
 
 namespace canopen {
 
-/// The letters are those of CiA 302-2.
+/// The capital letters are those of CiA 302-2. Those in lower case are faults of the supervised boot-up.
 enum class BootStatus : char {
   booted = '0',
   not_listed = 'A',
@@ -26,6 +26,11 @@ enum class BootStatus : char {
   product_code = 'M',
   revision_number = 'N',
   serial_number = 'O',
+  restarted = 'r',
+  extra_response = 'x',
+  not_as_written = 'w',
+  heartbeat_rate = 'h',
+  heartbeat_states = 's',
 };
 
 struct BootStatusText {
@@ -50,7 +55,17 @@ inline constexpr BootStatusText boot_status_texts[] = {
     {BootStatus::product_code, "product code 1018h:02 is not the one of 1F86h"},
     {BootStatus::revision_number, "revision number 1018h:03 is not the one of 1F87h"},
     {BootStatus::serial_number, "serial number 1018h:04 is not the one of 1F88h"},
+    {BootStatus::restarted, "boot-up message during the boot-up: the node restarts, or two nodes have its node-ID"},
+    {BootStatus::extra_response,
+     "more SDO responses than requests: two nodes have its node-ID, or another SDO client uses it"},
+    {BootStatus::not_as_written, "value read back is not the one written"},
+    {BootStatus::heartbeat_rate, "heartbeats are not sent at the rate of 1017h"},
+    {BootStatus::heartbeat_states, "heartbeats have different states: two nodes may have its node-ID"},
 };
+
+/// Whether a status is a fault of the supervised boot-up: the slave is reset and booted again a few times; then it is
+/// left in Pre-operational.
+[[nodiscard]] constexpr bool is_disturbed(BootStatus status) { return static_cast<char>(status) >= 'a'; }
 
 [[nodiscard]] constexpr std::string_view to_text(BootStatus status) {
   for (const auto& row : boot_status_texts) {
@@ -66,8 +81,10 @@ struct BootResult {
   AbortCode abort_code = ok;  ///< of the SDO transfer that caused the status, or of the application's configuration
   std::uint16_t index = 0;    ///< entry of that transfer, or of the number that differs; 0: none
   std::uint8_t sub_index = 0;
-  std::uint32_t expected = 0;  ///< identity number or software version in the network list
-  std::uint32_t seen = 0;      ///< the one of the node, if `abort_code` is `ok`
+  /// Identity number or software version in the network list, first bytes of a value in the concise DCF, or heartbeat
+  /// time in ms
+  std::uint32_t expected = 0;
+  std::uint32_t seen = 0;  ///< the one of the node, if `abort_code` is `ok`
 
   constexpr operator BootStatus() const { return status; }  // NOLINT(google-explicit-constructor): the short form
 };

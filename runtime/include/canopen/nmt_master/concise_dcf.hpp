@@ -45,6 +45,15 @@ class ConciseDcfPlace {
     return dcf.subspan(at + head, size);
   }
 
+  /// Whether the present entry is written again by a later one.
+  [[nodiscard]] bool is_written_again(Dcf dcf) const {
+    ConciseDcfPlace other = *this;
+    for (other.advance(dcf); !other.at_end() && other.data(dcf); other.advance(dcf)) {
+      if (other.index(dcf) == index(dcf) && other.sub_index(dcf) == sub_index(dcf)) return true;
+    }
+    return false;
+  }
+
  private:
   static constexpr std::size_t head = 7;  ///< bytes of an entry before its data
 

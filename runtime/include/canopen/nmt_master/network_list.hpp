@@ -42,8 +42,13 @@ struct NmtSlave {
   std::uint32_t configuration_date = 0;  ///< 1F26h, compared with 1020h:01: days since 1984-01-01
   std::uint32_t configuration_time = 0;  ///< 1F27h, compared with 1020h:02: ms since midnight
   /// Concise DCF as in 1F22h, written to the slave at each boot-up unless 1020h has the date and the time above, both
-  /// other than 0. It must outlive the master.
+  /// other than 0, and the slave has the values. It must outlive the master.
   std::span<const std::uint8_t> concise_dcf{};
+  /// Time in ms after which a request without a response has failed; 0: the time of the master.
+  std::uint16_t sdo_timeout = 0;
+  /// Whether the values of the concise DCF are read back before the slave is started. A slave that rounds a value that
+  /// is written is not started until the DCF has the rounded value.
+  bool read_back = true;
 
   [[nodiscard]] constexpr bool has(std::uint32_t bit) const { return (assignment & bit) != 0; }
   [[nodiscard]] constexpr std::uint8_t life_time_factor() const { return static_cast<std::uint8_t>(assignment >> 8); }

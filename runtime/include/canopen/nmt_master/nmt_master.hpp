@@ -12,6 +12,7 @@
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
 #include "canopen/base/result.hpp"
+#include "canopen/can/cob_id.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/can/node_id.hpp"
 #include "canopen/nmt/error_control.hpp"
@@ -21,6 +22,7 @@
 #include "canopen/nmt_master/nmt_master_event.hpp"
 #include "canopen/nmt_master/slave_boot.hpp"
 #include "canopen/nmt_master/slave_table.hpp"
+#include "canopen/sdo/sdo_protocol.hpp"
 #include "canopen/sdo/sdo_queue.hpp"
 
 namespace canopen {
@@ -29,14 +31,19 @@ namespace canopen {
 /// message, or after a second because the message may have been missed, it is
 ///   1. identified by SDO; a wrong identity or software ends the boot-up until the next boot-up message,
 ///   2. configured: unless 1020h has the date and time of the list, its default values are restored if 1F81h says so
-///      and its concise DCF (1F22h) is written; then the application configures it,
+///      and its concise DCF (1F22h) is written; the values of the DCF are read back, and a slave with the date and time
+///      of the list that has others is configured after all; then the application configures it,
 ///   3. given its heartbeat time: if the list has one, 1017h is read, and written if it is 0 or too long,
-///   4. monitored by heartbeat or guarding, and
+///   4. monitored by heartbeat or guarding; the rate of the heartbeats is measured if it is at most a second, and
 ///   5. started.
-/// A slave that does not respond is tried again every second, after a command to enter Pre-operational, because SDO is
-/// not available in Stopped. A slave with `keep_alive` that is already Operational is not reset or configured; one that
-/// does not report its state is left alone. The network is started when all mandatory slaves have booted; later slaves
-/// are booted when they appear.
+/// The boot-up is supervised: a second boot-up message, a response without a request, a value that is not read back,
+/// and heartbeats at another rate or with different states (`is_disturbed`) are faults, and so is a restart in the
+/// first ten seconds after the boot-up. They are reported, and the slave is reset and booted again, twice in a row;
+/// then it is not started, and left in Pre-operational, until its next boot-up message or `boot`. The network does not
+/// start without it if it is mandatory. A slave that does not respond is tried again every second, after a command to
+/// enter Pre-operational, because SDO is not available in Stopped. A slave with `keep_alive` that is already
+/// Operational is not reset or configured; one that does not report its state is left alone. The network is started
+/// when all mandatory slaves have booted; later slaves are booted when they appear.
 ///
 /// The master and the application share the SDO of a slave: `request` appends a transfer to the queue of its node,
 /// which the boot-up uses as well. Up to `Clients` nodes are served at the same time; up to `Requests` requests of the
@@ -46,8 +53,8 @@ namespace canopen {
 ///   happened(NmtMasterEvent, NodeId, NmtState)   with the last reported state
 ///   configure(NodeId)                            optional: configure the slave now, with any number of requests, then
 ///                                                call `configured`; called again after the next boot-up of the slave
-///   booted(NodeId, BootResult)                   how a boot-up ended; no_response: the slave is tried again. A Host
-///                                                may accept a BootStatus instead
+///   booted(NodeId, BootResult)                   how a boot-up ended; no_response: the slave is tried again, as after
+///                                                a fault. A Host may accept a BootStatus instead
 ///   network_started()                            unless 1F80h forbids it, the master's own device may be started now
 ///   boot_time_elapsed()                          a mandatory slave is missing; the master keeps waiting for it
 template <Bus B, std::size_t Count, class Host, std::size_t Requests = 4, std::size_t Clients = (Count < 4 ? Count : 4)>
@@ -57,7 +64,12 @@ class NmtMaster {
   /// that are to be booted.
   constexpr NmtMaster(B& can_bus, std::span<const NmtSlave> slaves, NmtStartUp start_up, SdoClientOptions options,
                       Host host)
-      : bus_{can_bus}, slaves_{slaves}, start_up_{start_up}, host_{std::move(host)}, sdo_{can_bus, options} {}
+      : bus_{can_bus},
+        slaves_{slaves},
+        start_up_{start_up},
+        host_{std::move(host)},
+        sdo_timeout_{options.timeout},
+        sdo_{sdo_bus_, options} {}
   constexpr NmtMaster(B& can_bus, std::span<const NmtSlave> slaves, NmtStartUp start_up, Duration sdo_timeout,
                       Host host)
       : NmtMaster{can_bus, slaves, start_up, SdoClientOptions{.timeout = sdo_timeout}, std::move(host)} {}
@@ -87,6 +99,7 @@ class NmtMaster {
   void boot(NodeId node_id, TimePoint now) {
     now_ = now;
     if (const std::optional<std::size_t> i = slaves_.find(node_id)) {
+      slaves_.boot(*i).forget_faults();
       slaves_.reset(*i, NmtCommand::reset_communication, now);
     }
     serve();
@@ -113,7 +126,10 @@ class NmtMaster {
   /// already waiting.
   Result<void> request(NodeId node_id, const SdoRequest& what, TimePoint now) {
     if (sdo_.waiting(this) >= Requests) return AbortCode::no_resource;
-    return sdo_.submit(node_id, what, now);
+    SdoRequest request = what;
+    const std::optional<std::size_t> i = slaves_.find(node_id);
+    if (i && request.timeout.count() == 0) request.timeout = sdo_timeout_of(*i);
+    return sdo_.submit(node_id, request, now);
   }
 
   /// Sends a command to one node, or to all nodes with node-ID 0. Returns false if the bus had no room; it is not sent.
@@ -122,6 +138,7 @@ class NmtMaster {
   /// Processes a frame from the bus.
   void on_frame(const Frame& frame, TimePoint now) {
     now_ = now;
+    supervise_sdo(frame);
     sdo_.on_frame(frame, now);
     if (const std::optional<ErrorControlMessage> message = error_control_message(frame)) on_message(*message);
     serve();
@@ -189,6 +206,16 @@ class NmtMaster {
     }
   };
 
+  /// The bus of the SDO clients, which counts their requests.
+  struct SdoBus {
+    NmtMaster& master;
+    [[nodiscard]] bool send(const Frame& frame) {
+      if (!master.bus_.send(frame)) return false;
+      master.count_request(frame);
+      return true;
+    }
+  };
+
   void tell(NmtMasterEvent event, NodeId node_id, NmtState state) { host_.happened(event, node_id, state); }
 
   // The network
@@ -209,7 +236,7 @@ class NmtMaster {
   void proceed(std::size_t i, BootNext next, const BootResult& result = {}) {
     switch (next) {
       case BootNext::request: return;
-      case BootNext::finish: return finish(i, result);
+      case BootNext::finish: return is_disturbed(result.status) ? disturb(i, result) : finish(i, result);
       case BootNext::retry: return retry(i, result);
       case BootNext::reset: return slaves_.reset_restored(i, now_);
       case BootNext::configure: return configure_by_host(i);
@@ -231,8 +258,23 @@ class NmtMaster {
     if (slaves_.retry(i, now_)) host_.booted(slaves_[i].node_id, result);
   }
 
+  /// Boots a slave again after a fault of its boot-up, or leaves it in Pre-operational. One that may be Operational
+  /// since before the start of the master, and is to be kept alive, does not get a command.
+  void disturb(std::size_t i, const BootResult& result) {
+    SlaveBoot& boot = slaves_.boot(i);
+    const bool is_kept_alive = boot.may_be_kept_alive(slaves_[i]);
+    if (!is_kept_alive && boot.may_boot_again()) {
+      slaves_.reset_disturbed(i, result.status, now_);
+      host_.booted(slaves_[i].node_id, result);
+      return;
+    }
+    boot.ignore_response();
+    if (!is_kept_alive) slaves_.command(i, NmtCommand::enter_pre_operational);
+    finish(i, result);
+  }
+
   void finish(std::size_t i, const BootResult& result) {
-    slaves_.finish(i, result.status);
+    slaves_.finish(i, result.status, now_);
     host_.booted(slaves_[i].node_id, result);
     if (slaves_.complete(i) && !slaves_[i].watched()) {
       tell(NmtMasterEvent::not_watched, slaves_[i].node_id, NmtState::initialisation);
@@ -248,8 +290,16 @@ class NmtMaster {
     if (network_started_ || !slaves_.mandatory_complete()) return;
     network_started_ = true;
     const bool start_all = start_up_.has(nmt_start_up::start_all) && !start_up_.has(nmt_start_up::no_slave_start);
-    if (start_all && !slaves_.all_commanded()) slaves_.command_all(NmtCommand::start);
+    if (start_all && !slaves_.all_commanded()) start_complete_slaves();
     host_.network_started();
+  }
+
+  /// Starts all nodes with one command if no slave is being booted or has failed, otherwise each slave that has booted.
+  void start_complete_slaves() {
+    if (slaves_.all_complete()) return slaves_.command_all(NmtCommand::start);
+    for (std::size_t i = 0; i < slaves_.size(); ++i) {
+      if (slaves_.complete(i) && slaves_[i].has(slave_assignment::boot)) slaves_.command(i, NmtCommand::start);
+    }
   }
 
   // Messages of slaves
@@ -268,6 +318,9 @@ class NmtMaster {
     slaves_.error_control().on_message(message, *i, now_, Events{*this});
     if (boot_up) return on_boot_up(*i);
     const Step step = slaves_.boot(*i).step();
+    if (step == Step::starting_error_control && slaves_[*i].beats() && !message.toggle) {
+      slaves_.boot(*i).report_heartbeat(message.state, now_);
+    }
     const bool is_silent = step == Step::waiting || step == Step::identifying;
     if (message.state == NmtState::stopped && is_silent && !slaves_.commanded(*i)) {
       slaves_.reset(*i, NmtCommand::reset_communication,
@@ -278,18 +331,30 @@ class NmtMaster {
   /// Boots a slave again that was already booted, if 1F81h says so.
   void on_boot_up(std::size_t i) {
     SlaveBoot& boot = slaves_.boot(i);
+    const NodeId node_id = slaves_[i].node_id;
+    const bool is_unexpected = slaves_.complete(i) && !boot.expects_boot_up();
+    const bool is_restart = boot.is_restart();
     slaves_.discard_command(i);
     boot.report_boot_up();
     slaves_.error_control().stop(i, slaves_[i]);
     if (!booting_) return;
-    if (boot.step() != Step::idle || slaves_[i].has(slave_assignment::boot)) {
+    if (is_unexpected && boot.has_run_long(now_)) boot.forget_faults();
+    const bool may_boot = !(is_restart || is_unexpected) || boot.may_boot_again();
+    if (may_boot && (boot.step() != Step::idle || slaves_[i].has(slave_assignment::boot))) {
       slaves_.identify(i);
     } else {
       boot.ignore_response();
       slaves_.set_incomplete(i);
     }
+    if (is_unexpected) tell(NmtMasterEvent::restarted, node_id, NmtState::initialisation);
+    if (!may_boot) {
+      slaves_.command(i, NmtCommand::enter_pre_operational);
+      finish(i, BootResult{BootStatus::restarted});
+    } else if (is_restart) {
+      host_.booted(node_id, BootResult{BootStatus::restarted});
+    }
     // `done` of the application may call `configured`, which has no effect any more.
-    sdo_.node_reset(slaves_[i].node_id, now_);
+    sdo_.node_reset(node_id, now_);
   }
 
   /// Handles the loss of a slave (CiA 302-2, error handling): all nodes are stopped or reset, or only the
@@ -322,6 +387,33 @@ class NmtMaster {
 
   // SDO
 
+  [[nodiscard]] Duration sdo_timeout_of(std::size_t i) const {
+    const std::uint16_t own = slaves_[i].sdo_timeout;
+    return own != 0 ? from_milliseconds(own) : sdo_timeout_;
+  }
+
+  void count_request(const Frame& frame) {
+    const std::optional<std::size_t> i = slaves_.find(NodeId{static_cast<std::uint8_t>(frame.id & 0x7F)});
+    if (i) slaves_.responses(*i).on_request(frame.data, now_, sdo_timeout_of(*i) * 2u);
+  }
+
+  /// Counts the responses of a slave, and the requests of other clients if the bus passes them on.
+  void supervise_sdo(const Frame& frame) {
+    if (frame.extended || frame.remote || frame.size != 8) return;
+    const std::uint32_t function = frame.id & ~0x7Fu;
+    if (function == function_code::sdo_request) return count_request(frame);
+    if (function != function_code::sdo_response) return;
+    const std::optional<std::size_t> i = slaves_.find(NodeId{static_cast<std::uint8_t>(frame.id & 0x7F)});
+    if (!i || !slaves_.responses(*i).on_response(frame.data) || !slaves_.boot(*i).is_supervised()) return;
+    BootResult result{BootStatus::extra_response};
+    if (sdo::has_multiplexer(frame.data)) {
+      result.index = sdo::index_of(frame.data);
+      result.sub_index = frame.data[3];
+    }
+    if (frame.data[0] == sdo::abort_command) result.abort_code = abort_code_from(sdo::word_of(frame.data));
+    disturb(*i, result);
+  }
+
   /// Queues a request for each slave that needs one, as soon as it can start, or only has to wait for requests of the
   /// application to its node: first slaves whose boot-up message has been received, and in rotation, so that slaves
   /// that do not respond do not occupy all clients.
@@ -346,6 +438,7 @@ class NmtMaster {
       static_cast<NmtMaster*>(context)->on_answer(node_id, answer);
     };
     request.context = this;
+    request.timeout = sdo_timeout_of(i);
     return request;
   }
 
@@ -367,7 +460,9 @@ class NmtMaster {
       if (boot.step() == Step::waiting && now_ >= boot.deadline()) slaves_.ask_again(i);
       slaves_.error_control().serve(bus_, i, now_, Events{*this});
       if (boot.step() != Step::starting_error_control) continue;
-      if (const std::optional<BootStatus> end = slaves_.check_error_control(i, now_)) finish(i, BootResult{*end});
+      if (const std::optional<BootResult> end = slaves_.check_error_control(i, now_)) {
+        proceed(i, BootNext::finish, *end);
+      }
     }
     slaves_.send_commands(bus_);
     serve_sdo();
@@ -377,7 +472,9 @@ class NmtMaster {
   SlaveTable<Count> slaves_;
   NmtStartUp start_up_;
   [[no_unique_address]] Host host_;
-  SdoQueue<B, Clients, Count + Requests> sdo_;
+  Duration sdo_timeout_;
+  SdoBus sdo_bus_{*this};
+  SdoQueue<SdoBus, Clients, Count + Requests> sdo_;
   std::array<std::uint32_t, 4> boot_ups_{};  ///< one bit per node
   std::size_t next_ = 0;                     ///< the slave whose turn is next
   TimePoint boot_deadline_{};

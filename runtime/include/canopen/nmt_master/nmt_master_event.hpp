@@ -31,6 +31,7 @@ enum class NmtMasterEvent : std::uint8_t {
   back,              ///< the first one after it was lost
   not_watched,       ///< it has booted, but its loss will not be detected: the list has no heartbeat and no guarding
                      ///< times for it
+  restarted,         ///< the boot-up message of a booted slave that was not reset by a command of the master
 };
 
 [[nodiscard]] constexpr std::string_view to_text(NmtMasterEvent event) {
@@ -42,6 +43,7 @@ enum class NmtMasterEvent : std::uint8_t {
     case NmtMasterEvent::lost: return "lost";
     case NmtMasterEvent::back: return "back";
     case NmtMasterEvent::not_watched: return "not watched: no heartbeat time and no guard time in the network list";
+    case NmtMasterEvent::restarted: return "restarted without a command, or a second node has its node-ID";
   }
   return "unknown event";
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -13,8 +14,10 @@
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
+#include "canopen/nmt/nmt.hpp"
 #include "canopen/nmt_master/boot_status.hpp"
 #include "canopen/nmt_master/concise_dcf.hpp"
+#include "canopen/nmt_master/heartbeat_rate.hpp"
 #include "canopen/nmt_master/identity_check.hpp"
 #include "canopen/nmt_master/network_list.hpp"
 #include "canopen/sdo/sdo_queue.hpp"
@@ -44,6 +47,7 @@ class SlaveBoot {
     checking_configuration,  ///< reading date or time of 1020h
     restoring,               ///< writing "load" to 1011h
     downloading,             ///< writing an entry of the concise DCF
+    reading_back,            ///< an entry of the concise DCF
     configuring,             ///< by the application
     reading_heartbeat_time,  ///< of 1017h
     writing_heartbeat_time,
@@ -56,6 +60,9 @@ class SlaveBoot {
     step_ = Step::idle;
     restored_ = false;
   }
+
+  /// Whether the slave is booting: each response must have its request, and another boot-up message is a restart.
+  [[nodiscard]] bool is_supervised() const { return step_ >= Step::identifying; }
 
   /// Whether the slave is in a step before error control.
   [[nodiscard]] bool is_before_error_control() const {
@@ -77,6 +84,7 @@ class SlaveBoot {
   /// Waits for the boot-up message, or for the next attempt.
   void wait(TimePoint until) {
     step_ = Step::waiting;
+    answered_ = false;
     ignore_response();
     deadline_ = until;
   }
@@ -84,6 +92,7 @@ class SlaveBoot {
   /// Starts with the first number of the identity.
   void identify() {
     step_ = Step::identifying;
+    answered_ = false;
     ignore_response();
     check_ = 0;
   }
@@ -97,7 +106,22 @@ class SlaveBoot {
   void report_boot_up() {
     booted_up_ = true;
     silent_ = false;
+    boot_up_expected_ = false;
   }
+  /// The master has reset it.
+  void expect_boot_up() { boot_up_expected_ = true; }
+  [[nodiscard]] bool expects_boot_up() const { return boot_up_expected_; }
+  /// Whether a boot-up message is that of a restart: the slave has already responded in this boot-up.
+  [[nodiscard]] bool is_restart() const { return is_supervised() && answered_ && !boot_up_expected_; }
+
+  /// Counts a boot-up that a fault has ended. Returns false if the slave is not to be booted again because of it.
+  [[nodiscard]] bool may_boot_again() { return disturbed_ < max_disturbed && ++disturbed_ < max_disturbed; }
+  /// The boot-up has succeeded.
+  void report_complete(TimePoint now) { since_ = now; }
+  /// Whether it did so more than ten seconds ago.
+  [[nodiscard]] bool has_run_long(TimePoint now) const { return now - since_ > std::chrono::seconds{10}; }
+  /// The faults of earlier boot-ups no longer count.
+  void forget_faults() { disturbed_ = 0; }
   void report_reset() {
     was_reset_ = true;
     booted_up_ = false;
@@ -138,6 +162,7 @@ class SlaveBoot {
       case Step::checking_configuration:
       case Step::restoring:
       case Step::downloading:
+      case Step::reading_back:
       case Step::reading_heartbeat_time:
       case Step::writing_heartbeat_time: return !asked_;
       case Step::idle:
@@ -159,6 +184,15 @@ class SlaveBoot {
       request.bytes = load_signature;
     } else if (request.download) {
       request.bytes = std::span{number_}.first(2);
+    } else if (step_ == Step::reading_back) {
+      read_back_ = *dcf_.data(slave.concise_dcf);
+      number_ = {};
+      is_equal_ = true;
+      if (read_back_.size() > number_.size()) {
+        request.sink = {compare, this};
+      } else {
+        request.memory = number_;
+      }
     } else {
       request.memory = number_;
     }
@@ -171,6 +205,7 @@ class SlaveBoot {
     asked_ = false;
     if (std::exchange(dropped_, false)) return BootNext::request;
     if (answer.result == AbortCode::timeout) return no_response(slave, answer, result);
+    answered_ = true;
     switch (step_) {
       case Step::identifying: return identity_read(slave, answer, result);
       case Step::checking_software: return software_read(slave, answer, result);
@@ -182,6 +217,7 @@ class SlaveBoot {
         if (answer.result != ok) return failure(slave, BootStatus::configuration, answer, result);
         dcf_.advance(slave.concise_dcf);
         return download(slave, result);
+      case Step::reading_back: return value_read_back(slave, answer, result);
       case Step::reading_heartbeat_time: return heartbeat_time_read(slave, answer);
       case Step::writing_heartbeat_time: return heartbeat_time_written(slave, answer, result);
       case Step::idle:
@@ -199,7 +235,46 @@ class SlaveBoot {
     return BootNext::request;
   }
 
+  // Error control
+
+  /// Waits for the first heartbeat or guarding response until then.
+  void start_error_control(TimePoint now, TimePoint until) {
+    step_ = Step::starting_error_control;
+    deadline_ = until;
+    since_ = now;
+    rate_.begin(rate_.producer_time());
+  }
+
+  /// Processes a heartbeat while error control is started. The first one begins the measurement of their rate.
+  void report_heartbeat(NmtState state, TimePoint now) {
+    const bool is_first = !rate_.begun();
+    rate_.report(state, now);
+    if (is_first && rate_.is_measured()) deadline_ = rate_.end();
+  }
+
+  /// Checks whether error control is complete, after the slave has been heard, or if it is not monitored. Returns how
+  /// the boot-up ends; empty if it goes on.
+  [[nodiscard]] std::optional<BootResult> check_error_control(const NmtSlave& slave, TimePoint now) {
+    if (!slave.beats() || !rate_.is_measured()) {
+      deadline_ = since_ + settling_time;
+      if (now < deadline_) return std::nullopt;
+    } else if (!rate_.begun()) {
+      return now < deadline_ ? std::nullopt : std::optional{BootResult{BootStatus::no_heartbeat}};
+    }
+    switch (rate_.verdict(now)) {
+      case HeartbeatRate::Verdict::open: return std::nullopt;
+      case HeartbeatRate::Verdict::right: return BootResult{};
+      case HeartbeatRate::Verdict::states: return BootResult{BootStatus::heartbeat_states};
+      case HeartbeatRate::Verdict::wrong: break;
+    }
+    return BootResult{BootStatus::heartbeat_rate, ok, 0x1017, 0, rate_.producer_time(), rate_.measured_time(now)};
+  }
+
  private:
+  /// Time between the last response of a slave and its start, in which a late response is a fault.
+  static constexpr Duration settling_time = from_milliseconds(20);
+  static constexpr std::uint8_t max_disturbed = 3;  ///< boot-ups that a fault ends, in a row
+
   static constexpr std::size_t checks = std::size(identity_checks);
   static constexpr std::array<std::uint8_t, 4> load_signature{'l', 'o', 'a', 'd'};
 
@@ -210,7 +285,8 @@ class SlaveBoot {
       case Step::checking_software: return {std::uint16_t{0x1F56}, std::uint8_t{1}};
       case Step::checking_configuration: return {std::uint16_t{0x1020}, configuration_checks[check_].sub_index};
       case Step::restoring: return {std::uint16_t{0x1011}, slave.restored_parameters};
-      case Step::downloading: return {dcf_.index(slave.concise_dcf), dcf_.sub_index(slave.concise_dcf)};
+      case Step::downloading:
+      case Step::reading_back: return {dcf_.index(slave.concise_dcf), dcf_.sub_index(slave.concise_dcf)};
       case Step::reading_heartbeat_time:
       case Step::writing_heartbeat_time:
       case Step::idle:
@@ -300,7 +376,8 @@ class SlaveBoot {
     if (answer.result != ok || little_endian_number(answer.data) != expected) return restore(slave, result);
     if (++check_ < std::size(configuration_checks)) return BootNext::request;
     is_current_ = true;
-    return BootNext::configure;
+    dcf_.begin(slave.concise_dcf);
+    return read_back(slave, result);
   }
 
   /// Restores the default values once, before the configuration is written.
@@ -316,11 +393,76 @@ class SlaveBoot {
 
   /// Continues with the present entry of the concise DCF, or after the last one.
   [[nodiscard]] BootNext download(const NmtSlave& slave, BootResult& result) {
-    if (dcf_.at_end()) return BootNext::configure;
+    if (dcf_.at_end()) {
+      dcf_.begin(slave.concise_dcf);
+      return read_back(slave, result);
+    }
     step_ = Step::downloading;
     if (dcf_.data(slave.concise_dcf)) return BootNext::request;
     result = {BootStatus::configuration, AbortCode::length_mismatch};
     return BootNext::finish;
+  }
+
+  // The values of the concise DCF are read back
+
+  /// Continues with the present entry of the concise DCF, or after the last one. Entries that are written twice, such
+  /// as the number of mapped objects, have the last value.
+  [[nodiscard]] BootNext read_back(const NmtSlave& slave, BootResult& result) {
+    const ConciseDcfPlace::Dcf dcf = slave.concise_dcf;
+    while (slave.read_back && !dcf_.at_end()) {
+      if (!dcf_.data(dcf)) {
+        result = {BootStatus::configuration, AbortCode::length_mismatch};
+        return BootNext::finish;
+      }
+      if (!is_command(dcf_.index(dcf)) && !dcf_.is_written_again(dcf)) {
+        step_ = Step::reading_back;
+        return BootNext::request;
+      }
+      dcf_.advance(dcf);
+    }
+    return BootNext::configure;
+  }
+
+  /// Whether a write to the object is a command, so that a read does not return the value.
+  [[nodiscard]] static constexpr bool is_command(std::uint16_t index) {
+    return index == 0x1003 || index == 0x1010 || index == 0x1011 || (index >= 0x1023 && index <= 0x1026) ||
+           index == 0x1F25 || (index >= 0x1F50 && index <= 0x1F5A) || index == 0x1F82 || index == 0x1F83;
+  }
+
+  /// A slave that has its configuration according to 1020h, but not the values, is configured. A write-only entry
+  /// cannot be compared.
+  [[nodiscard]] BootNext value_read_back(const NmtSlave& slave, const SdoAnswer& answer, BootResult& result) {
+    const bool is_write_only = answer.result == AbortCode::write_only || answer.result == AbortCode::unsupported_access;
+    if (is_write_only || has_value(answer)) {
+      dcf_.advance(slave.concise_dcf);
+      return read_back(slave, result);
+    }
+    if (std::exchange(is_current_, false)) return restore(slave, result);
+    const BootNext next = failure(slave, BootStatus::not_as_written, answer, result);
+    result.expected = little_endian_number(read_back_.first(std::min(read_back_.size(), number_.size())));
+    result.seen = little_endian_number(number_);
+    return next;
+  }
+
+  /// Whether the response to a read has the bytes of the concise DCF. The slave may not state the size of a number.
+  [[nodiscard]] bool has_value(const SdoAnswer& answer) const {
+    if (answer.result != ok || !is_equal_) return false;
+    if (read_back_.size() > number_.size()) return true;
+    const bool has_size = answer.data.size() == read_back_.size() || !answer.size_known;
+    return has_size && std::ranges::equal(std::span{number_}.first(read_back_.size()), read_back_);
+  }
+
+  /// Compares a value that is longer than `number_` piece by piece, and keeps its first bytes.
+  [[nodiscard]] static AbortCode compare(void* context, std::uint32_t offset, std::span<const std::uint8_t> bytes,
+                                         bool last) {
+    SlaveBoot& self = *static_cast<SlaveBoot*>(context);
+    const std::size_t end = offset + bytes.size();
+    self.is_equal_ = self.is_equal_ && end <= self.read_back_.size() && (!last || end == self.read_back_.size()) &&
+                     std::ranges::equal(self.read_back_.subspan(offset, bytes.size()), bytes);
+    for (std::size_t i = 0; i < bytes.size() && offset + i < self.number_.size(); ++i) {
+      self.number_[offset + i] = bytes[i];
+    }
+    return ok;
   }
 
   // Heartbeat time
@@ -331,6 +473,7 @@ class SlaveBoot {
     const std::uint32_t producer =
         little_endian_number(answer.data.first(std::min<std::size_t>(answer.data.size(), 2)));
     const bool is_short_enough = producer != 0 && 3 * producer <= 2 * consumer;
+    rate_.begin(answer.result == ok ? static_cast<std::uint16_t>(producer) : std::uint16_t{0});
     if (answer.result == ok && is_short_enough) return BootNext::error_control;
     beats_in_time_ = answer.result == ok && producer != 0 && producer < consumer;
     const std::uint32_t wanted = std::max<std::uint32_t>(consumer / 2, 1);
@@ -340,15 +483,20 @@ class SlaveBoot {
   }
 
   /// The slave restarts its period. One that rejects the write may keep its own time if that is short enough.
-  [[nodiscard]] BootNext heartbeat_time_written(const NmtSlave& slave, const SdoAnswer& answer,
-                                                BootResult& result) const {
-    if (answer.result == ok) return BootNext::watch;
+  [[nodiscard]] BootNext heartbeat_time_written(const NmtSlave& slave, const SdoAnswer& answer, BootResult& result) {
+    if (answer.result == ok) {
+      rate_.begin(static_cast<std::uint16_t>(little_endian_number(std::span{number_}.first(2))));
+      return BootNext::watch;
+    }
     if (!beats_in_time_) return failure(slave, BootStatus::no_heartbeat, answer, result);
     return BootNext::error_control;
   }
 
   TimePoint deadline_{};
+  TimePoint since_{};  ///< start of error control, or the end of the boot-up
+  HeartbeatRate rate_{};
   std::array<std::uint8_t, 4> number_{};  ///< read or written value
+  std::span<const std::uint8_t> read_back_{};
   ConciseDcfPlace dcf_{};
   Step step_ = Step::idle;
   std::uint8_t check_ = 0;
@@ -360,6 +508,10 @@ class SlaveBoot {
   bool restored_ = false;       ///< its default values have been restored: it is configured next
   bool is_current_ = false;     ///< 1020h has the expected date and time
   bool beats_in_time_ = false;  ///< 1017h is shorter than the consumer's time
+  bool is_equal_ = false;       ///< the value read back is that of the concise DCF so far
+  bool answered_ = false;       ///< it has responded since the boot-up has begun
+  bool boot_up_expected_ = false;
+  std::uint8_t disturbed_ = 0;  ///< boot-ups that a fault has ended, in a row
 };
 
 }  // namespace canopen

@@ -16,6 +16,7 @@
 #include "canopen/nmt_master/boot_status.hpp"
 #include "canopen/nmt_master/network_list.hpp"
 #include "canopen/nmt_master/nmt_master_event.hpp"
+#include "canopen/nmt_master/response_count.hpp"
 #include "canopen/nmt_master/slave_boot.hpp"
 #include "canopen/nmt_master/slave_error_control.hpp"
 
@@ -45,6 +46,7 @@ class SlaveTable {
 
   [[nodiscard]] SlaveBoot& boot(std::size_t i) { return entries_[i].boot; }
   [[nodiscard]] const SlaveBoot& boot(std::size_t i) const { return entries_[i].boot; }
+  [[nodiscard]] ResponseCount& responses(std::size_t i) { return entries_[i].responses; }
   [[nodiscard]] SlaveErrorControl<Count>& error_control() { return error_control_; }
   [[nodiscard]] const SlaveErrorControl<Count>& error_control() const { return error_control_; }
 
@@ -57,6 +59,14 @@ class SlaveTable {
   /// Whether a slave has booted and is not lost.
   [[nodiscard]] bool complete(std::size_t i) const { return entries_[i].complete; }
   void set_incomplete(std::size_t i) { entries_[i].complete = false; }
+
+  /// Whether all slaves are complete.
+  [[nodiscard]] bool all_complete() const {
+    for (std::size_t i = 0; i < list_.size(); ++i) {
+      if (list_[i].has(slave_assignment::listed) && !entries_[i].complete) return false;
+    }
+    return true;
+  }
 
   /// Whether all mandatory slaves are complete.
   [[nodiscard]] bool mandatory_complete() const {
@@ -100,6 +110,12 @@ class SlaveTable {
     wait(i, now);
   }
 
+  /// Resets a slave whose boot-up has ended with a fault, and waits for its boot-up message.
+  void reset_disturbed(std::size_t i, BootStatus status, TimePoint now) {
+    reset(i, NmtCommand::reset_communication, now);
+    entries_[i].status = status;
+  }
+
   /// Resets a slave whose default values have been restored; they take effect with the reset (CiA 301, 7.5.2.14).
   void reset_restored(std::size_t i, TimePoint now) {
     constexpr std::uint8_t communication_parameters = 2;
@@ -132,8 +148,7 @@ class SlaveTable {
 
   void start_error_control(std::size_t i, TimePoint now) {
     SlaveBoot& boot = entries_[i].boot;
-    boot.enter(Step::starting_error_control);
-    boot.set_deadline(now + from_milliseconds(list_[i].heartbeat_time));
+    boot.start_error_control(now, now + from_milliseconds(list_[i].heartbeat_time));
     if (list_[i].beats() || !(list_[i].guarded() || boot.may_be_kept_alive(list_[i]))) return;
     error_control_.start_guarding(i, list_[i], now);
     boot.set_deadline(now + longest_span);  // guarding reports a loss
@@ -141,28 +156,29 @@ class SlaveTable {
 
   /// Checks whether the slave has been heard, or its time has elapsed. Returns how its boot-up ends; empty if it goes
   /// on.
-  [[nodiscard]] std::optional<BootStatus> check_error_control(std::size_t i, TimePoint now) {
+  [[nodiscard]] std::optional<BootResult> check_error_control(std::size_t i, TimePoint now) {
     const NmtSlave& slave = list_[i];
     const std::optional<NmtState> heard_state = state(i);
     const bool heard = heard_state && *heard_state != NmtState::initialisation;
     const bool may_be_kept_alive = entries_[i].boot.may_be_kept_alive(slave);
     if (!heard && (slave.watched() || may_be_kept_alive) && now < entries_[i].boot.deadline()) return std::nullopt;
     if (may_be_kept_alive) {
-      if (!heard) return slave.beats() ? BootStatus::no_state : BootStatus::no_guarding;
-      if (*heard_state == NmtState::operational) return BootStatus::was_operational;
+      if (!heard) return BootResult{slave.beats() ? BootStatus::no_state : BootStatus::no_guarding};
+      if (*heard_state == NmtState::operational) return BootResult{BootStatus::was_operational};
       reset(i, NmtCommand::reset_communication, now);
       return std::nullopt;
     }
-    if (heard || !slave.watched()) return BootStatus::booted;
-    return slave.beats() ? BootStatus::no_heartbeat : BootStatus::no_guarding;
+    if (heard || !slave.watched()) return entries_[i].boot.check_error_control(slave, now);
+    return BootResult{slave.beats() ? BootStatus::no_heartbeat : BootStatus::no_guarding};
   }
 
   /// Ends the boot-up of a slave.
-  void finish(std::size_t i, BootStatus status) {
+  void finish(std::size_t i, BootStatus status, TimePoint now) {
     Entry& entry = entries_[i];
     entry.boot.end();
     entry.status = status;
     entry.complete = status == BootStatus::booted || status == BootStatus::was_operational;
+    if (entry.complete) entry.boot.report_complete(now);
     if (!entry.complete || !list_[i].guarded()) error_control_.stop_guarding(i);
     if (status == BootStatus::was_operational) error_control_.expect_after(NmtCommand::start, i);
   }
@@ -174,7 +190,10 @@ class SlaveTable {
   [[nodiscard]] bool send(B& bus, NmtCommand command, NodeId node_id) {
     if (!bus.send(nmt_frame(command, node_id))) return false;
     for (std::size_t i = 0; i < list_.size(); ++i) {
-      if (node_id.value() == 0 || list_[i].node_id == node_id) error_control_.expect_after(command, i);
+      if (node_id.value() != 0 && list_[i].node_id != node_id) continue;
+      error_control_.expect_after(command, i);
+      const bool resets = command == NmtCommand::reset_node || command == NmtCommand::reset_communication;
+      if (resets) entries_[i].boot.expect_boot_up();
     }
     return true;
   }
@@ -229,6 +248,7 @@ class SlaveTable {
 
   struct Entry {
     SlaveBoot boot{};
+    ResponseCount responses{};
     std::optional<NmtCommand> command{};  ///< waiting to be sent
     std::optional<BootStatus> status{};
     bool complete = false;

@@ -254,6 +254,7 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
       case NmtMasterEvent::lost:
         forget(*position);
         return report(*position, {.kind = PlantFaultKind::lost, .state = state});
+      case NmtMasterEvent::restarted: return report(*position, {.kind = PlantFaultKind::restarted});
       case NmtMasterEvent::not_watched: return report(*position, {.kind = PlantFaultKind::not_watched});
       case NmtMasterEvent::unexpected_state:
         return report(*position, {.kind = PlantFaultKind::unexpected_state, .state = state});

@@ -25,7 +25,8 @@ struct PlantPlace {
 [[nodiscard]] constexpr const PlantPlace* find_place(std::span<const PlantPlace> places, NodeId node_id,
                                                      const BootResult& result) {
   constexpr std::uint16_t producer_heartbeat_time = 0x1017;
-  const bool of_entry = result.status == BootStatus::configuration || result.abort_code == ok;
+  const bool of_entry = result.status != BootStatus::extra_response &&
+                        (result.status == BootStatus::configuration || result.abort_code == ok);
   const std::uint16_t index = result.status == BootStatus::no_heartbeat ? producer_heartbeat_time : result.index;
   const PlantPlace* of_node = nullptr;
   for (const PlantPlace& place : places) {

@@ -36,6 +36,7 @@ struct SdoRequest {
   SdoSource source{};
   void (*done)(void* context, NodeId node, const SdoAnswer& answer) = nullptr;
   void* context = nullptr;
+  Duration timeout{0};  ///< without a response; 0: that of the queue
 };
 
 /// Transfers to one node run one after the other, in the order of `submit`; up to `Clients` nodes are served at the
@@ -173,6 +174,9 @@ class SdoQueue {
       }
       channel->request = take(i).request;
       channel->running = true;
+      SdoClientOptions options = options_;
+      if (channel->request.timeout.count() != 0) options.timeout = channel->request.timeout;
+      channel->client->set_options(options);
       begin(*channel->client, channel->request, now);
     }
   }

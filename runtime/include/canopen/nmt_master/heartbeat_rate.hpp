@@ -1,0 +1,82 @@
+/// Measures whether a node sends its heartbeats at the rate of 1017h.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "canopen/base/clock.hpp"
+#include "canopen/nmt/error_control.hpp"
+#include "canopen/nmt/nmt.hpp"
+
+namespace canopen {
+
+/// Heartbeats at twice the rate, or with different states, are those of two nodes with one node-ID. The measurement
+/// begins with the first heartbeat and takes two heartbeat times, which is enough for the heartbeats of a second node,
+/// and at least 200 ms, because frames may be delayed. Heartbeat times of more than a second are not measured.
+class HeartbeatRate {
+ public:
+  enum class Verdict : std::uint8_t {
+    open,    ///< not known yet
+    right,   ///< or not measured
+    wrong,   ///< too many or too few heartbeats
+    states,  ///< they have different states
+  };
+
+  /// Starts again. `producer_time` is 1017h in ms; 0: unknown.
+  void begin(std::uint16_t producer_time) {
+    *this = HeartbeatRate{};
+    producer_time_ = producer_time;
+  }
+
+  /// Whether the rate is measured.
+  [[nodiscard]] bool is_measured() const { return producer_time_ != 0 && producer_time_ <= 1000; }
+  [[nodiscard]] bool begun() const { return heartbeats_ != 0; }
+  [[nodiscard]] std::uint16_t producer_time() const { return producer_time_; }
+
+  /// Processes a heartbeat.
+  void report(NmtState state, TimePoint now) {
+    if (heartbeats_ == 0) {
+      first_ = now;
+      state_ = LastState{state};
+    }
+    states_differ_ = states_differ_ || state_ != LastState{state};
+    if (heartbeats_ > periods()) return;
+    ++heartbeats_;
+    last_ = now;
+  }
+
+  /// Returns when the measurement ends, after its first heartbeat.
+  [[nodiscard]] TimePoint end() const { return first_ + span() / 5 * 8; }
+
+  [[nodiscard]] Verdict verdict(TimePoint now) const {
+    if (states_differ_) return Verdict::states;
+    if (!is_measured()) return Verdict::right;
+    const bool is_complete = heartbeats_ > periods();
+    if (!is_complete) return heartbeats_ != 0 && now < end() ? Verdict::open : Verdict::wrong;
+    return (last_ - first_).count() / 2 >= span().count() / 3 ? Verdict::right : Verdict::wrong;
+  }
+
+  /// Returns the measured distance of two heartbeats in ms.
+  [[nodiscard]] std::uint32_t measured_time(TimePoint now) const {
+    const bool is_complete = heartbeats_ > periods();
+    const std::uint32_t count = heartbeats_ < 2 ? 1u : heartbeats_ - 1u;
+    return ((is_complete ? last_ : now) - first_).count() / count / 1000u;
+  }
+
+ private:
+  [[nodiscard]] std::uint8_t periods() const {
+    constexpr unsigned shortest = 200;  // ms
+    const unsigned time = producer_time_ == 0 ? shortest : producer_time_;
+    return static_cast<std::uint8_t>(std::max((shortest + time - 1) / time, 2u));
+  }
+  [[nodiscard]] Duration span() const { return from_milliseconds(producer_time_) * periods(); }
+
+  TimePoint first_{};
+  TimePoint last_{};
+  std::uint16_t producer_time_ = 0;
+  std::uint8_t heartbeats_ = 0;  ///< until the measurement is complete
+  LastState state_{};            ///< of the first one
+  bool states_differ_ = false;
+};
+
+}  // namespace canopen
