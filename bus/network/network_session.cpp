@@ -6,6 +6,7 @@
 #include <canopen/nmt_master/nmt_master.hpp>
 #include <utility>
 
+#include "configure/configuration_report.hpp"
 #include "network/node_configuration.hpp"
 #include "online/scan.hpp"
 
@@ -15,7 +16,16 @@ namespace {
 /// For the response of a second node with the node-ID, and for boot-up messages.
 constexpr canopen::Duration settling_time = canopen::from_milliseconds(50);
 
+constexpr std::uint16_t producer_heartbeat_time = 0x1017;
+
 canopen::NodeId id_of(const LiveNode& live) { return canopen::NodeId{live.node->node_id}; }
+
+/// The time after which no response to a request arrives any more.
+canopen::Duration forgotten_after(const std::vector<LiveNode>& nodes, const SdoSettings& sdo) {
+  unsigned longest_ms = sdo.timeout_ms;
+  for (const LiveNode& live : nodes) longest_ms = std::max(longest_ms, live.sdo_timeout_ms.value_or(0));
+  return canopen::Duration{2 * 1000 * longest_ms};
+}
 
 /// `at 2004h:00 Speed`: the place in the configuration, for a node that was lost.
 std::string place_text(const ConfigurationResult& result) {
@@ -25,8 +35,12 @@ std::string place_text(const ConfigurationResult& result) {
 }  // namespace
 
 NetworkSession::NetworkSession(LiveBus& bus, std::vector<LiveNode>& nodes, SdoSettings sdo, NetworkHooks hooks)
-    : bus_{bus}, nodes_{nodes}, hooks_{std::move(hooks)}, sdo_{sdo}, watch_{bus} {
-  for (LiveNode& live : nodes_) live.access = std::make_unique<SdoAccess>(bus_, id_of(live), sdo);
+    : bus_{bus}, nodes_{nodes}, hooks_{std::move(hooks)}, sdo_{sdo}, watch_{bus, forgotten_after(nodes, sdo)} {
+  for (LiveNode& live : nodes_) {
+    SdoSettings of_node = sdo;
+    of_node.timeout_ms = live.sdo_timeout_ms.value_or(sdo.timeout_ms);
+    live.access = std::make_unique<SdoAccess>(bus_, id_of(live), of_node);
+  }
 }
 
 bool NetworkSession::identify(bool wakes) {
@@ -113,7 +127,12 @@ bool NetworkSession::apply(const ApplySettings& settings) {
   bus_.listen(settling_time);
   check_restarts(settings);
   if (settings.store && (all_succeeded() || settings.on_error == OnError::keep_going)) store_all();
-  check_presence();
+  if (all_succeeded()) {
+    check_values();
+    check_heartbeats();
+  } else {
+    check_presence();
+  }
   bus_.listen(settling_time);
   check_restarts({});
   check_extra_responses();
@@ -127,13 +146,14 @@ void NetworkSession::store_all() {
   for (LiveNode& live : nodes_) {
     if (!live.succeeded()) continue;
     hooks_.progress(live, "stored", 0, 1);
+    const unsigned timeout_ms = live.sdo_timeout_ms.value_or(sdo_.timeout_ms);
     try {
-      store_parameters(live.run, *live.access, sdo_.timeout_ms);
+      store_parameters(live.run, *live.access, timeout_ms);
     } catch (...) {
       add_problem(live, " may not have stored its parameters");
       throw;
     }
-    live.access->set_timeout(sdo_.timeout_ms);
+    live.access->set_timeout(timeout_ms);
   }
 }
 
@@ -142,6 +162,58 @@ void NetworkSession::check_presence() {
   for (LiveNode& live : nodes_) {
     if (!live.succeeded()) continue;
     if (live.access->upload(0x1000, 0).end == SdoEnd::no_answer) add_problem(live, " no longer answers");
+  }
+}
+
+/// A node may have lost power since it was configured, and its boot-up message may not have been received.
+void NetworkSession::check_values() {
+  for (LiveNode& live : nodes_) {
+    ConfigurationRun again;
+    if (!choose_different(again, *live.access, live.configuration, false, hooks_for(live, "checked"))) {
+      add_problem(live, " no longer answers" + place_text(again.result));
+      continue;
+    }
+    for (const ConfigurationChange& change : again.changes) {
+      if (!change.before) continue;  // a write-only entry
+      add_problem(live, fmt::format(" no longer has its configuration: {} is {}, expected {}",
+                                    title(change.value.entry), found_text(change), wanted_text(change)));
+    }
+    if (live.access->upload(0x1000, 0).end == SdoEnd::no_answer) add_problem(live, " no longer answers");
+  }
+}
+
+/// Two nodes with one node-ID send more heartbeats than one.
+void NetworkSession::check_heartbeats() {
+  for (const LiveNode& live : nodes_) {
+    const SdoOutcome time = live.access->upload(producer_heartbeat_time, 0);
+    const bool is_number = time.done() && time.bytes.size() >= sizeof(std::uint16_t);
+    watch_.measure_heartbeats(live.node->node_id,
+                              is_number ? static_cast<std::uint16_t>(time.bytes[0] | time.bytes[1] << 8) : 0);
+  }
+  const auto is_open = [&](const LiveNode& live) {
+    const canopen::HeartbeatRate& rate = watch_.heartbeat_rate(live.node->node_id);
+    return rate.is_measured() && (!rate.begun() || rate.verdict(bus_.now()) == canopen::HeartbeatRate::Verdict::open);
+  };
+  constexpr canopen::Duration longest = canopen::from_milliseconds(4000);
+  const canopen::TimePoint end = bus_.now() + longest;
+  while (bus_.now() < end && std::ranges::any_of(nodes_, is_open)) bus_.listen(canopen::from_milliseconds(10));
+  for (LiveNode& live : nodes_) {
+    const canopen::HeartbeatRate& rate = watch_.heartbeat_rate(live.node->node_id);
+    if (rate.is_measured() && !rate.begun()) {
+      add_problem(live, fmt::format(" does not send heartbeats, but 1017h is {} ms", rate.producer_time()));
+      continue;
+    }
+    switch (rate.verdict(bus_.now())) {
+      case canopen::HeartbeatRate::Verdict::open:
+      case canopen::HeartbeatRate::Verdict::right: break;
+      case canopen::HeartbeatRate::Verdict::wrong:
+        add_problem(live, fmt::format(" does not send its heartbeats at the rate of 1017h: expected {} ms, seen {} ms",
+                                      rate.producer_time(), rate.measured_time(bus_.now())));
+        break;
+      case canopen::HeartbeatRate::Verdict::states:
+        add_problem(live, " sends heartbeats with different states; two nodes may have its node-ID");
+        break;
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,11 +30,12 @@ struct LiveNode {
   Configuration configuration;
   std::unique_ptr<SdoAccess> access;
   bool answers = false;
-  Identity identity;              ///< found
-  bool is_compared = false;       ///< its values were read
-  ConfigurationRun run;           ///< the comparison, and the last attempt to configure it
-  unsigned attempts = 0;          ///< to configure it
-  unsigned boot_ups = 0;          ///< seen before the last comparison
+  Identity identity;                                      ///< found
+  bool is_compared = false;                               ///< its values were read
+  ConfigurationRun run;                                   ///< the comparison, and the last attempt to configure it
+  std::optional<unsigned> sdo_timeout_ms = std::nullopt;  ///< of the network file
+  unsigned attempts = 0;                                  ///< to configure it
+  unsigned boot_ups = 0;                                  ///< seen before the last comparison
   unsigned foreign_commands = 0;  ///< of another NMT master, as many as before the last comparison
   bool started = false;           ///< by this session
   std::vector<NodeProblem> problems;
@@ -68,7 +70,8 @@ struct NetworkHooks {
 /// The nodes of a network that have a file, on a bus. All functions throw Interrupted, BusLost.
 class NetworkSession {
  public:
-  /// `nodes` must outlive the session; their members `node` and `configuration` are set.
+  /// `nodes` must outlive the session; their members `node`, `configuration` and `sdo_timeout_ms` are set. `sdo` has
+  /// the time-out of the other nodes.
   NetworkSession(LiveBus& bus, std::vector<LiveNode>& nodes, SdoSettings sdo, NetworkHooks hooks);
 
   /// Reads the identity of all nodes. Missing nodes, other products, nodes that cannot be identified, and node-IDs of
@@ -80,8 +83,8 @@ class NetworkSession {
   bool compare();
 
   /// After `identify` and `compare` without problems: configures the nodes in Pre-operational. Stores the parameters of
-  /// the nodes that succeeded, unless an error aborts. Starts all nodes, if all succeeded and still answer; returns
-  /// whether they did.
+  /// the nodes that succeeded, unless an error aborts. Reads all values again and measures the heartbeats, then starts
+  /// all nodes, if all succeeded; returns whether they did.
   bool apply(const ApplySettings& settings);
 
  private:
@@ -95,6 +98,8 @@ class NetworkSession {
   void configure_all(const ApplySettings& settings);
   void store_all();
   void check_presence();
+  void check_values();
+  void check_heartbeats();
   void start_all();
   void check_restarts(const ApplySettings& settings);
   static void add_problem(LiveNode& live, std::string_view text);

@@ -6,12 +6,12 @@
 
 namespace edsc {
 
-BusWatch::BusWatch(LiveBus& bus) : bus_{bus} {
-  bus.on_frame = [this](const canopen::Frame& frame, canopen::TimePoint) {
+BusWatch::BusWatch(LiveBus& bus, canopen::Duration forgotten_after) : bus_{bus}, forgotten_after_{forgotten_after} {
+  bus.on_frame = [this](const canopen::Frame& frame, canopen::TimePoint now) {
     count_command(frame);
-    count(frame);
+    count(frame, now);
   };
-  bus.on_sent = [this](const canopen::Frame& frame, canopen::TimePoint) { count(frame); };
+  bus.on_sent = [this](const canopen::Frame& frame, canopen::TimePoint now) { count(frame, now); };
 }
 
 BusWatch::~BusWatch() {
@@ -25,9 +25,14 @@ void BusWatch::count_command(const canopen::Frame& frame) {
   if (const std::uint8_t node_id = frame.data[1]; node_id < counts_.size()) ++counts_[node_id].foreign_commands;
 }
 
-void BusWatch::count(const canopen::Frame& frame) {
+void BusWatch::count(const canopen::Frame& frame, canopen::TimePoint now) {
   if (const auto message = canopen::error_control_message(frame)) {
-    if (message->state == canopen::NmtState::initialisation) ++counts_[message->node_id.value()].boot_ups;
+    Counts& counts = counts_[message->node_id.value()];
+    if (message->state == canopen::NmtState::initialisation) {
+      ++counts.boot_ups;
+    } else if (!message->toggle) {
+      counts.rate.report(message->state, now);
+    }
     return;
   }
   if (frame.extended || frame.remote || frame.size != 8) return;
@@ -35,10 +40,11 @@ void BusWatch::count(const canopen::Frame& frame) {
   Counts& counts = counts_[frame.id & node_id_bits];
   switch (frame.id & ~node_id_bits) {
     case canopen::function_code::sdo_request:
-      if (frame.data[0] != canopen::sdo::abort_command) ++counts.requests;
+      counts.is_asked = true;
+      counts.responses.on_request(frame.data, now, forgotten_after_);
       break;
     case canopen::function_code::sdo_response:
-      if (counts.requests != 0) ++counts.responses;
+      if (counts.is_asked && counts.responses.on_response(frame.data)) counts.extra_responses = true;
       break;
     default: break;
   }

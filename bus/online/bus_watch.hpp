@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <canopen/nmt_master/heartbeat_rate.hpp>
+#include <canopen/nmt_master/response_count.hpp>
 #include <cstdint>
 
 #include "online/live_bus.hpp"
@@ -12,7 +14,8 @@ namespace edsc {
 /// there is another NMT master.
 class BusWatch {
  public:
-  explicit BusWatch(LiveBus& bus);
+  /// A request of which no response arrives for the time `forgotten_after` is no longer expected to be answered.
+  explicit BusWatch(LiveBus& bus, canopen::Duration forgotten_after = canopen::longest_span);
   ~BusWatch();
   BusWatch(const BusWatch&) = delete;
   BusWatch& operator=(const BusWatch&) = delete;
@@ -25,22 +28,31 @@ class BusWatch {
     return counts_[0].foreign_commands + counts_[node_id].foreign_commands;
   }
 
-  /// Whether the default SDO of this node-ID sent more responses than it received requests since the first request,
-  /// those of other clients included. This holds for segmented transfers only, in which the server responds once to
-  /// each request but an abort.
-  [[nodiscard]] bool has_extra_responses(std::uint8_t node_id) const {
-    return counts_[node_id].responses > counts_[node_id].requests;
+  /// Whether the default SDO of this node-ID sent a response without a request since the first request, those of other
+  /// clients included.
+  [[nodiscard]] bool has_extra_responses(std::uint8_t node_id) const { return counts_[node_id].extra_responses; }
+
+  /// Measures the rate of the heartbeats from the next one on. `producer_time` is 1017h in ms; 0: unknown.
+  void measure_heartbeats(std::uint8_t node_id, std::uint16_t producer_time) {
+    counts_[node_id].rate.begin(producer_time);
+  }
+  [[nodiscard]] const canopen::HeartbeatRate& heartbeat_rate(std::uint8_t node_id) const {
+    return counts_[node_id].rate;
   }
 
  private:
   struct Counts {
-    unsigned boot_ups = 0, requests = 0, responses = 0, foreign_commands = 0;
+    unsigned boot_ups = 0, foreign_commands = 0;
+    bool is_asked = false, extra_responses = false;
+    canopen::ResponseCount responses{};
+    canopen::HeartbeatRate rate{};
   };
 
   void count_command(const canopen::Frame& received);
-  void count(const canopen::Frame& frame);
+  void count(const canopen::Frame& frame, canopen::TimePoint now);
 
   LiveBus& bus_;
+  canopen::Duration forgotten_after_;
   std::array<Counts, 128> counts_{};  ///< by node-ID; 0 is an NMT command to all nodes
 };
 

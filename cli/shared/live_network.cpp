@@ -53,6 +53,7 @@ LiveNetwork load_live_network(const LiveNetworkSettings& settings) {
     if (!node.has_file() || is_skipped(settings, node)) continue;
     LiveNode one;
     one.node = &node;
+    one.sdo_timeout_ms = sdo_timeout_ms(network.description, *node.description);
     one.configuration = configuration_of(network, node, linked, diagnostics);
     live.nodes.push_back(std::move(one));
   }

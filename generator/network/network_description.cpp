@@ -238,9 +238,14 @@ class NetworkReader {
 
 }  // namespace
 
+std::optional<std::uint32_t> sdo_timeout_ms(const NetworkDescription& network, const NodeDescription& node) {
+  const WrittenNumber& written = node.sdo_timeout_ms ? node.sdo_timeout_ms : network.sdo_timeout_ms;
+  return written ? std::optional{written->value} : std::nullopt;
+}
+
 NetworkDescription read_network_file(const SourceFile& source, Diagnostics& diagnostics) {
   const JsonFile file{source, "network-syntax", diagnostics};
-  if (!file.is_valid()) return {&source, {}, {}, {}, {}, {}, {}, {}, {}};
+  if (!file.is_valid()) return {&source, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   return NetworkReader{file, diagnostics}.read();
 }
 

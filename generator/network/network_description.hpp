@@ -48,6 +48,7 @@ struct NodeDescription {
   WrittenText eds, dcf, options;
   WrittenFlag master, keep_going;
   WrittenNumber heartbeat_ms, heartbeat_timeout_ms;
+  WrittenNumber sdo_timeout_ms;
   WrittenNumber serial_number;
   std::vector<WrittenValue> set;
 };
@@ -69,6 +70,7 @@ struct NetworkDescription {
   WrittenNumber length_m;
   WrittenNumber max_load;
   WrittenNumber error_interval_ms;
+  WrittenNumber sdo_timeout_ms;
   SyncDescription sync;
   AssumedIntervals assume;
   std::vector<NodeDescription> nodes;  ///< in the order of the file
@@ -106,6 +108,8 @@ inline constexpr MemberRow<NetworkDescription> network_members[] = {
     {"max_load", &NetworkDescription::max_load, "highest bus load in percent without a warning; 80 if missing", 1, 100},
     {"error_interval_ms", &NetworkDescription::error_interval_ms,
      "shortest time between two errors on the bus in ms, for response times; without errors if missing", 1, 3'600'000},
+    {"sdo_timeout_ms", &NetworkDescription::sdo_timeout_ms,
+     "time in ms in which each node responds to an SDO request; 500 if missing", 1, 65535},
 };
 
 inline constexpr MemberRow<SyncDescription> sync_members[] = {
@@ -135,6 +139,8 @@ inline constexpr MemberRow<NodeDescription> node_members[] = {
     {"heartbeat_ms", &NodeDescription::heartbeat_ms, "producer heartbeat time in ms: 1017h", 0, 65535},
     {"heartbeat_timeout_ms", &NodeDescription::heartbeat_timeout_ms,
      "consumer heartbeat time of the master for this node in ms; twice `heartbeat_ms` if missing", 1, 65535},
+    {"sdo_timeout_ms", &NodeDescription::sdo_timeout_ms,
+     "time in ms in which the node responds to an SDO request; that of the network if missing", 1, 65535},
     {"serial_number", &NodeDescription::serial_number, "serial number of the device: 1018h:04", 0, 0xFFFF'FFFF},
     {"set", &NodeDescription::set, "values of entries that differ from those of the file: `{\"6083h\": 2000}`"},
 };
@@ -148,6 +154,11 @@ inline constexpr MemberRow<SignalDescription> signal_members[] = {
     {"every_sync", &SignalDescription::every_sync, "sent at each SYNC with this distance (transmission type)", 1, 240},
     {"event", &SignalDescription::event, "sent when the value changes (transmission type 255)"},
 };
+
+/// The time in ms in which a node responds to an SDO request: its own, or that of the network; empty if neither is
+/// written.
+[[nodiscard]] std::optional<std::uint32_t> sdo_timeout_ms(const NetworkDescription& network,
+                                                          const NodeDescription& node);
 
 /// Reads a network file. Unknown members, missing ones and invalid values are reported.
 [[nodiscard]] NetworkDescription read_network_file(const SourceFile& source, Diagnostics& diagnostics);

@@ -294,7 +294,9 @@ class PlantHeader {
             {"revision_number", number(0x1F87, communication::identity, 3)},
             {"serial_number", hex_text(serial ? serial->value : serial_of_master)},
             {"heartbeat_time", heartbeat_timeout(master, node)},
-            {"any_configuration", !configuration_rows(node).empty()}};
+            {"any_configuration", !configuration_rows(node).empty()},
+            {"any_sdo_timeout", sdo_timeout_ms(network_.description, *node.description).has_value()},
+            {"sdo_timeout", sdo_timeout_ms(network_.description, *node.description).value_or(0)}};
   }
 
   /// Bits of an EMCY COB-ID that a received frame has; 0x80000000: the node does not send EMCY.
