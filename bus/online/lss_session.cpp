@@ -158,7 +158,7 @@ std::string LssSession::reason_for_silence() {
 }
 
 LssResult LssSession::find(LssAddress& address, std::uint8_t known, bool above) {
-  constexpr unsigned attempts = 3;
+  constexpr unsigned attempts = 2;
   LssResult confirmed;
   for (unsigned i = 0; i != attempts; ++i) {
     LssAddress found = address;

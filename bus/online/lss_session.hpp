@@ -51,7 +51,7 @@ class LssSession {
   [[nodiscard]] LssResult confirm(const canopen::LssAddress& address);
 
   /// `fastscan` and `confirm`; the address may be wrong because of late responses, so that a slave that does not
-  /// confirm it is searched again, twice.
+  /// confirm it is searched again once.
   [[nodiscard]] LssResult find(canopen::LssAddress& address, std::uint8_t known, bool above = false);
 
   /// Whether a node sends its boot-up message or a heartbeat within this time, or responds to SDO after it.

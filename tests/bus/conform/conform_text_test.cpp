@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "conform/dut/abort_rule.hpp"
 #include "conform/report/html_report.hpp"
 #include "conform/report/json_report.hpp"
 #include "conform/report/junit_report.hpp"
@@ -15,6 +16,22 @@
 
 namespace edsc::conform {
 namespace {
+
+// ---- abort codes ----
+
+TEST(ConformAbortRule, AcceptsNoAbortWithCodeZero) {
+  constexpr AbortRule rules[] = {abort_rule::no_object,  abort_rule::no_sub_index, abort_rule::read_only,
+                                 abort_rule::write_only, abort_rule::command,      abort_rule::too_long,
+                                 abort_rule::too_short,  abort_rule::too_high,     abort_rule::too_low,
+                                 abort_rule::toggle_bit, abort_rule::block_size,   abort_rule::sequence_number,
+                                 abort_rule::value,      abort_rule::state,        abort_rule::mapping_in_use,
+                                 abort_rule::duplicate,  abort_rule::signature,    abort_rule::no_error};
+  for (const AbortRule& rule : rules) {
+    EXPECT_FALSE(rule.is_accepted(canopen::abort_code_from(0)));
+    EXPECT_FALSE(rule.is_accepted(canopen::ok));
+    EXPECT_TRUE(rule.is_accepted(rule.standard.front()));
+  }
+}
 
 // ---- result of a run ----
 

@@ -79,9 +79,9 @@ class LssWithoutFastscan(LiveTest):
 
     def test_it_says_that_a_slave_answers_lss(self) -> None:
         self.network.device(lambda frame: ["7E4 50 00 00 00 00 00 00 00"] if frame.startswith("7E5 4C") else [])
-        words = ("edsc: fastscan: a device without node-ID answers LSS, but not Fastscan, which it may not support; with no "
-                 "other device on the bus, \"edsc lss BUS state configuration\" and \"inquire\" show its numbers for "
-                 "\"assign\"\n")
+        words = ("edsc: fastscan: a device without node-ID answers LSS, but did not answer the first Fastscan request, "
+                 "sent twice; it may be slow (--step) or not have Fastscan: with no other device on the bus, \"edsc lss BUS "
+                 "state configuration\" and \"inquire\" show its numbers for \"assign\"\n")
         self.expect(self.edsc("lss", "--timeout", 2000, "fastscan"), FAILED, stderr=words)
         self.expect(self.edsc("lss", "--timeout", 2000, "assign", "--node-id", 7), FAILED, stderr=words)
 

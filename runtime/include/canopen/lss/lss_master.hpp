@@ -24,8 +24,8 @@ struct LssTimeouts {
   /// Store configuration: a slave may have to erase a page of flash before it responds.
   Duration store = from_milliseconds(1000);
   /// Each step of Fastscan, at least. It is always waited for in full, because several slaves may respond to the same
-  /// request, and becomes twice the longest response time that has been measured; the first step takes ten times as
-  /// long. Long enough for both frames at 20 kbit/s and more; 10 kbit/s needs 30 ms.
+  /// request, and becomes twice the longest response time that has been measured; the first step takes 200 ms at least.
+  /// Long enough for both frames at 20 kbit/s and more; 10 kbit/s needs 30 ms.
   Duration fastscan_step = from_milliseconds(20);
 };
 
@@ -297,7 +297,7 @@ class LssMaster {
   void ask(TimePoint now) {
     const bool is_first = bit_ == lss::fastscan_reset && (!is_measured_ || restarts_ != 0);
     start(lss::Command::fastscan, lss::Command::fastscan, lss::Command::identified,
-          is_first ? std::max(step_, timeouts_.fastscan_step * 10u) : step_, now);
+          is_first ? std::max(step_, first_step) : step_, now);
   }
 
   /// Sends the present step again: the request or the response may be lost or late.
@@ -390,6 +390,7 @@ class LssMaster {
 
   static constexpr std::uint8_t no_branch = 0xFF;
   static constexpr Duration longest_step = std::chrono::seconds{1};
+  static constexpr Duration first_step = from_milliseconds(200);
 
   B& bus_;
   LssTimeouts timeouts_;
