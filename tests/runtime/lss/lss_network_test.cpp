@@ -97,7 +97,8 @@ void commission(std::size_t count, unsigned seed) {
   for (std::uint8_t node_id = 1; node_id <= count; ++node_id) {
     network.requests = 0;
     ASSERT_EQ(network.finish(network.master.fastscan(network.bus.now())), LssOutcome::done) << int{node_id};
-    EXPECT_EQ(network.requests, 133);
+    EXPECT_GE(network.requests, 133);
+    EXPECT_LE(network.requests, 133 + 128) << "steps without a response are repeated";
     found.push_back(network.master.address());
     ASSERT_EQ(network.finish(network.master.inquire_serial_number(network.bus.now())), LssOutcome::done);
     EXPECT_EQ(network.master.value(), found.back().serial_number);
@@ -204,7 +205,8 @@ TEST(LssNetwork, FastscanLooksAmongTheKnownProducts) {
   network.requests = 0;
   EXPECT_EQ(network.finish(network.master.fastscan({0x93, 0x4335'4B52, 0, 0}, 2, network.bus.now())), LssOutcome::done);
   EXPECT_EQ(network.master.address(), bench::rk5c_address);
-  EXPECT_EQ(network.requests, 1 + 2 + 2 * 33);
+  EXPECT_GE(network.requests, 1 + 2 + 2 * 33);
+  EXPECT_LE(network.requests, 1 + 2 + 2 * 65);
   EXPECT_EQ(network.finish(network.master.fastscan({0x94, 0, 0, 0}, 1, network.bus.now())), LssOutcome::no_answer);
 }
 

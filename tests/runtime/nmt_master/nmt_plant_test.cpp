@@ -204,6 +204,10 @@ void Host::booted(NodeId node_id, const BootResult& result) {
     case BootStatus::configuration:
     case BootStatus::no_heartbeat: plant->failed.push_back(node_id); return;
     case BootStatus::no_response: return;
+    case BootStatus::restarted:
+    case BootStatus::extra_response:
+    case BootStatus::heartbeat_rate:
+    case BootStatus::heartbeat_states: plant->failed.push_back(node_id); return;
     default: plant->wrong_identities += static_cast<char>(result.status);
   }
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 #include "canopen/base/clock.hpp"
 #include "canopen/nmt/error_control.hpp"
@@ -28,6 +29,12 @@ class HeartbeatRate {
     producer_time_ = producer_time;
   }
 
+  /// The node has got a command that changes its state; a heartbeat may be on its way.
+  void expect_state_change() {
+    state_ = LastState{};
+    is_state_skipped_ = true;
+  }
+
   /// Whether the rate is measured.
   [[nodiscard]] bool is_measured() const { return producer_time_ != 0 && producer_time_ <= 1000; }
   [[nodiscard]] bool begun() const { return heartbeats_ != 0; }
@@ -35,11 +42,11 @@ class HeartbeatRate {
 
   /// Processes a heartbeat.
   void report(NmtState state, TimePoint now) {
-    if (heartbeats_ == 0) {
-      first_ = now;
+    if (heartbeats_ == 0) first_ = now;
+    if (!std::exchange(is_state_skipped_, false)) {
+      states_differ_ = states_differ_ || (state_.known() && state_ != LastState{state});
       state_ = LastState{state};
     }
-    states_differ_ = states_differ_ || state_ != LastState{state};
     if (heartbeats_ > periods()) return;
     ++heartbeats_;
     last_ = now;
@@ -75,7 +82,8 @@ class HeartbeatRate {
   TimePoint last_{};
   std::uint16_t producer_time_ = 0;
   std::uint8_t heartbeats_ = 0;  ///< until the measurement is complete
-  LastState state_{};            ///< of the first one
+  LastState state_{};            ///< of the last one
+  bool is_state_skipped_ = false;
   bool states_differ_ = false;
 };
 

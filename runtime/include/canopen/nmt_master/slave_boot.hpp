@@ -245,6 +245,9 @@ class SlaveBoot {
     rate_.begin(rate_.producer_time());
   }
 
+  /// The slave has got a command.
+  void report_command() { rate_.expect_state_change(); }
+
   /// Processes a heartbeat while error control is started. The first one begins the measurement of their rate.
   void report_heartbeat(NmtState state, TimePoint now) {
     const bool is_first = !rate_.begun();
@@ -452,16 +455,18 @@ class SlaveBoot {
     return has_size && std::ranges::equal(std::span{number_}.first(read_back_.size()), read_back_);
   }
 
-  /// Compares a value that is longer than `number_` piece by piece, and keeps its first bytes.
+  /// Compares a value that is longer than `number_` piece by piece, and keeps its first bytes. A text may be padded
+  /// with 00h.
   [[nodiscard]] static AbortCode compare(void* context, std::uint32_t offset, std::span<const std::uint8_t> bytes,
                                          bool last) {
     SlaveBoot& self = *static_cast<SlaveBoot*>(context);
-    const std::size_t end = offset + bytes.size();
-    self.is_equal_ = self.is_equal_ && end <= self.read_back_.size() && (!last || end == self.read_back_.size()) &&
-                     std::ranges::equal(self.read_back_.subspan(offset, bytes.size()), bytes);
-    for (std::size_t i = 0; i < bytes.size() && offset + i < self.number_.size(); ++i) {
-      self.number_[offset + i] = bytes[i];
+    std::size_t at = offset;
+    for (const std::uint8_t byte : bytes) {
+      if (byte != (at < self.read_back_.size() ? self.read_back_[at] : 0)) self.is_equal_ = false;
+      if (at < self.number_.size()) self.number_[at] = byte;
+      ++at;
     }
+    if (last && at < self.read_back_.size()) self.is_equal_ = false;
     return ok;
   }
 

@@ -192,6 +192,7 @@ class SlaveTable {
     for (std::size_t i = 0; i < list_.size(); ++i) {
       if (node_id.value() != 0 && list_[i].node_id != node_id) continue;
       error_control_.expect_after(command, i);
+      entries_[i].boot.report_command();
       const bool resets = command == NmtCommand::reset_node || command == NmtCommand::reset_communication;
       if (resets) entries_[i].boot.expect_boot_up();
     }
