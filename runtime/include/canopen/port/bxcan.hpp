@@ -168,7 +168,9 @@ class BxCan {
 
   /// Interrupts for a received frame, for a mailbox that has become free, and for error passive and bus-off. The
   /// controller does not interrupt when these end: ask `status_change` now and then until it reports `active`.
-  void enable_interrupts() { registers_.interrupts = frame_received | mailbox_free | errors | error_passive | bus_off; }
+  void enable_interrupts() {
+    registers_.interrupts = frame_received | mailbox_free | error_line | error_passive | bus_off;
+  }
   static constexpr bool has_status_interrupt = true;
 
   /// In the interrupt, before `receive` until there is no frame: that ends the one for a frame. Returns whether it is
@@ -202,7 +204,7 @@ class BxCan {
   static constexpr std::uint32_t frame_received = 1 << 1;        // IER.FMPIE0
   static constexpr std::uint32_t error_passive = 1 << 9;         // IER.EPVIE
   static constexpr std::uint32_t bus_off = 1 << 10;              // IER.BOFIE
-  static constexpr std::uint32_t errors = 1 << 15;               // IER.ERRIE
+  static constexpr std::uint32_t error_line = 1 << 15;           // IER.ERRIE
   static constexpr std::uint32_t error_interrupt = 1 << 2;       // MSR.ERRI
 
   /// Returns the identifier in the format of mailboxes and filters.
