@@ -109,7 +109,7 @@ class ParameterStorage {
   template <Storage S, class Hook>
   [[nodiscard]] bool save(S& storage, SectionSet sections, ObjectStore<Device>& store, Hook& hook) {
     Pass pass{&store, Work::keep};
-    pass.written = sections | set_of(ParameterSection::configuration);
+    pass.written = static_cast<SectionSet>(sections | set_of(ParameterSection::configuration));
     pass.keeps_not_loaded = sections != all_sections || !(Hook::exists || reported_);
     return rewrite(storage, pass, hook);
   }
@@ -120,7 +120,9 @@ class ParameterStorage {
   template <Storage S, class Hook>
   [[nodiscard]] bool restore(S& storage, SectionSet sections, ObjectStore<Device>& store, Hook& hook) {
     Pass pass{&store, Work::keep};
-    pass.given_up = (sections & ~set_of(ParameterSection::with_node_id)) | set_of(ParameterSection::configuration);
+    constexpr SectionSet kept = set_of(ParameterSection::with_node_id);
+    constexpr SectionSet always = set_of(ParameterSection::configuration);
+    pass.given_up = static_cast<SectionSet>((sections & (all_sections ^ kept)) | always);
     pass.keeps_not_loaded = true;
     if (!rewrite(storage, pass, hook)) return false;
     clear_configuration(store);
