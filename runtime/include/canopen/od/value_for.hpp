@@ -165,7 +165,7 @@ class ConstantFor {
                   "the type of this value is wider than that of the object, or has another sign: check its range, then "
                   "static_cast it");
   }
-  /// What is no number for the object.
+  /// A value that is not a number for the object.
   template <class V>
   requires(!ValueFor<V, O>)
       // NOLINTNEXTLINE(google-explicit-constructor)
@@ -210,7 +210,7 @@ class ValueOf {
                   "the type of this value is wider than that of the object, or has another sign: check its range, then "
                   "static_cast it");
   }
-  /// What is no number for the object.
+  /// A value that is not a number for the object.
   template <class V>
   requires(!ValueFor<V, O> && !FitsInto<V, type>)
       // NOLINTNEXTLINE(google-explicit-constructor)
@@ -241,7 +241,7 @@ class StringOf {
   }
   consteval StringOf(std::initializer_list<std::uint8_t> octets)  // NOLINT(google-explicit-constructor)
       requires std::constructible_from<type, std::initializer_list<std::uint8_t>> : value_{octets} {}
-  /// What is no string of the object.
+  /// A value that is not a string of the object.
   template <class V>
   requires(!std::is_array_v<V>)
       // NOLINTNEXTLINE(google-explicit-constructor)
