@@ -13,11 +13,12 @@ struct Bus {
   bool send(const canopen::Frame&) { return true; }
 };
 
-void set(canopen::Node<every_type::Device, Bus>& node) {
+void set(canopen::Node<every_type::Device, Bus>& node, std::int8_t value) {
 #ifdef GOOD
   node.set<od::boolean_value>(true);
-  if (node.set<od::integer8_value>(100) != canopen::ok) return;
+  node.set<od::integer8_value>(100);
+  if (node.set<od::integer8_value>(value) != canopen::ok) return;
 #else
-  node.set<od::integer8_value>(101);
+  node.set<od::integer8_value>(value);
 #endif
 }

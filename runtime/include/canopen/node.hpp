@@ -13,6 +13,8 @@
 // The headers whose checks users meet are included first: the compiler lists the files by which it came to them.
 #include "canopen/od/value_for.hpp"
 //
+#include "canopen/node/object_setters.hpp"
+//
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
 #include "canopen/can/bus_status.hpp"
