@@ -32,7 +32,6 @@
 #include "canopen/node/handlers.hpp"
 #include "canopen/node/idle_time.hpp"
 #include "canopen/node/make_node.hpp"
-#include "canopen/node/object_setters.hpp"
 #include "canopen/node/object_values.hpp"
 #include "canopen/node/service_host.hpp"
 #include "canopen/node/services.hpp"
