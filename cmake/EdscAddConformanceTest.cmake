@@ -1,18 +1,22 @@
 include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 
-# edsc_add_conformance_test(NAME DICTIONARY [APPLICATION header type] [NODE_ID n] [LEVEL level] [DEVIATIONS file]
-#                           [ARGUMENTS argument...])
+# edsc_add_conformance_test(NAME DICTIONARY [COMPOSITION header type | APPLICATION header type] [NODE_ID n] [LEVEL level]
+#                           [DEVIATIONS file] [ARGUMENTS argument...])
 #
 # Adds the test NAME to CTest: the conformance test of `edsc conform` on the device of DICTIONARY, a target of
-# edsc_add_dictionary, in simulated time. The device is compiled as the program NAME, with a storage in memory and, if it has
-# LSS, with an LSS port.
+# edsc_add_dictionary, in simulated time. The device is compiled as the program NAME, with the composition of the user's
+# program; its storage, LSS port and memory of DOMAINs are in memory.
 #
 #   edsc_add_dictionary(pump EDS pump.eds)
 #   enable_testing()
-#   edsc_add_conformance_test(pump_conforms pump APPLICATION pump.hpp Pump)
+#   edsc_add_conformance_test(pump_conforms pump COMPOSITION pump.hpp PumpParts)
 #
-# APPLICATION  a header and its class with the handlers of the device; canopen/host/simulated_device.hpp describes the class.
-#              Add sources and libraries that it needs to the target NAME, with target_sources and target_link_libraries.
+# COMPOSITION  a header and its canopen::Composition: the type that the program gives to canopen::Node or make_node
+#              (canopen/node/composition.hpp). The report lists the parts that it omits.
+# APPLICATION  a header and its application class (canopen/host/simulated_device.hpp): short for a composition of the device
+#              and this class. Without a type, edsc makes the composition: no application, all parts that the EDS promises.
+#              Add sources and libraries that the header needs to the target NAME, with target_sources and
+#              target_link_libraries.
 # NODE_ID      node-ID of the device; default: that of the dictionary or of its DCF, else 5.
 # LEVEL        read, communication or all (default: a simulated device cannot cause damage).
 # DEVIATIONS   a file that declares which cases deviate, and why.
@@ -21,7 +25,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 # `ctest -L conformance` runs these tests. They are not added if BUILD_TESTING is off, nor in a cross build, whose devices are
 # not compiled for the machine that runs edsc.
 function(edsc_add_conformance_test name dictionary)
-  cmake_parse_arguments(PARSE_ARGV 2 arg "" "NODE_ID;LEVEL;DEVIATIONS" "APPLICATION;ARGUMENTS")
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "NODE_ID;LEVEL;DEVIATIONS" "COMPOSITION;APPLICATION;ARGUMENTS")
   set(call "edsc_add_conformance_test(${name})")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "${call}: unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
@@ -54,28 +58,39 @@ function(edsc_add_conformance_test name dictionary)
   endif()
 
   set(include "")
-  set(application "")
-  if(DEFINED arg_APPLICATION)
-    list(LENGTH arg_APPLICATION count)
-    if(NOT count EQUAL 2)
-      message(FATAL_ERROR "${call}: APPLICATION takes a header and a class, not: ${arg_APPLICATION}")
-    endif()
-    list(GET arg_APPLICATION 0 header)
-    list(GET arg_APPLICATION 1 application)
-    cmake_path(ABSOLUTE_PATH header BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-    if(NOT EXISTS ${header})
-      message(FATAL_ERROR "${call}: ${header} does not exist")
-    endif()
-    set(include "#include \"${header}\"\n")
-    string(PREPEND application ", ")
+  set(parts "${namespace}::Device")
+  if(DEFINED arg_COMPOSITION AND DEFINED arg_APPLICATION)
+    message(FATAL_ERROR "${call}: COMPOSITION and APPLICATION: expected one of them")
   endif()
+  foreach(keyword IN ITEMS COMPOSITION APPLICATION)
+    if(DEFINED arg_${keyword})
+      list(LENGTH arg_${keyword} count)
+      if(NOT count EQUAL 2)
+        message(FATAL_ERROR "${call}: ${keyword} takes a header and a type, not: ${arg_${keyword}}")
+      endif()
+      list(GET arg_${keyword} 0 header)
+      list(GET arg_${keyword} 1 type)
+      cmake_path(ABSOLUTE_PATH header BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+      if(NOT EXISTS ${header})
+        message(FATAL_ERROR "${call}: ${header} does not exist")
+      endif()
+      set(include "#include \"${header}\"\n")
+      if(keyword STREQUAL "COMPOSITION")
+        set(parts "${type}")
+        string(APPEND include "\nstatic_assert(canopen::is_composition_of<${type}, ${namespace}::Device>,\n"
+                              "              \"COMPOSITION: expected a canopen::Composition of ${namespace}::Device\");\n")
+      else()
+        string(APPEND parts ", ${type}")
+      endif()
+    endif()
+  endforeach()
   set(source ${CMAKE_CURRENT_BINARY_DIR}/edsc/${name}.cpp)
   file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
 // Made by edsc_add_conformance_test.
 #include <@namespace@/device.hpp>
 #include <canopen/host/simulated_device.hpp>
 @include@
-int main(int argc, char** argv) { return canopen::simulate_device<@namespace@::Device@application@>(argc, argv); }
+int main(int argc, char** argv) { return canopen::simulate_device<@parts@>(argc, argv); }
 ]])
   add_executable(${name} ${source})
   target_link_libraries(${name} PRIVATE ${dictionary})

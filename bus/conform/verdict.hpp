@@ -12,13 +12,14 @@
 
 #include "conform/case.hpp"
 #include "load/find_entry.hpp"
+#include "online/simulated_port.hpp"
 
 namespace edsc::conform {
 
 enum class Verdict : std::uint8_t {
   passed,
   failed,
-  not_applicable,  ///< the EDS does not have what the case tests
+  not_applicable,  ///< the EDS does not have what the case tests, or the program of the device omits it
   deviates,        ///< failed, as the file of deviations declares
   inconclusive,    ///< no result: a stimulus is missing, or the computer of the test was too slow
   not_run,         ///< the run may not do what the case needs
@@ -83,6 +84,7 @@ struct RunReport {
   std::string product, vendor;  ///< as in the EDS
   std::string identity;         ///< differences from the EDS; empty: none
   std::string read_identity;    ///< as read from the device: `vendor-ID 0000 0319h, product code ...`
+  std::optional<SimulatedComposition> composition;  ///< of a simulated device
   Level level = Level::read;
   Permission permissions = Permission::none;
   std::uint32_t seed = 0;

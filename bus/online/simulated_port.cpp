@@ -78,7 +78,7 @@ SimulatedPort::SimulatedPort(const std::string& address) {
   try {
     const std::string line = read_line();
     if (line != simulation::greeting) lost(line);
-    if (!ask(fmt::format("node {}{}{}", parsed.node_id, parsed.name.empty() ? "" : " ", parsed.name))) {
+    if (!make_node(parsed.node_id, parsed.name)) {
       throw BusLost{fmt::format("the program does not have a device \"{}\"", parsed.name)};
     }
   } catch (const BusLost& problem) {
@@ -201,6 +201,27 @@ std::optional<Frame> SimulatedPort::receive(Duration timeout) {
 }
 
 TimePoint SimulatedPort::now() const { return TimePoint{Duration{static_cast<std::uint32_t>(now_us_)}}; }
+
+bool SimulatedPort::make_node(unsigned node_id, std::string_view name) {
+  constexpr std::string_view without = "without=";
+  requests_ += fmt::format("node {}{}{}\n", node_id, name.empty() ? "" : " ", name);
+  flush();
+  const std::string line = read_line();
+  if (line == "no") return false;
+  std::string_view words = line;
+  if (simulation::take_word(words) != "ok") lost(line);
+  while (!words.empty()) {
+    const std::string_view word = simulation::take_word(words);
+    if (word == "composition=edsc") {
+      composition_.made_by_edsc = true;
+    } else if (word.starts_with(without) && word.size() > without.size()) {
+      composition_.omitted.emplace_back(word.substr(without.size()));
+    } else {
+      lost(line);
+    }
+  }
+  return true;
+}
 
 std::optional<AbortCode> SimulatedPort::ask(const std::string& request) {
   constexpr std::string_view refused = "refused ";

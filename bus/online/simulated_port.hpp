@@ -12,10 +12,17 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "online/live_bus.hpp"
 
 namespace edsc {
+
+/// Which parts the program of a simulated device has (runtime/include/canopen/node/composition.hpp).
+struct SimulatedComposition {
+  bool made_by_edsc = false;         ///< without an application, with all parts that the EDS promises
+  std::vector<std::string> omitted;  ///< `lss`, `storage`, or a DOMAIN: `2030:00`
+};
 
 /// Starts the program and is its only other participant on the bus. Time passes in `receive` only, as fast as the
 /// program runs. Standard error of the program is not redirected.
@@ -30,6 +37,8 @@ class SimulatedPort final : public BusPort {
   explicit SimulatedPort(const std::string& address);
   /// Closes the input of the program, which ends it; otherwise kills it.
   ~SimulatedPort() override;
+
+  [[nodiscard]] const SimulatedComposition& composition() const { return composition_; }
 
   // Functions that communicate with the program throw BusLost if it ends or sends an invalid response, and Interrupted
   // if it does not answer for a second after Ctrl-C.
@@ -57,6 +66,8 @@ class SimulatedPort final : public BusPort {
 
  private:
   void start(const std::string& program);
+  /// Makes the device. Returns false if the program does not have one of this name.
+  [[nodiscard]] bool make_node(unsigned node_id, std::string_view name);
   /// Why the program no longer communicates.
   [[noreturn]] void lost();
   [[noreturn]] void lost(const std::string& answer);
@@ -68,6 +79,7 @@ class SimulatedPort final : public BusPort {
   [[nodiscard]] std::optional<canopen::AbortCode> ask(const std::string& request);
 
   pid_t process_ = -1;
+  SimulatedComposition composition_;
   canopen::Descriptor connection_;
   std::string requests_;  ///< not written yet
   std::string answers_;   ///< not read yet

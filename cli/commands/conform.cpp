@@ -205,6 +205,8 @@ void run_and_print(LiveBus& bus, const Settings& settings, const LoadedDevice& l
   run.dut.simulated = simulated != nullptr;
   if (simulated != nullptr) {
     stimuli = std::make_unique<SimulatedStimuli>(*simulated);
+    report.composition = simulated->composition();
+    run.dut.omitted = simulated->composition().omitted;
   } else {
     stimuli = std::make_unique<CommandStimuli>(settings.stimuli);
     run.dut.tolerance = live_tolerance;

@@ -6,11 +6,11 @@
 #include <canopen/storage/flash_storage.hpp>
 #include <optional>
 #include <span>
-#include EDSC_DEVICE_HEADER
 
 #include "board.hpp"
 #include "can.hpp"
 #include "can_lss.hpp"
+#include "firmware_parts.hpp"
 
 namespace {
 
@@ -26,17 +26,17 @@ board::Flash lss_pages{1};
 CanLss lss{lss_pages, can};
 #endif
 
-/// With storage if the device has 1010h, and with LSS if the build does not set a node-ID.
+/// With storage if the device has 1010h, and with LSS if it has LSS and the build does not set a node-ID.
 template <class D>
 auto make_node() {
-  constexpr bool stores = D::dictionary.has(0x1010, 0);
+  constexpr bool stores = canopen::part::storage::is_promised<D>;
 #ifdef EDSC_NODE_ID
-  if constexpr (stores) return canopen::make_node<D>(can, canopen::stored_in(storage));
-  if constexpr (!stores) return canopen::make_node<D>(can);
+  if constexpr (stores) return canopen::make_node<FirmwareParts>(can, canopen::stored_in(storage));
+  if constexpr (!stores) return canopen::make_node<FirmwareParts>(can);
 #else
-  const auto by_lss = canopen::configured_by_lss<D::lss_options>(lss);
-  if constexpr (stores) return canopen::make_node<D>(can, canopen::stored_in(storage), by_lss);
-  if constexpr (!stores) return canopen::make_node<D>(can, by_lss);
+  const auto by_lss = canopen::configured_by_lss(lss);
+  if constexpr (stores) return canopen::make_node<FirmwareParts>(can, canopen::stored_in(storage), by_lss);
+  if constexpr (!stores) return canopen::make_node<FirmwareParts>(can, by_lss);
 #endif
 }
 

@@ -2,9 +2,9 @@
 /// if the build does not set a node-ID.
 #include <canopen/node.hpp>
 #include <canopen/storage/flash_storage.hpp>
-#include EDSC_DEVICE_HEADER
 
 #include "board.hpp"
+#include "firmware_parts.hpp"
 #include "lss_settings.hpp"
 #include "serial_bus.hpp"
 
@@ -20,17 +20,17 @@ constinit canopen::FlashStorage storage{parameter_pages};
 board::Flash lss_pages{1};
 constinit LssSettings lss{lss_pages};
 
-/// With storage if the device has 1010h, and with LSS if the build does not set a node-ID.
+/// With storage if the device has 1010h, and with LSS if it has LSS and the build does not set a node-ID.
 template <class D>
 auto make_node() {
-  constexpr bool stores = D::dictionary.has(0x1010, 0);
+  constexpr bool stores = canopen::part::storage::is_promised<D>;
 #ifdef EDSC_NODE_ID
-  if constexpr (stores) return canopen::make_node<D>(bus, canopen::stored_in(storage));
-  if constexpr (!stores) return canopen::make_node<D>(bus);
+  if constexpr (stores) return canopen::make_node<FirmwareParts>(bus, canopen::stored_in(storage));
+  if constexpr (!stores) return canopen::make_node<FirmwareParts>(bus);
 #else
-  const auto by_lss = canopen::configured_by_lss<D::lss_options>(lss);
-  if constexpr (stores) return canopen::make_node<D>(bus, canopen::stored_in(storage), by_lss);
-  if constexpr (!stores) return canopen::make_node<D>(bus, by_lss);
+  const auto by_lss = canopen::configured_by_lss(lss);
+  if constexpr (stores) return canopen::make_node<FirmwareParts>(bus, canopen::stored_in(storage), by_lss);
+  if constexpr (!stores) return canopen::make_node<FirmwareParts>(bus, by_lss);
 #endif
 }
 

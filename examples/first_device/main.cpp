@@ -12,7 +12,7 @@ int main() {
     if (frame.id == 0x185) std::printf("pressure %u mbar\n", unsigned{pump::Tpdo1::get<0>(frame.data)});
   };
 
-  canopen::Node<pump::Device, canopen::VirtualBus::Endpoint, Pump> node{port, canopen::NodeId{5}};
+  canopen::Node<PumpParts, canopen::VirtualBus::Endpoint> node{port, canopen::NodeId{5}};
   bus.connect(port, node);
 
   node.start(bus.now());

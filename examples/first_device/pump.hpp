@@ -13,3 +13,6 @@ struct Pump {
     node.set(od::pressure{}, static_cast<std::uint16_t>(speed / 4));
   }
 };
+
+/// The composition of the device, for its program and its conformance test.
+using PumpParts = canopen::Composition<pump::Device, Pump>;

@@ -19,3 +19,6 @@ struct Heater {
   }
   std::int16_t read(od::temperature) { return hardware.temperature(); }
 };
+
+/// The composition of the device, for its program and its conformance test.
+using HeaterParts = canopen::Composition<heater::Device, Heater>;

@@ -5,6 +5,6 @@
 
 int main(int, char** arguments) {
   canopen::SocketCan bus{arguments[1]};
-  canopen::Node<heater::Device, canopen::SocketCan, Heater> node{bus, canopen::NodeId{5}};
+  canopen::Node<HeaterParts, canopen::SocketCan> node{bus, canopen::NodeId{5}};
   bus.run(node);
 }

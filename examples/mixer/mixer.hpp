@@ -25,3 +25,6 @@ struct Mixer {
 
   std::uint32_t litres = 0;
 };
+
+/// The composition of the device, for its program and its conformance test.
+using MixerParts = canopen::Composition<mixer::Device, Mixer>;

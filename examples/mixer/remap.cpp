@@ -13,7 +13,7 @@ static_assert(Delivery::bits == 48);
 int main() {
   canopen::VirtualBus bus{500'000};
   auto& port = bus.attach();
-  canopen::Node<mixer::Device, canopen::VirtualBus::Endpoint, Mixer> node{port, canopen::NodeId{5}};
+  canopen::Node<MixerParts, canopen::VirtualBus::Endpoint> node{port, canopen::NodeId{5}};
   bus.connect(port, node);
   node.start(bus.now());
 

@@ -7,7 +7,7 @@
 #include "serial_bus.hpp"
 
 constinit SerialBus bus;
-canopen::Node<pump::Device, SerialBus, Pump> node{bus};
+canopen::Node<PumpParts, SerialBus> node{bus};
 
 int main() {
   board::start();

@@ -6,7 +6,7 @@
 namespace {
 
 constinit SerialBus bus;
-auto node = canopen::make_node<pump::Device>(bus, Pump{});
+auto node = canopen::make_node<PumpParts>(bus);
 
 }  // namespace
 

@@ -8,7 +8,7 @@
 int main(int argc, char** argv) try {
   if (argc != 2) return std::fputs("usage: pump_node BUS\n", stderr), 2;
   canopen::HostBus bus{argv[1]};
-  canopen::Node<pump::Device, canopen::HostBus, Pump> node{bus, canopen::NodeId{5}};
+  canopen::Node<PumpParts, canopen::HostBus> node{bus, canopen::NodeId{5}};
   std::puts("node 5 is on the bus");
   std::fflush(stdout);
   bus.run(node);

@@ -57,7 +57,7 @@ struct Device {
     return departures;
   }();
 
-  /// How LSS configures the device: canopen::configured_by_lss<Device::lss_options>(port).
+  /// How LSS configures the device: canopen::configured_by_lss(port).
   static constexpr canopen::LssOptions lss_options{
       .bit_rates = 0x01DF};
 

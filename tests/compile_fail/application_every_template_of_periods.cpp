@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 struct Bus {
   bool send(const canopen::Frame&) { return true; }
 };
@@ -19,4 +21,4 @@ struct Application {
 };
 
 Bus bus;
-canopen::Node<every_type::Device, Bus, Application> node{bus, canopen::NodeId{5}};
+bench::NodeOf<every_type::Device, Bus, Application> node{bus, canopen::NodeId{5}};

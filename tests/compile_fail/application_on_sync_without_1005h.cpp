@@ -4,6 +4,8 @@
 #include <every_service/device.hpp>
 #include <sdo_device/device.hpp>
 
+#include "omitting.hpp"
+
 struct Bus {
   bool send(const canopen::Frame&) { return true; }
 };
@@ -18,4 +20,4 @@ using Device = every_service::Device;
 #else
 using Device = sdo_device::Device;
 #endif
-canopen::Node<Device, Bus, Application> node{bus, canopen::NodeId{5}};
+bench::NodeOf<Device, Bus, Application> node{bus, canopen::NodeId{5}};

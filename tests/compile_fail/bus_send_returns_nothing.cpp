@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 struct Bus {
 #ifdef GOOD
   bool send(const canopen::Frame&) { return true; }
@@ -12,4 +14,4 @@ struct Bus {
 };
 
 Bus bus;
-canopen::Node<every_type::Device, Bus> node{bus, canopen::NodeId{5}};
+bench::NodeOf<every_type::Device, Bus> node{bus, canopen::NodeId{5}};

@@ -78,7 +78,8 @@ def main() -> int:
     name = sys.argv[3] if len(sys.argv) > 3 else "*"
     cases = sorted((source_dir / "tests/compile_fail").glob(f"{name}.cpp"))
     compilers = those_installed((GCC, CLANG))
-    include = (*(path for path in sorted(generated.iterdir()) if path.is_dir()), source_dir / "runtime/include")
+    include = (*(path for path in sorted(generated.iterdir()) if path.is_dir()), source_dir / "runtime/include",
+               source_dir / "tests/support")
     with tempfile.TemporaryDirectory() as scratch:
         jobs = []
         for compiler in compilers:

@@ -3,15 +3,17 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 struct Bus {
   bool send(const canopen::Frame&) { return true; }
 };
 
 Bus bus;
 #ifdef GOOD
-auto node = canopen::make_node<every_type::Device>(bus, canopen::NodeId{5},
+auto node = bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
                                                    canopen::every<canopen::Milliseconds<10>>([](auto&) {}));
 #else
-auto node = canopen::make_node<every_type::Device>(bus, canopen::NodeId{5},
+auto node = bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
                                                    canopen::every<canopen::Milliseconds<10>>([](int) {}));
 #endif

@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 struct Bus {
   bool send(const canopen::Frame&) { return true; }
 };
@@ -10,8 +12,8 @@ struct Bus {
 Bus bus;
 #ifdef GOOD
 auto node =
-    canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::every<canopen::Milliseconds<10>>([] {}));
+    bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::every<canopen::Milliseconds<10>>([] {}));
 #else
-auto node = canopen::make_node<every_type::Device>(bus, canopen::NodeId{5},
+auto node = bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
                                                    canopen::every<canopen::Milliseconds<10>>([] { return 1; }));
 #endif

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 using namespace std::chrono_literals;
 
 struct Bus {
@@ -13,7 +15,7 @@ struct Bus {
 Bus bus;
 #ifdef GOOD
 auto node =
-    canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::every(canopen::Milliseconds<10>{}, [] {}));
+    bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::every(canopen::Milliseconds<10>{}, [] {}));
 #else
-auto node = canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::every(10ms, [] {}));
+auto node = bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::every(10ms, [] {}));
 #endif

@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
@@ -13,7 +15,7 @@ Bus bus;
 
 void start() {
   auto node =
-      canopen::make_node<every_type::Device>(bus, canopen::NodeId{5},
+      bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
 #ifdef GOOD
                                              canopen::on_write(od::unsigned16_value{}, [](auto&, std::uint16_t) {})
 #else

@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
@@ -12,9 +14,9 @@ struct Bus {
 auto make(Bus& bus) {
   const auto changed = [](std::int16_t) {};
 #ifdef GOOD
-  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5},
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
                                                 canopen::on_write<od::integer16_value>(changed));
 #else
-  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, changed);
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, changed);
 #endif
 }

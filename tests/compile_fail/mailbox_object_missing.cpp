@@ -2,6 +2,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
@@ -17,6 +19,6 @@ struct Posted : canopen::Object<0x5FFF, 0x00, std::int16_t, canopen::Access::ro>
 #endif
 
 void run(Bus& bus, canopen::Mailbox<Posted>& measured) {
-  auto node = canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::values_from(measured));
+  auto node = bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::values_from(measured));
   node.on_time(canopen::TimePoint{});
 }

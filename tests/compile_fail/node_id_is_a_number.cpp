@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
@@ -11,8 +13,8 @@ struct Bus {
 
 auto make(Bus& bus) {
 #ifdef GOOD
-  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5});
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5});
 #else
-  return canopen::make_node<every_type::Device>(bus, 5);
+  return bench::make_node<every_type::Device>(bus, 5);
 #endif
 }

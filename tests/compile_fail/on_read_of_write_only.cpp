@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
@@ -15,5 +17,5 @@ auto make(Bus& bus) {
 #else
   using object = od::access_wo;
 #endif
-  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_read<object>([] {}));
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_read<object>([] {}));
 }

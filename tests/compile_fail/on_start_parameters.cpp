@@ -3,14 +3,16 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 struct Bus {
   bool send(const canopen::Frame&) { return true; }
 };
 
 Bus bus;
 #ifdef GOOD
-auto node = canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_start([](auto&) {}));
+auto node = bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_start([](auto&) {}));
 #else
 auto node =
-    canopen::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_start([](canopen::NmtState) {}));
+    bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_start([](canopen::NmtState) {}));
 #endif

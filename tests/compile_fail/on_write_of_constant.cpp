@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
@@ -15,6 +17,6 @@ auto make(Bus& bus) {
 #else
   using object = od::integer24_constant;
 #endif
-  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5},
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
                                                 canopen::on_write<object>([](std::int32_t) {}));
 }

@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
@@ -19,6 +21,6 @@ auto make(Bus& bus) {
 #else
   using object = other::od::target_torque;
 #endif
-  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5},
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
                                                 canopen::on_write<object>([](std::int16_t) {}));
 }

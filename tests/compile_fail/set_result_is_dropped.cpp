@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 #ifdef __clang__
 #pragma clang diagnostic error "-Wunused-result"
 #endif
@@ -13,7 +15,7 @@ struct Bus {
   bool send(const canopen::Frame&) { return true; }
 };
 
-void set(canopen::Node<every_type::Device, Bus>& node, std::int8_t value) {
+void set(bench::NodeOf<every_type::Device, Bus>& node, std::int8_t value) {
 #ifdef GOOD
   node.set<od::boolean_value>(true);
   node.set<od::integer8_value>(100);

@@ -3,13 +3,15 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
   bool send(const canopen::Frame&) { return true; }
 };
 
-void set(canopen::Node<every_type::Device, Bus>& node, int value) {
+void set(bench::NodeOf<every_type::Device, Bus>& node, int value) {
 #ifdef GOOD
   node.set(od::access_rw{}, static_cast<std::uint16_t>(value));
 #else

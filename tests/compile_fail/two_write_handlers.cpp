@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
@@ -15,7 +17,7 @@ auto make(Bus& bus) {
 #else
   using second = od::integer16_value;
 #endif
-  return canopen::make_node<every_type::Device>(bus, canopen::NodeId{5},
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
                                                 canopen::on_write<od::integer16_value>([](std::int16_t) {}),
                                                 canopen::on_write<second>([](std::int32_t) {}));
 }

@@ -14,6 +14,8 @@
 #include <cstring>
 #include <vector>
 
+#include "omitting.hpp"
+
 namespace {
 
 namespace od = every_service::od;
@@ -329,7 +331,7 @@ void run(const std::uint8_t* data, std::size_t size, std::array<std::vector<std:
   Memory storage;
   CheckedBus bus{application};
   unsigned syncs = 0;
-  auto node = canopen::make_node<Device>(
+  auto node = bench::make_node<Device>(
       bus, NodeId{5}, canopen::stored_in(storage), canopen::configured_by_lss(port),
       canopen::on_write<od::percentage>([&](std::uint8_t) { return application.answer; }),
       canopen::on_write<od::command>([&](auto& self, std::uint32_t value) {

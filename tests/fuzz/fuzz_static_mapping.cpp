@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fuzz.hpp"
+#include "omitting.hpp"
 #include "steps.hpp"
 
 namespace edsc::fuzz {
@@ -94,8 +95,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace edsc::fuzz;
   Bus dynamic_bus;
   Bus static_bus;
-  canopen::Node<pdo_device::Device, Bus> dynamic_node{dynamic_bus, NodeId{5}};
-  canopen::Node<static_pdo_device::Device, Bus> static_node{static_bus, NodeId{5}};
+  bench::NodeOf<pdo_device::Device, Bus> dynamic_node{dynamic_bus, NodeId{5}};
+  bench::NodeOf<static_pdo_device::Device, Bus> static_node{static_bus, NodeId{5}};
   TimePoint now{};
   dynamic_node.start(now);
   static_node.start(now);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "fuzz.hpp"
+#include "omitting.hpp"
 
 namespace edsc::fuzz {
 namespace {
@@ -121,7 +122,7 @@ template <class S>
 void start(S& storage, bool and_store) {
   Bus bus;
   TimePoint now{};
-  auto node = canopen::make_node<every_service::Device>(bus, NodeId{node_id}, canopen::stored_in(storage));
+  auto node = bench::make_node<every_service::Device>(bus, NodeId{node_id}, canopen::stored_in(storage));
   node.start(now);
   require(bus.booted && node.state() == canopen::NmtState::pre_operational, "a device starts");
   check_values(node);
@@ -154,7 +155,7 @@ void start(S& storage, bool and_store) {
 template <class S>
 void fill(S& storage) {
   Bus bus;
-  auto node = canopen::make_node<every_service::Device>(bus, NodeId{node_id}, canopen::stored_in(storage));
+  auto node = bench::make_node<every_service::Device>(bus, NodeId{node_id}, canopen::stored_in(storage));
   node.start({});
   (void)node.template set<od::percentage>(50);
   (void)node.template set<od::ratio>(0.5f);

@@ -4,6 +4,7 @@
 #include <cpd/device.hpp>
 
 #include "manual_bench.hpp"
+#include "omitting.hpp"
 
 namespace {
 
@@ -52,7 +53,7 @@ TEST(Manual002, TellsThatTheMasterIsMissing) {
 // shows 002.98
 TEST(Manual002, IsNotGuardedDuringItsInitialisation) {
   bench::RecordingBus bus;
-  canopen::Node<cpd::Device, bench::RecordingBus> node{bus, canopen::NodeId{5}};
+  bench::NodeOf<cpd::Device, bench::RecordingBus> node{bus, canopen::NodeId{5}};
   node.on_frame(bench::frame("705 R 1"), {});
   EXPECT_EQ(bus.take(), "");
   node.start({});

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "manual_bench.hpp"
+#include "omitting.hpp"
 
 namespace {
 
@@ -62,7 +63,7 @@ struct LssSensor {
   Port port;
   bench::RecordingBus bus;
   canopen::TimePoint now{};
-  canopen::Node<rk5c::Device, bench::RecordingBus, canopen::StoredIn<canopen::MemoryStorage>,
+  bench::NodeOf<rk5c::Device, bench::RecordingBus, canopen::StoredIn<canopen::MemoryStorage>,
                 canopen::LssHandler<lss, Port>>
       node;
 };

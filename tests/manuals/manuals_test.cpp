@@ -9,6 +9,7 @@
 #include <string>
 
 #include "manual_bench.hpp"
+#include "omitting.hpp"
 
 namespace {
 
@@ -82,7 +83,7 @@ constexpr auto read_device_type = "605 40 00 10 00 00 00 00 00";
 // shows 000.29, 000.33, 000.43, 000.101, 001.14, 002.45, 002.194, 003.4, 004.104, 004.106
 TYPED_TEST(EveryDevice, SendsTheBootUpMessageAndEntersPreOperationalByItself) {
   bench::RecordingBus bus;
-  canopen::Node<typename TestFixture::Device, bench::RecordingBus> node{bus, canopen::NodeId{5}};
+  bench::NodeOf<typename TestFixture::Device, bench::RecordingBus> node{bus, canopen::NodeId{5}};
   node.on_frame(bench::frame(read_device_type), {});
   node.on_frame(bench::frame(bench::start), {});
   EXPECT_EQ(bus.take(), "");
@@ -216,8 +217,8 @@ TYPED_TEST(EveryDevice, TakesNodeIds1To127) {
   EXPECT_FALSE(canopen::NodeId{0}.valid());
   EXPECT_FALSE(canopen::NodeId{128}.valid());
   bench::RecordingBus bus;
-  canopen::Node<typename TestFixture::Device, bench::RecordingBus> first{bus, canopen::NodeId{1}};
-  canopen::Node<typename TestFixture::Device, bench::RecordingBus> last{bus, canopen::NodeId{127}};
+  bench::NodeOf<typename TestFixture::Device, bench::RecordingBus> first{bus, canopen::NodeId{1}};
+  bench::NodeOf<typename TestFixture::Device, bench::RecordingBus> last{bus, canopen::NodeId{127}};
   first.start({});
   last.start({});
   EXPECT_EQ(bus.take(), "701 00 | 77F 00");

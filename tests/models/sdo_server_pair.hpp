@@ -1,6 +1,7 @@
 /// A node of the runtime and the model of an SDO server, which receive the same frames.
 #pragma once
 
+#include "omitting.hpp"
 #include "sdo_server_model.hpp"
 
 #include <gtest/gtest.h>
@@ -225,7 +226,7 @@ class Pair {
 
   canopen::TimePoint now{};
   Bus bus;
-  canopen::Node<sdo_model_device::Device, Bus> node{bus, canopen::NodeId{5}};
+  bench::NodeOf<sdo_model_device::Device, Bus> node{bus, canopen::NodeId{5}};
   sdo_model_device::Values first_values{};
   const std::vector<model::Entry> first_entries = dictionary();
   const std::size_t first_file_size = 18;

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "omitting.hpp"
+
 namespace plant_bench {
 
 /// A device that can lose power, and with it the values in RAM.
@@ -42,7 +44,7 @@ class LiveNode {
   canopen::VirtualBus& bus_;
   canopen::VirtualBus::Endpoint& end_;
   std::uint8_t node_id_;
-  std::optional<canopen::Node<Device, canopen::VirtualBus::Endpoint>> node_;
+  std::optional<bench::NodeOf<Device, canopen::VirtualBus::Endpoint>> node_;
 };
 
 /// `Control` has the member `plant`. The nodes are attached before `start`.

@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "omitting.hpp"
+
 namespace bench {
 
 /// "605 40 00 10 00 00 00 00 00": CAN-ID and data bytes. A CAN-ID of three characters has 11 bits, one of eight 29.
@@ -95,7 +97,7 @@ class Bench {
 
   RecordingBus bus;
   canopen::TimePoint now{};
-  canopen::Node<Device, RecordingBus, Handlers...> node;
+  bench::NodeOf<Device, RecordingBus, Handlers...> node;
 };
 
 template <class Device = sample::Device, class... Handlers>

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "omitting.hpp"
 #include "trace.hpp"
 
 namespace trace {
@@ -91,7 +92,7 @@ template <class Device>
   };
   const auto lss = [&memory] {
     if constexpr (requires { Device::lss_options; }) {
-      return std::tuple{canopen::configured_by_lss<Device::lss_options>(memory.lss)};
+      return std::tuple{canopen::configured_by_lss(memory.lss)};
     } else {
       return std::tuple{};
     }
@@ -145,7 +146,7 @@ class DeviceStation<Device, std::tuple<Handlers...>> final : public Station {
 
  private:
   Memory memory_;
-  std::optional<canopen::Node<Device, Station, Handlers...>> node_;  ///< empty without power
+  std::optional<bench::NodeOf<Device, Station, Handlers...>> node_;  ///< empty without power
 };
 
 template <class Device>

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "every_type_bench.hpp"
+#include "omitting.hpp"
 
 namespace {
 
@@ -115,7 +116,7 @@ struct SilentBus {
 
 TEST(NodeIdFormulas, OfTheApplicationFollowTheNodeIdFromPowerOnOn) {
   SilentBus bus;
-  auto node = canopen::make_node<every_type::Device>(bus, NodeId{9});
+  auto node = bench::make_node<every_type::Device>(bus, NodeId{9});
   node.start(canopen::TimePoint{});
   EXPECT_EQ(node.get<od::node_id_itself>(), 9);
   EXPECT_EQ(node.get<od::integer16_formula>(), -256 + 9);

@@ -19,6 +19,10 @@ namespace {
 
 std::atomic<bool> stop{false};
 
+using Parts =
+    canopen::Composition<every_service::Device, canopen::without<canopen::part::lss, canopen::part::storage,
+                                                                 every_service::od::file, every_service::od::stream>>;
+
 class Device {
  public:
   Device(canopen::Descriptor line, canopen::NodeId id) : line_{std::move(line)}, node_{bus_, id} {}
@@ -61,7 +65,7 @@ class Device {
   canopen::Descriptor line_;
   canopen::SlcanAdapter adapter_;
   NodeBus bus_{this};
-  canopen::Node<every_service::Device, NodeBus> node_;
+  canopen::Node<Parts, NodeBus> node_;
   bool start_due_ = false;  ///< the channel was opened
 };
 

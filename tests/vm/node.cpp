@@ -29,6 +29,10 @@ void serve_in_own_loop(canopen::HostBus& bus, Node& node) {
   }
 }
 
+using Parts =
+    canopen::Composition<every_service::Device, canopen::BoundTo<every_service::od::file>,
+                         canopen::without<canopen::part::lss, canopen::part::storage, every_service::od::stream>>;
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -37,7 +41,7 @@ int main(int argc, char** argv) {
   try {
     canopen::HostBus bus{argv[1]};
     const canopen::NodeId id{static_cast<std::uint8_t>(std::atoi(argv[2]))};
-    auto node = canopen::make_node<every_service::Device>(bus, id);
+    auto node = canopen::make_node<Parts>(bus, id);
     std::vector<std::uint8_t> file(file_bytes);
     node.bind<every_service::od::file>(file);
     if (argc == 4 && std::string_view{argv[3]} == "serve") {

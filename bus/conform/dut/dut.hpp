@@ -61,6 +61,8 @@ struct DutSettings {
   Level level = Level::read;
   Permission permissions = Permission::none;
   bool simulated = false;  ///< time passes only while the test waits
+  /// Parts that the program of a simulated device omits: see SimulatedComposition.
+  std::vector<std::string> omitted{};
   /// By how much a time on the bus may differ, without the lag of the test itself. Not 0 in simulated time either: a
   /// frame waits until the bus is free.
   Duration tolerance = microseconds{500};
@@ -207,6 +209,8 @@ class Dut {
   void expect_time(std::uint64_t measured, std::uint64_t low, std::uint64_t high, const std::string& what);
   void warn(std::string text) { warnings_.push_back(std::move(text)); }
   [[noreturn]] void not_applicable(std::string reason);
+  /// Ends the case as not applicable if the program of the device omits this part.
+  void need_part(std::string_view name);
   [[noreturn]] void inconclusive(std::string reason);
   /// Ends the case as inconclusive if the run does not have the permission.
   void need_permission(Permission permission);

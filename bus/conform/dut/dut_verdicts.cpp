@@ -22,6 +22,11 @@ void Dut::fail_by_sheet(std::string_view rule, std::string expected, std::string
 void Dut::not_applicable(std::string reason) { throw CaseEnd{Verdict::not_applicable, std::move(reason), {}, {}}; }
 void Dut::inconclusive(std::string reason) { throw CaseEnd{Verdict::inconclusive, std::move(reason), {}, {}}; }
 
+void Dut::need_part(std::string_view name) {
+  if (std::ranges::find(settings_.omitted, name) == settings_.omitted.end()) return;
+  not_applicable(fmt::format("the composition of the program omits it: canopen::without<canopen::part::{}>", name));
+}
+
 void Dut::need_permission(Permission permission) {
   for (const PermissionRow& row : permission_options) {
     if (includes(permission, row.permission) && !allowed(row.permission)) {

@@ -134,6 +134,7 @@ std::string html_report(const RunReport& run, const Device& sheet) {
                      {"sheet_hash", shown(run.sheet_hash)},
                      {"node", run.node},
                      {"bus", run.bus},
+                     {"composition", shown(composition_text(run))},
                      {"level", level_text(run)},
                      {"seed", run.seed},
                      {"max_lag", duration_text(max_lag(run))},

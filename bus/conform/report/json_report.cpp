@@ -56,6 +56,12 @@ json case_object(const CaseResult& result, const RunReport& run, const Device& s
           {"frames", std::move(frames)}};
 }
 
+/// Null for a device on a bus.
+json composition_object(const RunReport& run) {
+  if (!run.composition) return nullptr;
+  return {{"made_by", run.composition->made_by_edsc ? "edsc" : "program"}, {"without", run.composition->omitted}};
+}
+
 json area_object(const AreaCount& count) {
   json object = {{"id", count.area->id}, {"title", count.area->title}};
   for (const VerdictRow& row : verdicts) {
@@ -85,6 +91,7 @@ std::string json_report(const RunReport& run, const Device& sheet) {
         {"vendor", run.vendor},
         {"product", run.product}}},
       {"identity", {{"read", text_or_null(run.read_identity)}, {"differences", text_or_null(run.identity)}}},
+      {"composition", composition_object(run)},
       {"level", row_of(run.level).name},
       {"permissions", permission_names(run.permissions)},
       {"seed", run.seed},

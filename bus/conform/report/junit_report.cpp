@@ -109,6 +109,7 @@ void add_properties(pugi::xml_node suite, const RunReport& run) {
       {"product", run.product},
       {"identity", run.read_identity},
       {"identity_differences", run.identity},
+      {"composition", composition_text(run)},
       {"test", level_text(run)},
       {"seed", fmt::format("{}", run.seed)},
       {"max_lag", duration_text(max_lag(run))},

@@ -38,6 +38,18 @@ std::string level_text(const RunReport& run) {
   return text;
 }
 
+std::string composition_text(const RunReport& run) {
+  if (!run.composition) return {};
+  if (run.composition->made_by_edsc) return "made by edsc, with all parts that the EDS promises";
+  std::string text = "of the program";
+  std::string_view separator = ", without ";
+  for (const std::string& part : run.composition->omitted) {
+    text.append(separator).append(part == "lss" ? "LSS" : part);
+    separator = ", ";
+  }
+  return text;
+}
+
 std::vector<std::string> run_problems(const RunReport& run) {
   std::vector<std::string> problems;
   for (const std::string& unused : run.unused_deviations)

@@ -19,6 +19,10 @@ namespace edsc::conform {
 /// `level communication with store and outputs`
 [[nodiscard]] std::string level_text(const RunReport& run);
 
+/// The composition of a simulated device: `made by edsc, with all parts that the EDS promises`, `of the program`, `of
+/// the program, without LSS, storage`. Empty for a device on a bus.
+[[nodiscard]] std::string composition_text(const RunReport& run);
+
 /// Other reasons for which a run does not pass: unused deviations, values that could not be put back, an early end.
 [[nodiscard]] std::vector<std::string> run_problems(const RunReport& run);
 

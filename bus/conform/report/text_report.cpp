@@ -50,6 +50,7 @@ std::string TextReport::head() const {
   append_detail(out, "EDS", run_.sheet);
   append_detail(out, "SHA-256", run_.sheet_hash);
   append_detail(out, "node", fmt::format("{} on {}", run_.node, run_.bus));
+  append_detail(out, "composition", composition_text(run_));
   append_detail(out, "test", fmt::format("{}, seed {}, edsc {}", level_text(run_), run_.seed, run_.version));
   return out;
 }

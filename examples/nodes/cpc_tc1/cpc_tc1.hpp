@@ -51,8 +51,8 @@ using Restore = canopen::WriteHandler<od::restore_default_parameters<SubIndex>, 
 
 template <class Self, canopen::Bus B>
 using Base = nodes::DriveNode<Self, cpc_tc1::Device, B, options, canopen::StoredIn<nodes::NodeStorage>,
-                              canopen::LssHandler<cpc_tc1::Device::lss_options, nodes::LssSettings>, Store<1>, Store<2>,
-                              Store<3>, Restore<1>, Restore<2>, Restore<3>>;
+                              canopen::ConfiguredByLss<nodes::LssSettings>, Store<1>, Store<2>, Store<3>, Restore<1>,
+                              Restore<2>, Restore<3>>;
 
 /// Initialized before the node, which starts with the node-ID that LSS has stored.
 struct ConfiguredByLss {
@@ -93,7 +93,7 @@ class CpcTc1 : private ConfiguredByLss, public Base<CpcTc1<B>, B> {
              lss.node_id(),
              axis,
              canopen::stored_in(around.parameters),
-             canopen::configured_by_lss<cpc_tc1::Device::lss_options>(lss),
+             canopen::configured_by_lss(lss),
              {{&motor_on_}},
              {{&motor_on_}},
              {{&motor_on_}},

@@ -57,7 +57,7 @@ class Rk5c {
         node_{bus,
               lss_.node_id(),
               canopen::stored_in(around.parameters),
-              canopen::configured_by_lss<Device::lss_options>(lss_),
+              canopen::configured_by_lss(lss_),
               canopen::cyclic_timer_sets_event_timer(),
               canopen::event_timer_sets_cyclic_timer(),
               canopen::on_write<rk5c::od::preset_values_for_multi_sensor_devices<1>>(PresetWriter{this}),
@@ -130,12 +130,13 @@ class Rk5c {
       return sensor->store_offset(0);
     }
   };
-  using Node = canopen::Node<
-      Device, B, canopen::StoredIn<nodes::NodeStorage>, canopen::LssHandler<Device::lss_options, nodes::LssSettings>,
-      canopen::CyclicTimerHandler, canopen::EventTimerHandler,
-      canopen::WriteHandler<rk5c::od::preset_values_for_multi_sensor_devices<1>, PresetWriter>,
-      canopen::WriteHandler<rk5c::od::store_parameters<1>, Saver>,
-      canopen::WriteHandler<rk5c::od::restore_default_parameters<1>, Loader>, canopen::StateHandler<StateTeller>>;
+  using Node =
+      canopen::Node<Device, B, canopen::StoredIn<nodes::NodeStorage>, canopen::ConfiguredByLss<nodes::LssSettings>,
+                    canopen::CyclicTimerHandler, canopen::EventTimerHandler,
+                    canopen::WriteHandler<rk5c::od::preset_values_for_multi_sensor_devices<1>, PresetWriter>,
+                    canopen::WriteHandler<rk5c::od::store_parameters<1>, Saver>,
+                    canopen::WriteHandler<rk5c::od::restore_default_parameters<1>, Loader>,
+                    canopen::StateHandler<StateTeller>>;
 
   /// At power-on and at each reset: loads the settings that become valid, and reports the errors that still exist.
   void initialise() {

@@ -14,23 +14,17 @@ namespace {
 /// Moves with the target velocity, in increments per millisecond, up to the maximum speed.
 class Motor {
  public:
-  auto handlers() {
-    return std::tuple{canopen::application_at(*this),
-                      canopen::on_write<od::target_velocity>([this](auto& node, std::int32_t velocity) {
-                        if (velocity > node.template get<od::maximum_speed>())
-                          return canopen::AbortCode::value_too_high;
-                        std::printf("velocity %d\n",
-                                    static_cast<int>(velocity));  // not on the standard output of the protocol
-                        velocity_ = velocity;
-                        return canopen::ok;
-                      })};
+  void start(auto& node) { static_cast<void>(node.set(od::producer_heartbeat_time{}, 500)); }
+  canopen::AbortCode write(od::target_velocity, std::int32_t velocity, auto& node) {
+    if (velocity > node.get(od::maximum_speed{})) return canopen::AbortCode::value_too_high;
+    std::printf("velocity %d\n", static_cast<int>(velocity));  // not on the standard output of the protocol
+    velocity_ = velocity;
+    return canopen::ok;
   }
-  void start(auto& node) { static_cast<void>(node.template set<od::producer_heartbeat_time>(500)); }
   void every(canopen::Milliseconds<1>, auto& node) {
     if (node.now().since_start().count() % 1000 != 0)
-      std::printf("called at %u\n", static_cast<unsigned>(node.now().since_start().count()));
-    const std::int32_t position = node.template get<od::position_actual_value>();
-    static_cast<void>(node.template set<od::position_actual_value>(position + velocity_));
+      std::printf("call at %u\n", static_cast<unsigned>(node.now().since_start().count()));
+    static_cast<void>(node.set(od::position_actual_value{}, node.get(od::position_actual_value{}) + velocity_));
   }
 
  private:

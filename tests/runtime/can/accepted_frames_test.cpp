@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -47,7 +48,7 @@ TEST(AcceptedFrames, FollowTheCobIds) {
 
 TEST(AcceptedFrames, OfANodeWithoutNodeIdAreThoseOfNoService) {
   bench::RecordingBus bus;
-  canopen::Node<sample::Device, bench::RecordingBus> node{bus, canopen::NodeId{255}};
+  bench::NodeOf<sample::Device, bench::RecordingBus> node{bus, canopen::NodeId{255}};
   node.start(canopen::TimePoint{});
   std::size_t count = 0;
   canopen::for_each_accepted_frame(node, [&](const canopen::AcceptedFrame&) { ++count; });

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "support/bench.hpp"
+#include "omitting.hpp"
 
 namespace {
 
@@ -82,7 +83,7 @@ TYPED_TEST_SUITE(ApplicationOn, Forms);
 TYPED_TEST(ApplicationOn, VirtualBus) {
   canopen::VirtualBus bus{1'000'000};
   auto& port = bus.attach();
-  auto node = canopen::make_node<sample::Device>(port, NodeId{5}, TypeParam::handlers());
+  auto node = bench::make_node<sample::Device>(port, NodeId{5}, TypeParam::handlers());
   canopen::VirtualBus::connect(port, node);
   node.start(bus.now());
   bus.run_for(100ms);
@@ -91,7 +92,7 @@ TYPED_TEST(ApplicationOn, VirtualBus) {
 /// Like the loop of a firmware: more often than each period, and not in step with it.
 TYPED_TEST(ApplicationOn, LoopThatPolls) {
   bench::RecordingBus bus;
-  auto node = canopen::make_node<sample::Device>(bus, NodeId{5}, TypeParam::handlers());
+  auto node = bench::make_node<sample::Device>(bus, NodeId{5}, TypeParam::handlers());
   node.start(TimePoint{});
   for (Duration now{0}; now <= 100ms; now += 300us) node.on_time(TimePoint{now});
   node.on_time(TimePoint{100ms});
@@ -100,7 +101,7 @@ TYPED_TEST(ApplicationOn, LoopThatPolls) {
 /// Like a loop that sets a timer and sleeps.
 TYPED_TEST(ApplicationOn, LoopThatSleeps) {
   bench::RecordingBus bus;
-  auto node = canopen::make_node<sample::Device>(bus, NodeId{5}, TypeParam::handlers());
+  auto node = bench::make_node<sample::Device>(bus, NodeId{5}, TypeParam::handlers());
   node.start(TimePoint{});
   int wake_ups = 0;
   node.on_time(TimePoint{});
@@ -125,7 +126,7 @@ struct SilentPort : bench::RecordingBus {
 TYPED_TEST(ApplicationOn, NodeTask) {
   SilentPort port;
   FakeSystem system;
-  auto node = canopen::make_node<sample::Device>(port, NodeId{5}, TypeParam::handlers());
+  auto node = bench::make_node<sample::Device>(port, NodeId{5}, TypeParam::handlers());
   canopen::NodeTask task{node, port, system};
   node.start(system.now());
   for (int i = 0; i <= 10; ++i) task.run_once();
@@ -140,7 +141,7 @@ struct PortWithoutRoom {
 TYPED_TEST(ApplicationOn, HostWhoseBusHasNoRoom) {
   bench::RecordingBus bus;
   bus.room = 0;
-  auto node = canopen::make_node<sample::Device>(bus, NodeId{5}, TypeParam::handlers());
+  auto node = bench::make_node<sample::Device>(bus, NodeId{5}, TypeParam::handlers());
   node.start(TimePoint{});
   EXPECT_EQ(canopen::host_loop::next_deadline(PortWithoutRoom{}, node, TimePoint{}), TimePoint{10ms});
   for (TimePoint now{10ms}; now <= TimePoint{100ms};

@@ -17,6 +17,7 @@
 #include <thread>
 #include <utility>
 
+#include "omitting.hpp"
 #include "runtime/host/stream_bench.hpp"
 
 namespace {
@@ -105,7 +106,7 @@ class Device {
   std::string name_;
   canopen::SlcanAdapter adapter_;
   NodeBus bus_{this};
-  canopen::Node<sample::Device, NodeBus> node_{bus_, canopen::NodeId{5}};
+  bench::NodeOf<sample::Device, NodeBus> node_{bus_, canopen::NodeId{5}};
 };
 
 TEST(SlcanPort, CarriesSdoOverAPseudoTerminal) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "runtime/host/stream_bench.hpp"
+#include "omitting.hpp"
 
 namespace {
 
@@ -136,13 +137,13 @@ TEST(SocketcandPort, CallsStartAndPeriodicFunctions) {
   std::thread greeting{[&] { server.greet(); }};
   HostBus bus{server.address("vcan0")};
   greeting.join();
-  canopen::Node<sample::Device, HostBus, Application> node{bus, canopen::NodeId{5}, Application{&stop}};
+  bench::NodeOf<sample::Device, HostBus, Application> node{bus, canopen::NodeId{5}, Application{&stop}};
   bus.run(node, stop);
   check(node.application<Application>());
 
   Application lambdas{&stop};
   stop = false;
-  auto other = canopen::make_node<sample::Device>(bus, canopen::NodeId{6},
+  auto other = bench::make_node<sample::Device>(bus, canopen::NodeId{6},
                                                   canopen::on_start([&](auto& starting) { lambdas.start(starting); }),
                                                   canopen::every<canopen::Milliseconds<10>>([&](auto& running) {
                                                     lambdas.every(canopen::Milliseconds<10>{}, running);

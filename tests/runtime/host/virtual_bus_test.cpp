@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -115,7 +116,7 @@ TEST(VirtualBus, TimeGoesFromDeadlineToDeadline) {
   VirtualBus bus;
   Log log{bus};
   auto& endpoint = bus.attach();
-  auto node = canopen::make_node<sample::Device>(endpoint, canopen::NodeId{5});
+  auto node = bench::make_node<sample::Device>(endpoint, canopen::NodeId{5});
   VirtualBus::connect(endpoint, node);
   node.start(bus.now());
   EXPECT_EQ(node.set<od::producer_heartbeat_time>(100), canopen::ok);
@@ -129,10 +130,10 @@ TEST(VirtualBus, NodesTalkToEachOther) {
   Log log{bus};
   auto& master = bus.attach();
   auto& endpoint = bus.attach();
-  auto node = canopen::make_node<sample::Device>(endpoint, canopen::NodeId{5},
-                                                 canopen::on_write<od::controlword>([](auto& device, std::uint16_t v) {
-                                                   device.template set<od::statusword>(v);
-                                                 }));
+  auto node = bench::make_node<sample::Device>(endpoint, canopen::NodeId{5},
+                                               canopen::on_write<od::controlword>([](auto& device, std::uint16_t v) {
+                                                 device.template set<od::statusword>(v);
+                                               }));
   VirtualBus::connect(endpoint, node);
   node.start(bus.now());
   bus.settle();
@@ -150,7 +151,7 @@ TEST(VirtualBus, ANodeWhoseQueueIsFullSendsLater) {
   Log log{bus};
   auto& endpoint = bus.attach();
   endpoint.queue_limit = 1;
-  auto node = canopen::make_node<sample::Device>(endpoint, canopen::NodeId{5});
+  auto node = bench::make_node<sample::Device>(endpoint, canopen::NodeId{5});
   VirtualBus::connect(endpoint, node);
   node.start(bus.now());
   EXPECT_EQ(node.set<od::producer_heartbeat_time>(100), canopen::ok);

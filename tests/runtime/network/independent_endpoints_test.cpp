@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -43,7 +44,7 @@ struct Station {
     node.start(bus.now());
   }
   VirtualBus::Endpoint& endpoint;
-  canopen::Node<Device, VirtualBus::Endpoint> node;
+  bench::NodeOf<Device, VirtualBus::Endpoint> node;
   unsigned received = 0;
 };
 

@@ -24,6 +24,7 @@
 #include <random>
 #include <vector>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -203,7 +204,7 @@ std::map<Kind, Count> run(std::uint32_t seed, BusFaultRates rates, int transfers
   VirtualBus::Endpoint& endpoint = bus.attach();
   endpoint.queue_limit = 4;
   Application application;
-  auto node = canopen::make_node<Device>(
+  auto node = bench::make_node<Device>(
       endpoint, NodeId{5}, canopen::on_write<od::positions<1>>([&](std::int32_t value) {
         Bytes bytes(sizeof value);
         std::memcpy(bytes.data(), &value, sizeof value);

@@ -21,6 +21,8 @@
 #include <utility>
 #include <vector>
 
+#include "omitting.hpp"
+
 namespace {
 
 using canopen::Duration;
@@ -174,7 +176,7 @@ struct Station {
   [[nodiscard]] std::uint32_t number() const { return node.node_id().value(); }
 
   Port port;
-  canopen::Node<Device, Port> node;
+  bench::NodeOf<Device, Port> node;
   unsigned wake_ups = 0;
 };
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -71,7 +72,7 @@ struct StoredHeartbeat : sample::Device {
 // shows 000.41, 002.61
 TEST(Heartbeat, TheBootUpMessageIsTheFirstOne) {
   bench::RecordingBus bus;
-  auto node = canopen::make_node<StoredHeartbeat>(bus, canopen::NodeId{5});
+  auto node = bench::make_node<StoredHeartbeat>(bus, canopen::NodeId{5});
   node.start(canopen::TimePoint{3ms});
   EXPECT_EQ(bus.take(), "705 00");
   EXPECT_EQ(node.next_deadline(), canopen::TimePoint{23ms});
@@ -106,7 +107,7 @@ TEST(Heartbeat, WaitsForRoomOnTheBus) {
 
 TEST(Heartbeat, RunsOnWhenTheTimeWraps) {
   bench::RecordingBus bus;
-  auto node = canopen::make_node<StoredHeartbeat>(bus, canopen::NodeId{5});
+  auto node = bench::make_node<StoredHeartbeat>(bus, canopen::NodeId{5});
   const canopen::TimePoint almost{canopen::Duration{0xFFFF'F000}};
   node.start(almost);
   bus.take();

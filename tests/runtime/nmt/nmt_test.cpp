@@ -4,6 +4,7 @@
 #include <self_starting/device.hpp>
 #include <vector>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -15,7 +16,7 @@ using namespace std::chrono_literals;
 
 TEST(Nmt, SendsTheBootUpMessageAndEntersPreOperationalAtPowerOn) {
   bench::RecordingBus bus;
-  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{5});
+  auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{5});
   EXPECT_EQ(node.state(), NmtState::initialisation);
   node.start(canopen::TimePoint{});
   EXPECT_EQ(bus.take(), "705 00");
@@ -24,7 +25,7 @@ TEST(Nmt, SendsTheBootUpMessageAndEntersPreOperationalAtPowerOn) {
 
 TEST(Nmt, EntersOperationalByItselfWhere1F80hSaysSo) {
   bench::RecordingBus bus;
-  auto node = canopen::make_node<self_starting::Device>(bus, canopen::NodeId{5});
+  auto node = bench::make_node<self_starting::Device>(bus, canopen::NodeId{5});
   node.start(canopen::TimePoint{});
   EXPECT_TRUE(bus.take().starts_with("705 00")) << "the boot-up message is the first frame";
   EXPECT_EQ(node.state(), NmtState::operational);
@@ -41,7 +42,7 @@ TEST(Nmt, EntersOperationalByItselfWhere1F80hSaysSo) {
 TEST(Nmt, WaitsForTheMasterWhereStored1F80hSaysSo) {
   bench::RecordingBus bus;
   canopen::MemoryStorage storage;
-  auto node = canopen::make_node<self_starting::Device>(bus, canopen::NodeId{5}, canopen::stored_in(storage));
+  auto node = bench::make_node<self_starting::Device>(bus, canopen::NodeId{5}, canopen::stored_in(storage));
   node.start(canopen::TimePoint{});
   bus.take();
   node.on_frame(bench::frame("605 23 80 1F 00 04 00 00 00"), canopen::TimePoint{});
@@ -55,7 +56,7 @@ TEST(Nmt, WaitsForTheMasterWhereStored1F80hSaysSo) {
 
 TEST(Nmt, IsDeafBeforeItIsStarted) {
   bench::RecordingBus bus;
-  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{5});
+  auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{5});
   node.on_frame(bench::frame("000 01 05"), canopen::TimePoint{});
   node.on_frame(bench::frame("605 40 00 10 00 00 00 00 00"), canopen::TimePoint{});
   node.on_time(canopen::TimePoint{});
@@ -143,7 +144,7 @@ TEST(Nmt, TellsTheApplicationEachStateOnce) {
 TEST(Nmt, KeepsTheBootUpMessageUntilTheBusHasRoom) {
   bench::RecordingBus bus;
   bus.room = 0;
-  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{5});
+  auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{5});
   node.start(canopen::TimePoint{5ms});
   EXPECT_EQ(bus.take(), "");
   EXPECT_EQ(node.next_deadline(), canopen::TimePoint{5ms});
@@ -155,7 +156,7 @@ TEST(Nmt, KeepsTheBootUpMessageUntilTheBusHasRoom) {
 
 TEST(Nmt, ANodeIdReadAtStartUpCountsForAllIdentifiers) {
   bench::RecordingBus bus;
-  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{});
+  auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{});
   node.start(canopen::NodeId{0x7F}, canopen::TimePoint{});
   EXPECT_EQ(bus.take(), "77F 00");
   EXPECT_EQ(node.get<od::tpdo_communication_parameter_1::cob_id_used_by_tpdo>(), 0x400001FFu);

@@ -5,6 +5,7 @@
 #include <can_2057c/device.hpp>
 #include <string>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -55,7 +56,7 @@ struct Module {
 
   bench::RecordingBus bus;
   TimePoint now{};
-  canopen::Node<can_2057c::Device, bench::RecordingBus> node{bus, NodeId{1}};
+  bench::NodeOf<can_2057c::Device, bench::RecordingBus> node{bus, NodeId{1}};
   NodeGuardingSlave guarding;
 };
 

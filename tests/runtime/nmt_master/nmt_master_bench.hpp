@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace master_bench {
@@ -85,7 +86,7 @@ class Slave {
 
   canopen::VirtualBus& bus_;
   canopen::VirtualBus::Endpoint& end_;
-  canopen::Node<sample::Device, canopen::VirtualBus::Endpoint> node_;
+  bench::NodeOf<sample::Device, canopen::VirtualBus::Endpoint> node_;
   canopen::NodeGuardingSlave guarding_{};
   canopen::NodeId node_id_;
   bool beats_;

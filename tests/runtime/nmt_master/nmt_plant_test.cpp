@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -77,7 +78,7 @@ class Slave {
  private:
   VirtualBus& bus_;
   VirtualBus::Endpoint& end_;
-  canopen::Node<sample::Device, VirtualBus::Endpoint> node_;
+  bench::NodeOf<sample::Device, VirtualBus::Endpoint> node_;
   std::optional<canopen::BusFaults> faults_;
   bool on_ = false;
 };

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -178,7 +179,7 @@ TEST(Application, MayLiveOutsideOfItsNode) {
 
 TEST(Application, IsDefaultConstructedInItsNode) {
   bench::RecordingBus bus;
-  canopen::Node<every_service::Device, bench::RecordingBus, Application> node{bus, canopen::NodeId{7}};
+  bench::NodeOf<every_service::Device, bench::RecordingBus, Application> node{bus, canopen::NodeId{7}};
   node.start({});
   EXPECT_EQ(bus.take(), "707 00");
   EXPECT_EQ(node.application<Application>().states.size(), 2u);
@@ -290,8 +291,8 @@ struct Nowhere {
 struct OneWriteHandler {
   void operator()(std::uint8_t) const {}
 };
-static_assert(sizeof(canopen::Node<every_service::Device, Nowhere, Stateless>) ==
-              sizeof(canopen::Node<every_service::Device, Nowhere, canopen::WriteHandler<od::byte, OneWriteHandler>>));
+static_assert(sizeof(bench::NodeOf<every_service::Device, Nowhere, Stateless>) ==
+              sizeof(bench::NodeOf<every_service::Device, Nowhere, canopen::WriteHandler<od::byte, OneWriteHandler>>));
 
 TEST(WrittenHandler, IsCalledAfterTheValueIsStored) {
   std::vector<int> seen;

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -33,7 +34,7 @@ TEST(Locked, HoldsTheLockWhileTheNodeWorks) {
   std::string log;
   LoggingBus bus{log};
   RecordingLock lock{log};
-  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{5});
+  auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{5});
   Locked locked{node, lock};
   locked.start(canopen::TimePoint{});
   EXPECT_EQ(log, "(705 00)");
@@ -61,7 +62,7 @@ TEST(Locked, HoldsTheLockWhileTheNodeStartsWithANodeId) {
   std::string log;
   LoggingBus bus{log};
   RecordingLock lock{log};
-  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{});
+  auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{});
   Locked locked{node, lock};
   locked.start(canopen::NodeId{9}, canopen::TimePoint{});
   EXPECT_EQ(log, "(709 00)");
@@ -69,7 +70,7 @@ TEST(Locked, HoldsTheLockWhileTheNodeStartsWithANodeId) {
 
 TEST(Locked, WithoutALockIsAReference) {
   bench::RecordingBus bus;
-  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{5});
+  auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{5});
   Locked plain{node};
   plain.start(canopen::TimePoint{});
   EXPECT_EQ(bus.take(), "705 00");

@@ -9,6 +9,8 @@
 #include <sample/device.hpp>
 #include <thread>
 
+#include "omitting.hpp"
+
 namespace {
 
 namespace od = sample::od;
@@ -27,7 +29,7 @@ int main(int argument_count, char** arguments) {
   const std::uint32_t rounds =
       argument_count > 1 ? static_cast<std::uint32_t>(std::strtoul(arguments[1], nullptr, 10)) : 200'000;
   CountingBus bus;
-  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{5});
+  auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{5});
   std::mutex mutex;
   canopen::Locked locked{node, mutex};
   locked.start(canopen::TimePoint{});

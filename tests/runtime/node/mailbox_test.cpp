@@ -5,6 +5,7 @@
 
 #include <type_traits>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -43,7 +44,7 @@ TEST(Mailbox, TheNodeIsDueWhileAValueWaits) {
 TEST(Mailbox, AValueForANodeWithoutNodeIdIsSetAndNotLost) {
   Mailbox<od::statusword> mailbox;
   bench::RecordingBus bus;
-  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{}, values_from(mailbox));
+  auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{}, values_from(mailbox));
   node.start(TimePoint{});
   mailbox.post<od::statusword>(0x1234);
   EXPECT_EQ(node.next_deadline(), TimePoint{});
@@ -122,8 +123,8 @@ TEST(Mailbox, AValuePostedBeforeTheStartReplacesTheDefaultValue) {
 }
 
 TEST(Mailbox, ANodeWithoutOneIsNotLarger) {
-  using Plain = canopen::Node<sample::Device, bench::RecordingBus>;
-  using WithMailbox = canopen::Node<sample::Device, bench::RecordingBus, canopen::ValuesFrom<Mailbox<od::statusword>>>;
+  using Plain = bench::NodeOf<sample::Device, bench::RecordingBus>;
+  using WithMailbox = bench::NodeOf<sample::Device, bench::RecordingBus, canopen::ValuesFrom<Mailbox<od::statusword>>>;
   static_assert(!canopen::service::PostedValues<sample::Device>::exists);
   EXPECT_LE(sizeof(WithMailbox), sizeof(Plain) + sizeof(void*));
 }

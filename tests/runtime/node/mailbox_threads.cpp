@@ -10,6 +10,8 @@
 #include <sample/device.hpp>
 #include <thread>
 
+#include "omitting.hpp"
+
 namespace {
 
 namespace od = sample::od;
@@ -43,7 +45,7 @@ int main(int argument_count, char** arguments) {
   const std::uint32_t values =
       argument_count > 1 ? static_cast<std::uint32_t>(std::strtoul(arguments[1], nullptr, 10)) : 3'400'000;
   NoBus bus;
-  auto node = canopen::make_node<sample::Device>(bus, canopen::NodeId{5}, canopen::values_from(mailbox));
+  auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{5}, canopen::values_from(mailbox));
   node.start(canopen::TimePoint{});
   std::thread interrupt{[values] {
     for (std::uint32_t i = 1; i <= values; ++i) {

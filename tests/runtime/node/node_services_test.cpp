@@ -7,6 +7,7 @@
 
 #include <cstring>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -146,7 +147,7 @@ struct Sensor {
   Port port;
   bench::RecordingBus bus;
   canopen::TimePoint now{};
-  canopen::Node<rk5c::Device, bench::RecordingBus, canopen::LssHandler<canopen::LssOptions{}, Port>> node;
+  bench::NodeOf<rk5c::Device, bench::RecordingBus, canopen::LssHandler<canopen::LssOptions{}, Port>> node;
 };
 
 TEST(NodeWithLss, WithoutNodeIdStaysInInitialisationUntilItGetsOne) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -18,7 +19,7 @@ struct Nowhere {
   static bool send(const canopen::Frame&) { return true; }
 };
 Nowhere nowhere;
-constinit auto at_link_time = canopen::make_node<sample::Device>(
+constinit auto at_link_time = bench::make_node<sample::Device>(
     nowhere, canopen::NodeId{}, canopen::on_write<od::controlword>([](std::uint16_t) {}));
 
 TEST(Node, IsInitialisedWhenTheProgramIsLinked) {
@@ -28,16 +29,16 @@ TEST(Node, IsInitialisedWhenTheProgramIsLinked) {
 }
 
 TEST(Node, ABusWithoutStateAndHandlersWithoutCapturesTakeNoMemory) {
-  auto two = canopen::make_node<sample::Device>(nowhere, canopen::NodeId{},
-                                                canopen::on_write<od::controlword>([](std::uint16_t) {}),
-                                                canopen::on_read<od::statusword>([] {}));
+  auto two = bench::make_node<sample::Device>(nowhere, canopen::NodeId{},
+                                              canopen::on_write<od::controlword>([](std::uint16_t) {}),
+                                              canopen::on_read<od::statusword>([] {}));
   EXPECT_EQ(sizeof at_link_time, sizeof two);
   // Plus the state of a handler call.
-  EXPECT_LE(sizeof at_link_time, sizeof(canopen::Node<sample::Device, Nowhere>) + 8);
+  EXPECT_LE(sizeof at_link_time, sizeof(bench::NodeOf<sample::Device, Nowhere>) + 8);
 }
 
 TEST(Node, CannotBeCopied) {
-  using Node = canopen::Node<sample::Device, Nowhere>;
+  using Node = bench::NodeOf<sample::Device, Nowhere>;
   static_assert(!std::is_copy_constructible_v<Node> && !std::is_move_constructible_v<Node>);
 }
 
@@ -142,7 +143,7 @@ TEST(Node, ChangesItsStateWhenTheApplicationAsks) {
 
 TEST(Node, StaysAsItIsBeforeItHasPower) {
   bench::RecordingBus bus;
-  canopen::Node<sample::Device, bench::RecordingBus> node{bus, canopen::NodeId{5}};
+  bench::NodeOf<sample::Device, bench::RecordingBus> node{bus, canopen::NodeId{5}};
   node.request(canopen::NmtCommand::start, {});
   EXPECT_EQ(node.state(), canopen::NmtState::initialisation);
   EXPECT_EQ(bus.take(), "");

@@ -16,6 +16,7 @@
 
 #include "runtime/storage/flash_emulation.hpp"
 #include "support/bench.hpp"
+#include "omitting.hpp"
 
 namespace {
 
@@ -50,7 +51,7 @@ using Device = bench::Bench<rk5c::Device, Sensor>;
 
 TEST(Start, IsTheFirstCallAfterTheDefaultValuesHaveBeenSet) {
   bench::RecordingBus bus;
-  canopen::Node<rk5c::Device, bench::RecordingBus, Sensor> node{bus, NodeId{5}};
+  bench::NodeOf<rk5c::Device, bench::RecordingBus, Sensor> node{bus, NodeId{5}};
   EXPECT_EQ(node.application<Sensor>().calls, Calls{});
   node.start(TimePoint{});
   EXPECT_EQ(node.application<Sensor>().calls, (Calls{"start, state 0", "state 0", "state 127"}));
@@ -78,7 +79,7 @@ TEST(Start, IsCalledOnceForEachPowerOn) {
 
 TEST(Start, IsCalledWithoutANodeId) {
   bench::RecordingBus bus;
-  canopen::Node<rk5c::Device, bench::RecordingBus, Sensor> node{bus, canopen::unconfigured_node_id};
+  bench::NodeOf<rk5c::Device, bench::RecordingBus, Sensor> node{bus, canopen::unconfigured_node_id};
   node.start(TimePoint{});
   EXPECT_EQ(node.application<Sensor>().calls, (Calls{"start, state 0", "state 0"}));
   EXPECT_EQ(bus.take(), "");
@@ -87,7 +88,7 @@ TEST(Start, IsCalledWithoutANodeId) {
 TEST(Start, MayReportAnErrorAndConfigureTheNode) {
   bench::RecordingBus bus;
   auto node =
-      canopen::make_node<rk5c::Device>(bus, NodeId{5}, canopen::on_start([](auto& starting) {
+      bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::on_start([](auto& starting) {
                                          starting.emergency(0x5000, ErrorRegister::manufacturer);
                                          EXPECT_EQ(starting.set(od::producer_heartbeat_time{}, 100), canopen::ok);
                                          starting.request(NmtCommand::start, starting.now());
@@ -103,13 +104,13 @@ TEST(Start, SeesStoredValues) {
   canopen::MemoryStorage storage;
   bench::RecordingBus bus;
   {
-    auto node = canopen::make_node<rk5c::Device>(bus, NodeId{5}, canopen::stored_in(storage));
+    auto node = bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::stored_in(storage));
     node.start(TimePoint{});
     node.set(od::cyclic_timer{}, 9);
     ASSERT_EQ(node.save(), canopen::ok);
   }
   std::uint16_t seen = 0;
-  auto node = canopen::make_node<rk5c::Device>(bus, NodeId{5}, canopen::stored_in(storage),
+  auto node = bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::stored_in(storage),
                                                canopen::on_start([&](auto& starting) {
                                                  seen = starting.get(od::cyclic_timer{});
                                                  EXPECT_EQ(starting.save(), canopen::ok);
@@ -144,7 +145,7 @@ TEST(Start, IsCalledForEachHandlerInTheirOrder) {
   };
   First application{&calls};
   bench::RecordingBus bus;
-  auto node = canopen::make_node<rk5c::Device>(bus, NodeId{5}, canopen::on_start([&] { calls += "lambda "; }),
+  auto node = bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::on_start([&] { calls += "lambda "; }),
                                                canopen::application_at(application),
                                                canopen::on_start([&](auto&) { calls += "last"; }));
   node.start(TimePoint{});
@@ -162,7 +163,7 @@ TEST(Periodic, IsCalledAfterEachPeriod) {
 
 TEST(Periodic, IsNotCalledBeforeStart) {
   bench::RecordingBus bus;
-  canopen::Node<rk5c::Device, bench::RecordingBus, Sensor> node{bus, NodeId{5}};
+  bench::NodeOf<rk5c::Device, bench::RecordingBus, Sensor> node{bus, NodeId{5}};
   node.on_time(TimePoint{100ms});
   EXPECT_EQ(node.next_deadline(), std::nullopt);
   EXPECT_EQ(node.application<Sensor>().calls, Calls{});
@@ -198,7 +199,7 @@ TEST(Periodic, KeepsItsTimesWhileTheClockWraps) {
   constexpr std::uint64_t period = 333'333;
   std::uint64_t calls = 0;
   bench::RecordingBus bus;
-  auto node = canopen::make_node<rk5c::Device>(bus, NodeId{5},
+  auto node = bench::make_node<rk5c::Device>(bus, NodeId{5},
                                                canopen::every(canopen::Microseconds<period>{}, [&] { ++calls; }));
   constexpr std::uint64_t start = 0xFFFF'0000;
   std::uint64_t now = start;
@@ -235,7 +236,7 @@ TEST(Periodic, GoesOnWithinOnePeriodAfterAnyGap) {
 
 TEST(Periodic, DoesNotDependOnNodeIdAndState) {
   bench::RecordingBus bus;
-  canopen::Node<rk5c::Device, bench::RecordingBus, Sensor> unconfigured{bus, canopen::unconfigured_node_id};
+  bench::NodeOf<rk5c::Device, bench::RecordingBus, Sensor> unconfigured{bus, canopen::unconfigured_node_id};
   unconfigured.start(TimePoint{});
   EXPECT_EQ(unconfigured.next_deadline(), TimePoint{10ms});
   unconfigured.on_time(TimePoint{10ms});
@@ -324,7 +325,7 @@ TEST(Periodic, IsCalledWithTheLockHeld) {
   int held = 0;
   bench::RecordingBus bus;
   auto node =
-      canopen::make_node<rk5c::Device>(bus, NodeId{5}, canopen::every<Milliseconds<10>>([&] { held = lock.held; }));
+      bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::every<Milliseconds<10>>([&] { held = lock.held; }));
   canopen::Locked locked{node, lock};
   locked.start(TimePoint{});
   EXPECT_EQ(locked.next_deadline(), TimePoint{10ms});
@@ -374,9 +375,9 @@ TEST(Periodic, TakesFourBytesOfRam) {
     void every(Milliseconds<2>) {}
     void every(canopen::Seconds<1'800>) {}
   };
-  using Without = canopen::Node<rk5c::Device, bench::RecordingBus>;
-  using WithOne = canopen::Node<rk5c::Device, bench::RecordingBus, One>;
-  using WithThree = canopen::Node<rk5c::Device, bench::RecordingBus, Three>;
+  using Without = bench::NodeOf<rk5c::Device, bench::RecordingBus>;
+  using WithOne = bench::NodeOf<rk5c::Device, bench::RecordingBus, One>;
+  using WithThree = bench::NodeOf<rk5c::Device, bench::RecordingBus, Three>;
   EXPECT_LE(sizeof(WithOne), sizeof(Without) + 8);
   EXPECT_EQ(sizeof(WithThree), sizeof(WithOne) + 8);
 }

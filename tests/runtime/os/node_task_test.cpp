@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -53,7 +54,7 @@ struct Task {
   Task() { node.start(system.now()); }
   Port port;
   FakeSystem system;
-  canopen::Node<sample::Device, Port> node{port, canopen::NodeId{5}};
+  bench::NodeOf<sample::Device, Port> node{port, canopen::NodeId{5}};
   canopen::NodeTask<decltype(node), Port, FakeSystem> task{node, port, system};
 };
 

@@ -14,6 +14,8 @@
 #include <sample/device.hpp>
 #include <thread>
 
+#include "omitting.hpp"
+
 namespace {
 
 namespace od = sample::od;
@@ -50,7 +52,7 @@ bool run(const char* name, std::uint32_t requests) {
   QueuePort port;
   canopen::Mailbox<od::unsigned64_value> mailbox;
   auto node =
-      canopen::make_node<sample::Device>(port, canopen::NodeId{5}, Application{}, canopen::values_from(mailbox));
+      bench::make_node<sample::Device>(port, canopen::NodeId{5}, Application{}, canopen::values_from(mailbox));
   System system;
   std::atomic<bool> started = false;
   std::atomic<bool> stops = false;

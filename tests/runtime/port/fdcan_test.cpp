@@ -13,6 +13,7 @@
 
 #include "fake_m_can.hpp"
 #include "fdcan_bench.hpp"
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -341,7 +342,7 @@ TYPED_TEST(Fdcan, HasItsOwnPartOfTheMessageRam) {
 /// A complete node that uses the controller.
 TYPED_TEST(Fdcan, CarriesANode) {
   this->go_on_the_bus();
-  auto node = canopen::make_node<sample::Device>(this->bus);
+  auto node = bench::make_node<sample::Device>(this->bus);
   canopen::TimePoint now{};
   node.start(canopen::NodeId{5}, now);
   EXPECT_EQ(this->sent(), "705 00");
@@ -373,7 +374,7 @@ struct LssOnCan {
 TYPED_TEST(Fdcan, HasItsBitRateChangedByLss) {
   this->go_on_the_bus();
   LssOnCan<typename TestFixture::Bus> port{this->bus};
-  auto node = canopen::make_node<sample::Device>(this->bus, canopen::configured_by_lss(port));
+  auto node = bench::make_node<sample::Device>(this->bus, canopen::configured_by_lss(port));
   canopen::TimePoint now{};
   node.start(canopen::NodeId{5}, now);
   EXPECT_EQ(this->sent(), "705 00");

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -140,7 +141,7 @@ struct NewController : testing::Test {
 };
 
 TEST_F(NewController, GoesOnTheBusAndCarriesANode) {
-  auto node = canopen::make_node<sample::Device>(bus);
+  auto node = bench::make_node<sample::Device>(bus);
   canopen::TimePoint now{};
   node.start(canopen::NodeId{5}, now);
   EXPECT_EQ(controller.take(), "");  // not on the bus yet: the boot-up message waits

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "support/bench.hpp"
+#include "omitting.hpp"
 
 namespace {
 
@@ -39,7 +40,7 @@ struct BareNode {
   }
   bench::RecordingBus bus;
   canopen::TimePoint now{};
-  canopen::Node<Device, bench::RecordingBus> node{bus, NodeId{5}};
+  bench::NodeOf<Device, bench::RecordingBus> node{bus, NodeId{5}};
 };
 
 std::string byte(int value) {

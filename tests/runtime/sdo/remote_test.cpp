@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 #include "support/flooded_bus.hpp"
 
@@ -128,7 +129,7 @@ struct Plant {
 
   VirtualBus bus{125'000};
   VirtualBus::Endpoint& device_end = bus.attach();
-  canopen::Node<sample::Device, VirtualBus::Endpoint> device{device_end, NodeId{5}};
+  bench::NodeOf<sample::Device, VirtualBus::Endpoint> device{device_end, NodeId{5}};
   canopen::VirtualBusPort port{bus};
   canopen::BlockingSdo<canopen::VirtualBusPort> master{port};
   canopen::BlockingRemoteNode<sample::Device, canopen::VirtualBusPort> drive = master.remote<sample::Device>(NodeId{5});

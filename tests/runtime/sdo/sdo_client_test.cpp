@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -32,7 +33,7 @@ struct Pair {
   VirtualBus bus;
   VirtualBus::Endpoint& device_end = bus.attach();
   VirtualBus::Endpoint& client_end = bus.attach();
-  canopen::Node<sample::Device, VirtualBus::Endpoint> device{device_end, NodeId{5}};
+  bench::NodeOf<sample::Device, VirtualBus::Endpoint> device{device_end, NodeId{5}};
   SdoClient<VirtualBus::Endpoint> client{client_end, NodeId{5}, 100ms};
 };
 

@@ -4,6 +4,7 @@
 #include <canopen/host/memory_storage.hpp>
 #include <stored_device/device.hpp>
 
+#include "omitting.hpp"
 #include "parameter_storage_bench.hpp"
 #include "support/bench.hpp"
 
@@ -298,8 +299,8 @@ TEST(StoreParameters, CostsNothingWithoutAStorage) {
   struct Nowhere {
     static bool send(const canopen::Frame&) { return true; }
   };
-  using Without = canopen::Node<stored_device::Device, Nowhere>;
-  using With = canopen::Node<stored_device::Device, Nowhere, canopen::StoredIn<MemoryStorage>>;
+  using Without = bench::NodeOf<stored_device::Device, Nowhere>;
+  using With = bench::NodeOf<stored_device::Device, Nowhere, canopen::StoredIn<MemoryStorage>>;
   EXPECT_LE(sizeof(Without) + sizeof(void*), sizeof(With));
   EXPECT_LE(sizeof(With), sizeof(Without) + 2 * sizeof(void*));
 }

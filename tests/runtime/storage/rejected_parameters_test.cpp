@@ -8,6 +8,7 @@
 #include <longer_label/device.hpp>
 #include <stored_device/device.hpp>
 
+#include "omitting.hpp"
 #include "parameter_storage_bench.hpp"
 #include "support/bench.hpp"
 
@@ -44,7 +45,7 @@ TEST(StoreParameters, TellsThatStoredValuesAreLost) {
   MemoryStorage storage;
   storage.damaged = true;
   bench::RecordingBus bus;
-  auto node = canopen::make_node<stored_device::Device>(bus, NodeId{5}, canopen::stored_in(storage));
+  auto node = bench::make_node<stored_device::Device>(bus, NodeId{5}, canopen::stored_in(storage));
   node.start(canopen::TimePoint{});
   EXPECT_EQ(bus.take(), "705 00 | 085 00 63 01 00 00 00 00 00");
   EXPECT_EQ(node.get<od::error_register>(), 0x01);
@@ -140,7 +141,7 @@ struct WideFollower : sample::Device {
 };
 
 TEST(StoreParameters, LetsAValueOf64BitsFollowTheNodeId) {
-  using Node = canopen::Node<WideFollower, bench::RecordingBus, canopen::StoredIn<MemoryStorage>>;
+  using Node = bench::NodeOf<WideFollower, bench::RecordingBus, canopen::StoredIn<MemoryStorage>>;
   constexpr std::uint64_t high_bit = 1ull << 32;
   for (const std::uint64_t value : {std::uint64_t{5}, high_bit + 5, std::uint64_t{6}}) {
     MemoryStorage storage;

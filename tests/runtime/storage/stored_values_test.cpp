@@ -6,6 +6,7 @@
 #include <cstring>
 #include <every_service/device.hpp>
 
+#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {
@@ -22,7 +23,7 @@ constexpr auto reported = "705 00 | 085 00 63 01 00 00 00 00 00";
 /// Returns what a device sends at power-on.
 std::string power_on(MemoryStorage& storage) {
   bench::RecordingBus bus;
-  canopen::Node<every_service::Device, bench::RecordingBus, canopen::StoredIn<MemoryStorage>> node{
+  bench::NodeOf<every_service::Device, bench::RecordingBus, canopen::StoredIn<MemoryStorage>> node{
       bus, canopen::NodeId{5}, canopen::stored_in(storage)};
   node.start(canopen::TimePoint{});
   node.on_time(canopen::TimePoint{});

@@ -26,6 +26,8 @@
 #include <string>
 #include <vector>
 
+#include "omitting.hpp"
+
 namespace {
 
 using canopen::AbortCode;
@@ -237,7 +239,7 @@ class Run {
   LssPort port_;
   std::vector<Entry> parameters_;  ///< writable communication parameters of at most four bytes
   std::vector<Entry> values_;      ///< mappable values
-  canopen::Node<Device, Bus, decltype(canopen::configured_by_lss(port_))> node_{bus_,
+  bench::NodeOf<Device, Bus, decltype(canopen::configured_by_lss(port_))> node_{bus_,
                                                                                 canopen::configured_by_lss(port_)};
 };
 
@@ -246,7 +248,7 @@ void run_late_emergency(Report& report) {
   std::uint64_t now = 0;
   Bus bus{report, now};
   const auto time = [&] { return TimePoint{canopen::Duration{static_cast<canopen::Duration::rep>(now)}}; };
-  canopen::Node<every_service::Device, Bus> node{bus, NodeId{5}};
+  bench::NodeOf<every_service::Device, Bus> node{bus, NodeId{5}};
   node.start(time());
   const std::array<std::uint8_t, 2> ten{10, 0};
   if (node.set(0x1015, 0, ten) != canopen::ok) std::abort();

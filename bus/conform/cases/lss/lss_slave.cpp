@@ -10,6 +10,7 @@ Slave::Slave(Dut& dut) : dut_{dut} {
   if (!dut.sheet().information.capabilities.lss_supported.value_or(false)) {
     dut.not_applicable("the device does not have LSS: LSS_Supported is not 1 in the EDS");
   }
+  dut.need_part("lss");
   dut.enter(NmtState::pre_operational);
   for (std::uint8_t i = 0; i < 4; ++i) {
     dut.need(identity, static_cast<std::uint8_t>(i + 1));

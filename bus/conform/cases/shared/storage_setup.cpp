@@ -37,6 +37,7 @@ void Storage::reset() const {
 }
 
 void need_command(Dut& dut, std::uint16_t index, std::uint8_t sub_index) {
+  dut.need_part("storage");
   dut.need_writable(index, sub_index);
   if ((dut.read_number(index, sub_index) & 1U) == 0) {
     dut.not_applicable(label(index, sub_index) + ": bit 0 is 0, the device does not support it on command");

@@ -10,7 +10,8 @@
 ///     edsc read simulated:build/conform@5 5 1018h:01 --type u32
 ///
 /// `Pump` is default-constructible, once per power-on, and is the same class that a node on a real bus has:
-/// `canopen::Node<pump::Device, Bus, Pump>`.
+/// `canopen::Node<pump::Device, Bus, Pump>`. Instead of a device and an application, it may be a composition, which
+/// is the same for the program (node/composition.hpp): `canopen::simulate_device<PumpParts>(argc, argv)`.
 ///
 ///     struct Pump {
 ///       void written(od::speed_setpoint, std::uint16_t speed) { speed_ = speed; }  // node/application.hpp has them
@@ -23,8 +24,8 @@
 /// Instead of such functions, it may have `auto handlers()`, which returns a tuple of on_write(), on_read(), ...; the
 /// functions of the class itself are called if application_at(*this) is one of them.
 ///
-/// A device whose dictionary has 1010h or 1011h gets a storage in memory, and one with LSS a port that stores node-ID
-/// and bit rate, where the handlers do not bring their own.
+/// The storage, the LSS port and the memory of DOMAINs that the EDS promises are in the memory of the computer, unless
+/// the composition omits them.
 ///
 /// The protocol is in `host/simulation_codec.hpp`. What the application prints on standard output goes to standard
 /// error.
@@ -154,7 +155,7 @@ class Session {
     for (const SimulatedDevice& device : devices_) {
       if (!name.empty() && name != device.name) continue;
       simulation_ = std::make_unique<Simulation>(device, NodeId{*node_id});
-      answer += "ok\n";
+      answer.append("ok").append(simulation_->node().composition()) += '\n';
       return true;
     }
     answer += "no\n";
@@ -247,10 +248,28 @@ class Session {
   return simulation_detail::serve(session, output.number(), program);
 }
 
-/// The `main` of a program that simulates a device that edsc has generated, with the application of the user.
-template <class Device, class Application = NoApplication>
+namespace simulation_detail {
+
+/// The device and the application of a program's device: a generated device, or a composition.
+template <class Parts>
+struct Simulated {
+  using Device = Parts;
+  using Application = NoApplication;
+};
+template <class OfDevice, class... Parts>
+struct Simulated<Composition<OfDevice, Parts...>> {
+  using Device = OfDevice;
+  using Application = Composition<OfDevice, Parts...>;
+};
+
+}  // namespace simulation_detail
+
+/// The `main` of a program that simulates a device: a Composition, or a device that edsc has generated and the
+/// application of the user. Without application, edsc makes the composition.
+template <class Parts, class Application = typename simulation_detail::Simulated<Parts>::Application>
 [[nodiscard]] int simulate_device(int argc, char** argv) {
-  const SimulatedDevice device{"device", &make_simulated_node<Device, Application>};
+  const SimulatedDevice device{"device",
+                               &make_simulated_node<typename simulation_detail::Simulated<Parts>::Device, Application>};
   return simulate_devices(argc, argv, {&device, 1});
 }
 

@@ -3,11 +3,14 @@
 /// side.
 #pragma once
 
-#include <concepts>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <type_traits>
@@ -18,6 +21,7 @@
 #include "canopen/lss/lss_handler.hpp"
 #include "canopen/node.hpp"
 #include "canopen/node/accepted_frames.hpp"
+#include "canopen/node/composition.hpp"
 #include "canopen/storage/storage.hpp"
 
 namespace canopen {
@@ -77,43 +81,60 @@ class SimulatedNode {
                                       std::span<const std::uint8_t> bytes) = 0;
   virtual void emergency(std::uint16_t code, ErrorRegister bits) = 0;
   virtual void emergency_over(ErrorRegister bits) = 0;
+
+  /// Returns which parts its composition omits, as words of the protocol in host/simulation_codec.hpp, each after a
+  /// blank: `without=lss`, `without=storage`, `without=INDEX:SUB` for a DOMAIN; `composition=edsc`: it has no
+  /// application, and all parts that its EDS promises.
+  [[nodiscard]] virtual std::string composition() const = 0;
 };
 
-/// The application of a device that has none.
+/// The application of a device that has none: its composition is made by edsc.
 struct NoApplication {};
 
 namespace simulation_detail {
 
-/// Whether a predicate holds for a type among those of a tuple.
-template <class Tuple>
-struct Given;
-template <class... Handlers>
-struct Given<std::tuple<Handlers...>> {
-  static constexpr bool storage = (storage_detail::is_stored_in<Handlers> || ...);
-  static constexpr bool lss = (lss_detail::is_handler<Handlers> || ...);
+/// Memory for each DOMAIN of a list. What can be read has a value of 16 bytes.
+template <class Domains>
+struct DomainMemory;
+template <class... Os>
+struct DomainMemory<ObjectList<Os...>> {
+  std::array<std::array<std::uint8_t, 1024>, sizeof...(Os)> bytes{};
+
+  [[nodiscard]] auto parts() {
+    return [this]<std::size_t... I>(std::index_sequence<I...>) {
+      return std::tuple{bound_to<Os>(bytes[I], readable(Os::access) ? 16 : 0)...};
+    }
+    (std::index_sequence_for<Os...>{});
+  }
 };
 
-/// The storage and the LSS port that the data sheet of a device promises, where the application does not bring its own,
-/// before the handlers of the application.
-template <class Device, class Handlers>
-[[nodiscard]] auto complete(SimulatedMemory& memory, Handlers handlers) {
-  constexpr bool stores = Device::dictionary.has(0x1010, 0) || Device::dictionary.has(0x1011, 0);
-  const auto storage = [&memory] {
-    if constexpr (stores && !Given<Handlers>::storage) {
+/// What the hardware of a device would provide to a node with these other parts: storage, LSS port and the memory of
+/// DOMAINs, as far as the EDS promises them, and they are neither there nor omitted.
+template <class Device, class... Parts>
+struct Hardware {
+  using Domains = composition_detail::MissingDomains<Device, Parts...>;
+  DomainMemory<Domains> domains{};
+
+  [[nodiscard]] auto ports(SimulatedMemory& memory) {
+    return std::tuple_cat(storage(memory), lss(memory), domains.parts());
+  }
+
+ private:
+  [[nodiscard]] static auto storage([[maybe_unused]] SimulatedMemory& memory) {
+    if constexpr (composition_detail::is_missing<Device, part::storage, Parts...>) {
       return std::tuple{stored_in(memory.parameters)};
     } else {
       return std::tuple<>{};
     }
-  };
-  const auto lss = [&memory] {
-    if constexpr (requires { Device::lss_options; } && !Given<Handlers>::lss) {
-      return std::tuple{configured_by_lss<Device::lss_options>(memory)};
+  }
+  [[nodiscard]] static auto lss([[maybe_unused]] SimulatedMemory& memory) {
+    if constexpr (composition_detail::is_missing<Device, part::lss, Parts...>) {
+      return std::tuple{configured_by_lss(memory)};
     } else {
       return std::tuple<>{};
     }
-  };
-  return std::tuple_cat(storage(), lss(), std::move(handlers));
-}
+  }
+};
 
 /// Whether the handlers of a tuple have the functions of an application class.
 template <class Application, class Tuple>
@@ -122,29 +143,103 @@ template <class Application, class... Handlers>
 inline constexpr bool has_application<Application, std::tuple<Handlers...>> =
     (std::is_same_v<ApplicationAt<Application>, Handlers> || ...);
 
-/// The handlers of an application: those that `handlers()` returns, or the application itself, if it is a class with
-/// functions that a node calls. The node on a real bus has the same ones.
-template <class Application>
-[[nodiscard]] auto handlers_of(Application& application) {
-  if constexpr (requires { application.handlers(); }) {
-    using Handlers = decltype(application.handlers());
-    static_assert(!handler_detail::is_application<Application> || has_application<Application, Handlers>,
-                  "application: of a class with handlers(), the node calls the functions of the class itself only if "
-                  "application_at(*this) is one of these handlers");
-    static_assert(!handler_detail::has_uncalled_tick<Application>());
-    return application.handlers();
-  } else if constexpr (std::is_same_v<Application, NoApplication>) {
-    return std::tuple<>{};
+/// A node of a composition on simulated hardware.
+template <class Parts>
+class ComposedNode;
+template <class Device, class... Parts>
+class ComposedNode<Composition<Device, Parts...>> {
+  using Hardware = simulation_detail::Hardware<Device, typename composition_detail::Composed<Parts>::type...>;
+  Hardware hardware_{};
+
+ public:
+  [[nodiscard]] auto make_node(SimulatedBus& bus, SimulatedMemory& memory) {
+    return std::apply(
+        [&](auto... port) {
+          return canopen::make_node<canopen::Composition<Device, Parts...>>(bus, memory.node_id(), port...);
+        },
+        hardware_.ports(memory));
+  }
+};
+
+/// A node with the handlers that `handlers()` of an application returns.
+template <class Device, class Application>
+class WithHandlers {
+  template <class Tuple>
+  struct HardwareFor;
+  template <class... Handlers>
+  struct HardwareFor<std::tuple<Handlers...>> : Hardware<Device, Handlers...> {};
+
+  using Handlers = decltype(std::declval<Application&>().handlers());
+  static_assert(!handler_detail::is_application<Application> || has_application<Application, Handlers>,
+                "application: of a class with handlers(), the node calls the functions of the class itself only if "
+                "application_at(*this) is one of these handlers");
+  static_assert(!handler_detail::has_uncalled_tick<Application>());
+
+  Application application_{};
+  HardwareFor<Handlers> hardware_{};
+
+ public:
+  [[nodiscard]] auto make_node(SimulatedBus& bus, SimulatedMemory& memory) {
+    return canopen::make_node<Device>(bus, memory.node_id(),
+                                      std::tuple_cat(hardware_.ports(memory), application_.handlers()));
+  }
+};
+
+/// The parts of a device that its program has: a composition, an application, or nothing, so that edsc makes them.
+template <class Device, class Application>
+struct PartsOf {
+  using type = ComposedNode<Composition<Device, Application>>;
+};
+template <class Device>
+struct PartsOf<Device, NoApplication> {
+  using type = ComposedNode<Composition<Device>>;
+};
+template <class Device, class Application>
+requires requires(Application& application) { application.handlers(); }
+struct PartsOf<Device, Application> {
+  using type = WithHandlers<Device, Application>;
+};
+template <class Device, class... Parts>
+struct PartsOf<Device, Composition<Device, Parts...>> {
+  using type = ComposedNode<Composition<Device, Parts...>>;
+};
+
+/// `without=NAME` for each part that a composition omits, after blanks: `without=lss without=2030:00`.
+template <class Part>
+void append_omitted(std::string& words) {
+  if constexpr (DictionaryObject<Part>) {
+    std::array<char, 24> text;
+    std::snprintf(text.data(), text.size(), " without=%04X:%02X", unsigned{Part::index}, unsigned{Part::sub_index});
+    words += text.data();
   } else {
-    return std::tuple{application_at(application)};
+    words.append(" without=").append(Part::name);
   }
 }
+template <class Part>
+struct Omitted {
+  static void append(std::string&) {}
+};
+template <class... Parts>
+struct Omitted<without<Parts...>> {
+  static void append(std::string& words) { (append_omitted<Parts>(words), ...); }
+};
+template <class Application>
+struct OmittedBy {
+  static void append(std::string&) {}
+};
+template <>
+struct OmittedBy<NoApplication> {
+  static void append(std::string& words) { words += " composition=edsc"; }
+};
+template <class Device, class... Parts>
+struct OmittedBy<Composition<Device, Parts...>> {
+  static void append(std::string& words) { (Omitted<Parts>::append(words), ...); }
+};
 
 template <class Device, class Application>
 class NodeOf final : public SimulatedNode {
  public:
-  NodeOf(SimulatedBus& bus, SimulatedMemory& memory)
-      : node_(make_node<Device>(bus, memory.node_id(), complete<Device>(memory, handlers_of(application_)))) {}
+  NodeOf(SimulatedBus& bus, SimulatedMemory& memory) : node_(parts_.make_node(bus, memory)) {}
 
   void start(TimePoint now) override {
     node_.start(now);
@@ -171,16 +266,19 @@ class NodeOf final : public SimulatedNode {
   void emergency(std::uint16_t code, ErrorRegister bits) override { node_.emergency(code, bits); }
   void emergency_over(ErrorRegister bits) override { node_.emergency_over(bits); }
 
- private:
-  using Node = decltype(make_node<Device>(
-      std::declval<SimulatedBus&>(), NodeId{},
-      complete<Device>(std::declval<SimulatedMemory&>(), handlers_of(std::declval<Application&>()))));
+  [[nodiscard]] std::string composition() const override {
+    std::string words;
+    OmittedBy<Application>::append(words);
+    return words;
+  }
 
+ private:
+  using Parts = typename PartsOf<Device, Application>::type;
   /// A node has to be served every half hour at least.
   static constexpr Duration longest_pause{1'000'000'000};
 
-  Application application_{};
-  Node node_;
+  Parts parts_{};
+  decltype(parts_.make_node(std::declval<SimulatedBus&>(), std::declval<SimulatedMemory&>())) node_;
   TimePoint serve_until_{};
 };
 
@@ -189,7 +287,8 @@ class NodeOf final : public SimulatedNode {
 /// Switches a device on: its node and its application are made, `start` follows.
 using MakeSimulatedNode = std::unique_ptr<SimulatedNode> (*)(SimulatedBus& bus, SimulatedMemory& memory);
 
-/// The function that does it for a device that edsc has generated. See host/simulated_device.hpp for `Application`.
+/// The function that does it for a device that edsc has generated. `Application`: a Composition of the device, or an
+/// application class; host/simulated_device.hpp describes it.
 template <class Device, class Application = NoApplication>
 [[nodiscard]] std::unique_ptr<SimulatedNode> make_simulated_node(SimulatedBus& bus, SimulatedMemory& memory) {
   return std::make_unique<simulation_detail::NodeOf<Device, Application>>(bus, memory);

@@ -14,7 +14,9 @@
 ///     emergency_over REGISTER      the error has gone
 ///     power_cycle                  off and on; storage is kept
 ///
-/// `send` does not have an answer. That of `node` is `ok`, or `no` from a program that does not have this device. The
+/// `send` does not have an answer. That of `node` is `no` from a program that does not have this device, else `ok` and
+/// the composition of the device, each word after a blank: `composition=edsc` without an application, `without=lss`,
+/// `without=storage` and `without=INDEX:SUB` (a DOMAIN) for each part that it omits although its EDS promises it. The
 /// last four answer `ok`, `refused ABORT-CODE`, or `no` from a program that cannot do it, and let no time pass. The
 /// program ends with its input, with exit code 0, or with 2 at a line that is not one of these.
 #pragma once

@@ -96,9 +96,10 @@ class SocketCan {
   // For host_loop.hpp.
 
   /// Makes the kernel discard frames that the node ignores.
-  template <class Device, class B, class... Handlers>
-  void listen_for(Node<Device, B, Handlers...>& node) {
-    constexpr std::size_t most = max_accepted_frames<Device>;
+  template <class SomeNode>
+  requires requires { typename SomeNode::DeviceType; }
+  void listen_for(SomeNode& node) {
+    constexpr std::size_t most = max_accepted_frames<typename SomeNode::DeviceType>;
     if constexpr (most <= CAN_RAW_FILTER_MAX) {
       std::array<can_filter, most> filters;
       std::size_t count = 0;

@@ -1,4 +1,4 @@
-/// LSS in a node: the functions that the application provides to a slave, as one of the node's handlers.
+/// LSS in a node: the functions that the application provides to a slave, as one of the parts of the node.
 ///
 ///     struct Port {
 ///       canopen::LssError accept(canopen::NodeId);           // or reject a node-ID, 1..127 or 255
@@ -8,16 +8,23 @@
 ///       void stop_communication();
 ///       void start_communication(canopen::LssBitTiming);
 ///     };
-///     auto sensor = canopen::make_node<rk5c::Device>(bus, stored_node_id,
-///                                                    canopen::configured_by_lss<rk5c::Device::lss_options>(port));
+///     auto sensor = canopen::make_node<rk5c::Device>(bus, stored_node_id, canopen::configured_by_lss(port));
 #pragma once
 
 #include <tuple>
+#include <type_traits>
 
 #include "canopen/lss/lss_slave.hpp"
 
 namespace canopen {
 
+/// The LSS slave of a node, with the options of its device.
+template <class Port>
+struct ConfiguredByLss {
+  Port* port;
+};
+
+/// The same with options of its own, for a device whose EDS does not have LSS.
 template <LssOptions Options, class Port>
 struct LssHandler {
   static constexpr LssOptions options = Options;
@@ -25,7 +32,11 @@ struct LssHandler {
 };
 
 /// Adds an LSS slave to a node. The port must outlive the node.
-template <LssOptions Options = LssOptions{}, class Port>
+template <class Port>
+[[nodiscard]] constexpr ConfiguredByLss<Port> configured_by_lss(Port& port) {
+  return {&port};
+}
+template <LssOptions Options, class Port>
 [[nodiscard]] constexpr LssHandler<Options, Port> configured_by_lss(Port& port) {
   return {&port};
 }
@@ -34,6 +45,8 @@ namespace lss_detail {
 
 template <class Handler>
 inline constexpr bool is_handler = false;
+template <class Port>
+inline constexpr bool is_handler<ConfiguredByLss<Port>> = true;
 template <LssOptions Options, class Port>
 inline constexpr bool is_handler<LssHandler<Options, Port>> = true;
 
@@ -44,20 +57,36 @@ struct Find {
 };
 template <class H, class... Rest>
 struct Find<H, Rest...> {
-  using type = typename Find<Rest...>::type;
-};
-template <LssOptions Options, class Port, class... Rest>
-struct Find<LssHandler<Options, Port>, Rest...> {
-  using type = LssHandler<Options, Port>;
+  using type = std::conditional_t<is_handler<H>, H, typename Find<Rest...>::type>;
 };
 
-/// The slave for a handler; an empty class if there is none.
-template <class Handler>
-struct SlaveOf {
-  using type = LssSlave<Handler::options>;
+/// Whether the EDS of a device has LSS.
+template <class Device>
+concept HasLss = requires {
+  Device::lss_options;
 };
-template <>
-struct SlaveOf<void> {
+
+/// The options of an LSS handler in a device.
+template <class Device, class Handler>
+inline constexpr LssOptions options_of{};
+template <HasLss Device, class Port>
+inline constexpr LssOptions options_of<Device, ConfiguredByLss<Port>> = Device::lss_options;
+template <class Device, LssOptions Options, class Port>
+inline constexpr LssOptions options_of<Device, LssHandler<Options, Port>> = Options;
+template <HasLss Device, LssOptions Options, class Port>
+inline constexpr LssOptions options_of<Device, LssHandler<Options, Port>> = [] {
+  static_assert(Options == Device::lss_options,
+                "configured_by_lss: these are not the options of the device; write configured_by_lss(port)");
+  return Options;
+}();
+
+/// The slave for a handler; an empty class if there is none.
+template <class Device, class Handler>
+struct SlaveOf {
+  using type = LssSlave<options_of<Device, Handler>>;
+};
+template <class Device>
+struct SlaveOf<Device, void> {
   struct type {};
 };
 

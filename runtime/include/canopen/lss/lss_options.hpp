@@ -27,6 +27,8 @@ struct LssOptions {
   bool fastscan = true;
   bool served_in_stopped = true;
   bool served_in_operational = false;
+
+  friend constexpr bool operator==(const LssOptions&, const LssOptions&) = default;
 };
 
 }  // namespace canopen

@@ -118,9 +118,10 @@ inline constexpr std::array<Entry, source_count<Device>> sources = [] {
 /// Calls `visit(AcceptedFrame)` for all frames that this node does not ignore, some of them more than once, with
 /// its present COB-IDs: they change with SDO writes, resets, LSS and the application. A node without node-ID
 /// accepts only LSS.
-template <class Device, class B, class... Handlers, class Visit>
-void for_each_accepted_frame(Node<Device, B, Handlers...>& node, Visit&& visit) {
-  if constexpr (!std::is_void_v<typename lss_detail::Find<Handlers...>::type>) {
+template <class SomeNode, class Visit>
+void for_each_accepted_frame(SomeNode& node, Visit&& visit) {
+  using Device = typename SomeNode::DeviceType;
+  if constexpr (SomeNode::has_lss) {
     visit(AcceptedFrame{lss::request_id, false, false});
   }
   const NodeId node_id = node.node_id();

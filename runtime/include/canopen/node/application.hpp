@@ -74,7 +74,7 @@ template <class H>
 inline constexpr bool is_handler =
     is_access_handler<H> || is_event_handler<H> || is_periodic_handler<H> || domain_detail::is_reader<H> ||
     domain_detail::is_writer<H> || storage_detail::is_stored_in<H> || lss_detail::is_handler<H> ||
-    mailbox_detail::is_values_from<H>;
+    mailbox_detail::is_values_from<H> || domain_detail::is_bound_to<H>;
 
 /// The class of an application, which a node has as a handler; any other type for a handler.
 template <class H>

@@ -14,6 +14,7 @@
 #include "canopen/lss/lss_handler.hpp"
 #include "canopen/node/application.hpp"
 #include "canopen/node/application_check.hpp"
+#include "canopen/node/composition.hpp"
 #include "canopen/node/handlers.hpp"
 #include "canopen/node/mailbox.hpp"
 #include "canopen/od/dictionary.hpp"
@@ -110,7 +111,9 @@ struct MailboxHandler {
 template <class Device, class Node, class H, class... Handlers>
 [[nodiscard]] constexpr bool check_handler() {
   using Application = typename ApplicationOf<H>::type;
-  if constexpr (is_application<Application>) {
+  if constexpr (composition_detail::is_omits<H> || composition_detail::is_without<H>) {
+    return true;  // node/composition.hpp
+  } else if constexpr (is_application<Application>) {
     return check_application<Device, Node, Application>();
   } else if constexpr (called<H> != Called::by_service) {
     using Object = typename H::object;

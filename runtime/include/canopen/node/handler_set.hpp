@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <span>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/node/application.hpp"
 #include "canopen/node/handled.hpp"
+#include "canopen/node/parts.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/value_bits.hpp"
@@ -39,8 +41,12 @@ class HandlerSet {
   using Handled = handler_detail::Handled<Device, Node, H>;
 
  public:
-  constexpr explicit HandlerSet(Handlers... handlers) : handlers_{std::move(handlers)...} {}
-  constexpr HandlerSet() requires(sizeof...(Handlers) > 0) = default;
+  /// With references to the values of some parts, in any order; the others are default-constructed (node/parts.hpp).
+  template <class... Given>
+  constexpr explicit HandlerSet(std::tuple<Given...> parts)
+      : HandlerSet{parts, std::index_sequence_for<Handlers...>{}} {
+    static_assert(part_detail::checked<Given...>(std::type_identity<std::tuple<Handlers...>>{}));
+  }
 
   /// Whether the value of `O` is checked before it is written, or used after it.
   template <DictionaryObject O>
@@ -161,6 +167,12 @@ class HandlerSet {
   }
 
  private:
+  template <class... Given, std::size_t... I>
+  constexpr HandlerSet([[maybe_unused]] std::tuple<Given...>& parts, std::index_sequence<I...>)
+      : handlers_(
+            part_detail::PartValue<Handlers, part_detail::place_of<I, std::tuple<Handlers...>, Given...>, Given...>{
+                parts}...) {}
+
   template <class Visit>
   constexpr void for_each([[maybe_unused]] Visit&& visit) {
     std::apply([&](auto&... handler) { (visit(handler), ...); }, handlers_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "canopen/can/frame.hpp"
@@ -9,32 +10,28 @@
 
 namespace canopen {
 
-template <class Device, class B, class... Handlers>
+template <class Device, class B, class... Parts>
 class Node;
 
-/// Returns a node of a device on a bus, with its handlers:
+/// Returns a node of a device on a bus, with its parts: handlers, applications, storage, LSS port, in any order:
 ///     auto drive = canopen::make_node<cpc_tc1::Device>(bus, canopen::NodeId{5}, canopen::on_write<...>(...));
-template <class Device, class B, class... Handlers>
-[[nodiscard]] constexpr Node<Device, B, Handlers...> make_node(B& bus, NodeId node_id, Handlers... handlers) {
-  return Node<Device, B, Handlers...>{bus, node_id, std::move(handlers)...};
+/// `Device` may be a Composition; its parts are default-constructed.
+template <class Device, class B, class... Parts>
+[[nodiscard]] constexpr auto make_node(B& bus, NodeId node_id, Parts&&... parts) {
+  return Node<Device, B, std::remove_cvref_t<Parts>...>{bus, node_id, std::forward<Parts>(parts)...};
 }
 
 /// The same with the handlers in a tuple, as returned by a function that creates all handlers of an application:
 ///     auto pump_node = canopen::make_node<pump::Device>(bus, canopen::NodeId{5}, application.handlers());
-template <class Device, class B, class... Handlers>
-[[nodiscard]] constexpr Node<Device, B, Handlers...> make_node(B& bus, NodeId node_id,
-                                                               std::tuple<Handlers...> handlers) {
-  return std::apply(
-      [&](Handlers&... handler) {
-        return Node<Device, B, Handlers...>{bus, node_id, std::move(handler)...};
-      },
-      handlers);
+template <class Device, class B, class... Parts>
+[[nodiscard]] constexpr auto make_node(B& bus, NodeId node_id, std::tuple<Parts...> parts) {
+  return std::apply([&](Parts&... part) { return Node<Device, B, Parts...>{bus, node_id, std::move(part)...}; }, parts);
 }
 
 /// The same for a node whose node-ID is passed to `start`.
-template <class Device, class B, class... Handlers>
-[[nodiscard]] constexpr Node<Device, B, Handlers...> make_node(B& bus, Handlers... handlers) {
-  return Node<Device, B, Handlers...>{bus, std::move(handlers)...};
+template <class Device, class B, class... Parts>
+[[nodiscard]] constexpr auto make_node(B& bus, Parts&&... parts) {
+  return Node<Device, B, std::remove_cvref_t<Parts>...>{bus, std::forward<Parts>(parts)...};
 }
 
 }  // namespace canopen

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "canopen/node/service_set.hpp"
+#include "canopen/node/services/bound_domains.hpp"
 #include "canopen/node/services/bus_errors.hpp"
 #include "canopen/node/services/drive_modes.hpp"
 #include "canopen/node/services/emergency.hpp"
@@ -39,7 +40,7 @@ using NodeServices = ServiceSet<
     service::Sync<Device>,
     service::BootUp<Device>,
     service::BusErrors<Device>,
-    service::Lss<Handlers...>,
+    service::Lss<Device, Handlers...>,
     service::NodeGuarding<Device>,
     service::Sdo<Device, Handlers...>,
     service::Heartbeat<Device>,
@@ -56,7 +57,8 @@ using NodeServices = ServiceSet<
     service::Mpdos<Device>,
     service::ErrorReaction<Device>,
     service::StoredEds<Device>,
-    service::DriveModes<Device>>;
+    service::DriveModes<Device>,
+    service::BoundDomains<Device, Handlers...>>;
 // clang-format on
 
 }  // namespace canopen

@@ -10,6 +10,7 @@
 ///         })
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <tuple>
@@ -56,7 +57,33 @@ template <DictionaryObject O, class F>
   return {std::move(handler)};
 }
 
+/// The memory of a DOMAIN, as a part of a node: a download may fill all of it, an upload sends its first `size` bytes.
+/// It must outlive the node. Without memory, the application calls `bind` of the node.
+template <DictionaryObject O>
+struct BoundTo {
+  using object = O;
+  std::span<std::uint8_t> memory{};
+  std::size_t size = 0;
+};
+
+/// Binds a DOMAIN to memory, which is also its value; a second number is the size of the value in bytes:
+///     auto node = canopen::make_node<Device>(bus, node_id, canopen::bound_to<od::parameter_file>(memory));
+template <DictionaryObject O>
+[[nodiscard]] constexpr BoundTo<O> bound_to(std::span<std::uint8_t> memory, std::size_t size) {
+  static_assert(std::is_same_v<typename O::type, Domain>, "bound_to: only a DOMAIN is bound to memory");
+  return {memory, size < memory.size() ? size : memory.size()};
+}
+template <DictionaryObject O>
+[[nodiscard]] constexpr BoundTo<O> bound_to(std::span<std::uint8_t> memory) {
+  return bound_to<O>(memory, memory.size());
+}
+
 namespace domain_detail {
+
+template <class Handler>
+inline constexpr bool is_bound_to = false;
+template <class O>
+inline constexpr bool is_bound_to<BoundTo<O>> = true;
 
 template <class Handler>
 inline constexpr bool is_reader = false;

@@ -12,8 +12,8 @@
 
 namespace canopen::service {
 
-template <class... Handlers>
-class Lss : public ServiceDefaults<Lss<Handlers...>> {
+template <class Device, class... Handlers>
+class Lss : public ServiceDefaults<Lss<Device, Handlers...>> {
   using Handler = typename lss_detail::Find<Handlers...>::type;
 
  public:
@@ -84,7 +84,7 @@ class Lss : public ServiceDefaults<Lss<Handlers...>> {
     void start_communication(LssBitTiming timing) const { port(host).start_communication(timing); }
   };
 
-  [[no_unique_address]] typename lss_detail::SlaveOf<Handler>::type slave_{};
+  [[no_unique_address]] typename lss_detail::SlaveOf<Device, Handler>::type slave_{};
 };
 
 }  // namespace canopen::service
