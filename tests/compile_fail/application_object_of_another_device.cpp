@@ -4,7 +4,7 @@
 #include <every_type/device.hpp>
 #include <sdo_device/device.hpp>
 
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 namespace od = every_type::od;
 

@@ -4,7 +4,7 @@
 #include <every_service/device.hpp>
 #include <sdo_device/device.hpp>
 
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 struct Bus {
   bool send(const canopen::Frame&) { return true; }

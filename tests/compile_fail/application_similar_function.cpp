@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "support/omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
@@ -17,4 +19,4 @@ struct Application {
 };
 
 Bus bus;
-canopen::Node<every_type::Device, Bus, Application> node{bus, canopen::NodeId{5}};
+bench::NodeOf<every_type::Device, Bus, Application> node{bus, canopen::NodeId{5}};

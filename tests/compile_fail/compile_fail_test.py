@@ -79,7 +79,7 @@ def main() -> int:
     cases = sorted((source_dir / "tests/compile_fail").glob(f"{name}.cpp"))
     compilers = those_installed((GCC, CLANG))
     include = (*(path for path in sorted(generated.iterdir()) if path.is_dir()), source_dir / "runtime/include",
-               source_dir / "tests/support")
+               source_dir / "tests")
     with tempfile.TemporaryDirectory() as scratch:
         jobs = []
         for compiler in compilers:

@@ -3,13 +3,15 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "support/omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
   bool send(const canopen::Frame&) { return true; }
 };
 
-void use(canopen::Node<every_type::Device, Bus>& node) {
+void use(bench::NodeOf<every_type::Device, Bus>& node) {
 #ifdef GOOD
   node.emergency(0x8100, canopen::ErrorRegister::communication);
 #else

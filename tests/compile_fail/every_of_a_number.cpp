@@ -4,7 +4,7 @@
 #include <chrono>
 #include <every_type/device.hpp>
 
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 using namespace std::chrono_literals;
 

@@ -3,7 +3,7 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 namespace od = every_type::od;
 

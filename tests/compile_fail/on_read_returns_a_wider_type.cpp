@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "support/omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
@@ -16,4 +18,4 @@ auto handler = canopen::on_read(od::unsigned16_value{}, [] { return static_cast<
 #else
 auto handler = canopen::on_read(od::unsigned16_value{}, [] { return measure(); });
 #endif
-canopen::Node<every_type::Device, Bus, decltype(handler)> node{bus, canopen::NodeId{5}, handler};
+bench::NodeOf<every_type::Device, Bus, decltype(handler)> node{bus, canopen::NodeId{5}, handler};

@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "support/omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
@@ -15,4 +17,4 @@ auto handler = canopen::on_write(od::unsigned16_value{}, [](std::uint16_t) {});
 #else
 auto handler = canopen::on_write(od::unsigned16_value{}, [](std::uint8_t) {});
 #endif
-canopen::Node<every_type::Device, Bus, decltype(handler)> node{bus, canopen::NodeId{5}, handler};
+bench::NodeOf<every_type::Device, Bus, decltype(handler)> node{bus, canopen::NodeId{5}, handler};

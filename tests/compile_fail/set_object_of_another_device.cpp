@@ -3,6 +3,8 @@
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
 
+#include "support/omitting.hpp"
+
 namespace od = every_type::od;
 
 struct Bus {
@@ -17,7 +19,7 @@ struct target_torque : canopen::TypedObject<std::uint16_t, canopen::Access::rw> 
 };
 }  // namespace other::od
 
-void use(canopen::Node<every_type::Device, Bus>& node) {
+void use(bench::NodeOf<every_type::Device, Bus>& node) {
 #ifdef GOOD
   node.set(od::access_rw{}, 5);
 #else

@@ -26,6 +26,7 @@ COMMON_HEADERS = """#include <canopen/sdo/remote_node.hpp>
 #include <canopen/node/locked.hpp>
 #include <canopen/host/blocking_sdo.hpp>
 #include <every_type/device.hpp>
+#include "support/omitting.hpp"
 """
 SOURCE = """namespace od = every_type::od;
 using Device = every_type::Device;
@@ -41,7 +42,7 @@ struct Lock {{
 enum Setting : std::uint16_t {{ setting = 7 }};
 enum class Mode : std::uint16_t {{ on = 7 }};
 using O = {object};
-using Node = canopen::Node<Device, Bus>;
+using Node = bench::NodeOf<Device, Bus>;
 using Box = canopen::Mailbox<O>;
 void pass(Node& node, canopen::Locked<Node, Lock>& locked, Box& box, canopen::RemoteNode<Device, Bus>& remote,
           canopen::BlockingObjects<Device, canopen::BlockingSdo<Bus>>& objects, canopen::TimePoint now,
@@ -131,7 +132,7 @@ def main() -> int:
     only = sys.argv[3:]
     compilers = those_installed((GCC, CLANG))
     include = (*(path for path in sorted(generated.iterdir()) if path.is_dir()), generated,
-               source_dir / "runtime/include")
+               source_dir / "runtime/include", source_dir / "tests")
     with tempfile.TemporaryDirectory() as scratch:
         jobs = []
         for compiler in compilers:

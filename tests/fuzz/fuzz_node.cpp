@@ -14,7 +14,7 @@
 #include <cstring>
 #include <vector>
 
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 namespace {
 

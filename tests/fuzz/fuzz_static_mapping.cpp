@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "fuzz.hpp"
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 #include "steps.hpp"
 
 namespace edsc::fuzz {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "fuzz.hpp"
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 namespace edsc::fuzz {
 namespace {

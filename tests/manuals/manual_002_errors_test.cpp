@@ -4,7 +4,7 @@
 #include <cpd/device.hpp>
 
 #include "manual_bench.hpp"
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 namespace {
 

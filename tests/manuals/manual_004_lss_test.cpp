@@ -6,7 +6,7 @@
 #include <string>
 
 #include "manual_bench.hpp"
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 namespace {
 

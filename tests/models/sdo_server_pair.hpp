@@ -1,7 +1,7 @@
 /// A node of the runtime and the model of an SDO server, which receive the same frames.
 #pragma once
 
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 #include "sdo_server_model.hpp"
 
 #include <gtest/gtest.h>

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 namespace plant_bench {
 

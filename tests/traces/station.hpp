@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 #include "trace.hpp"
 
 namespace trace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "every_type_bench.hpp"
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 namespace {
 

@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "support/bench.hpp"
-#include "omitting.hpp"
 
 namespace {
 

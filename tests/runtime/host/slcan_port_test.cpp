@@ -17,7 +17,7 @@
 #include <thread>
 #include <utility>
 
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 #include "runtime/host/stream_bench.hpp"
 
 namespace {

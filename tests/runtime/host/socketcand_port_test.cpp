@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "runtime/host/stream_bench.hpp"
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 namespace {
 

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {

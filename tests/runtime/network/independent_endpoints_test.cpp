@@ -15,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {

@@ -24,7 +24,6 @@
 #include <random>
 #include <vector>
 
-#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {

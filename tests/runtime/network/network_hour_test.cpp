@@ -21,7 +21,7 @@
 #include <utility>
 #include <vector>
 
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 namespace {
 

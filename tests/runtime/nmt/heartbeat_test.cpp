@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {

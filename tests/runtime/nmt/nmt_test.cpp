@@ -4,7 +4,6 @@
 #include <self_starting/device.hpp>
 #include <vector>
 
-#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {

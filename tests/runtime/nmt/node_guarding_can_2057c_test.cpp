@@ -5,7 +5,6 @@
 #include <can_2057c/device.hpp>
 #include <string>
 
-#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {

@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace master_bench {

@@ -6,7 +6,6 @@
 
 #include <string>
 
-#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {

@@ -7,7 +7,6 @@
 
 #include <cstring>
 
-#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {

@@ -5,7 +5,6 @@
 #include <limits>
 #include <type_traits>
 
-#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {

@@ -16,7 +16,6 @@
 
 #include "runtime/storage/flash_emulation.hpp"
 #include "support/bench.hpp"
-#include "omitting.hpp"
 
 namespace {
 

@@ -14,7 +14,7 @@
 #include <sample/device.hpp>
 #include <thread>
 
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 namespace {
 

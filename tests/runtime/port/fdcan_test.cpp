@@ -13,7 +13,6 @@
 
 #include "fake_m_can.hpp"
 #include "fdcan_bench.hpp"
-#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {

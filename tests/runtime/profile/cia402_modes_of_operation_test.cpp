@@ -12,7 +12,6 @@
 #include <string>
 
 #include "support/bench.hpp"
-#include "omitting.hpp"
 
 namespace {
 

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "omitting.hpp"
 #include "support/bench.hpp"
 #include "support/flooded_bus.hpp"
 

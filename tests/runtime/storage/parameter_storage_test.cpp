@@ -4,7 +4,6 @@
 #include <canopen/host/memory_storage.hpp>
 #include <stored_device/device.hpp>
 
-#include "omitting.hpp"
 #include "parameter_storage_bench.hpp"
 #include "support/bench.hpp"
 

@@ -8,7 +8,6 @@
 #include <longer_label/device.hpp>
 #include <stored_device/device.hpp>
 
-#include "omitting.hpp"
 #include "parameter_storage_bench.hpp"
 #include "support/bench.hpp"
 

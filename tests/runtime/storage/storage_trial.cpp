@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "flash_emulation.hpp"
+#include "support/omitting.hpp"
 
 namespace {
 
@@ -234,7 +235,7 @@ struct Bus {
 };
 
 template <class Device>
-using Node = canopen::Node<Device, Bus, canopen::StoredIn<TrialStorage>>;
+using Node = bench::NodeOf<Device, Bus, canopen::StoredIn<TrialStorage>>;
 
 /// Reads the values of a version.
 template <class N>

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <every_service/device.hpp>
 
-#include "omitting.hpp"
 #include "support/bench.hpp"
 
 namespace {

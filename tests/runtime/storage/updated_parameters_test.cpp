@@ -59,7 +59,7 @@ struct Powered {
 
   bench::RecordingBus bus;
   bool reported = false;  ///< EMCY 6300h
-  canopen::Node<Device, bench::RecordingBus, canopen::StoredIn<Storage>, Handlers...> node;
+  bench::NodeOf<Device, bench::RecordingBus, canopen::StoredIn<Storage>, Handlers...> node;
 };
 
 using List = std::vector<std::string>;

@@ -26,7 +26,7 @@
 #include <string>
 #include <vector>
 
-#include "omitting.hpp"
+#include "support/omitting.hpp"
 
 namespace {
 
