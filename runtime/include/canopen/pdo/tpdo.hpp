@@ -322,7 +322,7 @@ class TpdoService {
     if constexpr (has_event_timer) {
       const Duration period = from_milliseconds(parameter<pdo_parameter::event_timer>(i, entries));
       Deadline next = slot.times.event_due.at() + period;
-      if ((slot.flags & timed) == 0 || next.has_passed(now)) next = now + period;
+      if ((slot.flags & timed) == 0 || !is_within(next.at(), period, now)) next = now + period;
       slot.times.event_due = next;
       slot.flags &= static_cast<std::uint8_t>(~timed);
       if (period.count() != 0) slot.flags |= timed;
