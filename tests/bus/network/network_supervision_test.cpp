@@ -189,21 +189,6 @@ TEST_F(NetworkApply, TwoNodesWithOneNodeIdAreNotStarted) {
   }
 }
 
-/// The node loses its values after they have been verified, and the boot-up message is lost.
-TEST_F(NetworkApply, ReadsTheValuesAgainBeforeTheStart) {
-  load(R"(, "heartbeat_ms": 100)");
-  faulty::Slave& slave = add({.fault = Fault::none});
-  unsigned reads = 0;
-  bus.listen([&](const Frame& frame, TimePoint) {
-    const bool reads_speed =
-        frame.id == 0x605 && frame.data[0] == 0x40 && frame.data[1] == 0x00 && frame.data[2] == 0x20;
-    if (reads_speed && ++reads == 3) slave.forget();
-  });
-  EXPECT_FALSE(apply());
-  EXPECT_NE(problems().find("no longer has its configuration: 2000h:00"), std::string::npos) << problems();
-  EXPECT_EQ(slave.starts(), 0u);
-}
-
 TEST_F(NetworkApply, ASlowNodeIsConfiguredWithTheTimeoutOfTheNetworkFile) {
   for (const bool has_timeout : {false, true}) {
     load(has_timeout ? R"(, "sdo_timeout_ms": 1000)" : "");
