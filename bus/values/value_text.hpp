@@ -32,8 +32,8 @@ void append_number(std::string& text, const canopen::DataTypeRow& type, std::uin
 void append_value(std::string& text, const canopen::DataTypeRow& type, std::span<const std::uint8_t> bytes,
                   std::string_view unit = {});
 
-/// With the unit of the entry if raw values are in it (no Factor other than 1). UNSIGNED32 values of communication parameters, such as COB-IDs and mappings, in
-/// hexadecimal only.
+/// With the unit of the entry if raw values are in it (no Factor other than 1). UNSIGNED32 values of communication
+/// parameters, such as COB-IDs and mappings, in hexadecimal only.
 void append_value(std::string& text, const Entry& entry, std::span<const std::uint8_t> bytes);
 
 /// `"a \"b\" \x0D"`: in quotation marks, non-printable characters as codes.

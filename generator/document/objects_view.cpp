@@ -75,9 +75,7 @@ std::string limits_text(const Entry& entry) {
   return fmt::format("{} .. {}", shown_value(entry.low_limit, *entry.type), shown_value(entry.high_limit, *entry.type));
 }
 
-std::string unit_text(const Entry& entry) {
-  return is_scaled(entry) ? "\u00D7 " + physical_unit(entry) : entry.unit;
-}
+std::string unit_text(const Entry& entry) { return is_scaled(entry) ? "\u00D7 " + physical_unit(entry) : entry.unit; }
 
 class ObjectRows {
  public:

@@ -12,8 +12,8 @@ struct Bus {
 Bus bus;
 #ifdef GOOD
 auto node = bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
-                                                   canopen::every<canopen::Milliseconds<10>>([](auto&) {}));
+                                                 canopen::every<canopen::Milliseconds<10>>([](auto&) {}));
 #else
 auto node = bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
-                                                   canopen::every<canopen::Milliseconds<10>>([](int) {}));
+                                                 canopen::every<canopen::Milliseconds<10>>([](int) {}));
 #endif

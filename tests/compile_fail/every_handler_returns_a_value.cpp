@@ -15,5 +15,5 @@ auto node =
     bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::every<canopen::Milliseconds<10>>([] {}));
 #else
 auto node = bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
-                                                   canopen::every<canopen::Milliseconds<10>>([] { return 1; }));
+                                                 canopen::every<canopen::Milliseconds<10>>([] { return 1; }));
 #endif

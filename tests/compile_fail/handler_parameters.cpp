@@ -17,9 +17,9 @@ void start() {
   auto node =
       bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
 #ifdef GOOD
-                                             canopen::on_write(od::unsigned16_value{}, [](auto&, std::uint16_t) {})
+                                           canopen::on_write(od::unsigned16_value{}, [](auto&, std::uint16_t) {})
 #else
-                                             canopen::on_write(od::unsigned16_value{}, [](auto&, std::uint16_t, int) {})
+                                           canopen::on_write(od::unsigned16_value{}, [](auto&, std::uint16_t, int) {})
 #endif
       );
   node.start(canopen::TimePoint{});

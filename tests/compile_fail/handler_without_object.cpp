@@ -14,8 +14,7 @@ struct Bus {
 auto make(Bus& bus) {
   const auto changed = [](std::int16_t) {};
 #ifdef GOOD
-  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
-                                                canopen::on_write<od::integer16_value>(changed));
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_write<od::integer16_value>(changed));
 #else
   return bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, changed);
 #endif

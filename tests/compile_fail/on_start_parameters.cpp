@@ -13,6 +13,5 @@ Bus bus;
 #ifdef GOOD
 auto node = bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_start([](auto&) {}));
 #else
-auto node =
-    bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_start([](canopen::NmtState) {}));
+auto node = bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_start([](canopen::NmtState) {}));
 #endif

@@ -17,6 +17,5 @@ auto make(Bus& bus) {
 #else
   using object = od::integer24_constant;
 #endif
-  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
-                                                canopen::on_write<object>([](std::int32_t) {}));
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_write<object>([](std::int32_t) {}));
 }

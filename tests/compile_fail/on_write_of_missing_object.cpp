@@ -21,6 +21,5 @@ auto make(Bus& bus) {
 #else
   using object = other::od::target_torque;
 #endif
-  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
-                                                canopen::on_write<object>([](std::int16_t) {}));
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_write<object>([](std::int16_t) {}));
 }

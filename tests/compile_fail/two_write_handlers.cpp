@@ -18,6 +18,6 @@ auto make(Bus& bus) {
   using second = od::integer16_value;
 #endif
   return bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
-                                                canopen::on_write<od::integer16_value>([](std::int16_t) {}),
-                                                canopen::on_write<second>([](std::int32_t) {}));
+                                              canopen::on_write<od::integer16_value>([](std::int16_t) {}),
+                                              canopen::on_write<second>([](std::int32_t) {}));
 }

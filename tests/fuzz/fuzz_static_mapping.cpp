@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "fuzz.hpp"
-#include "support/omitting.hpp"
 #include "steps.hpp"
+#include "support/omitting.hpp"
 
 namespace edsc::fuzz {
 namespace {

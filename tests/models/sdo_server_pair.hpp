@@ -1,8 +1,8 @@
 /// A node of the runtime and the model of an SDO server, which receive the same frames.
 #pragma once
 
-#include "support/omitting.hpp"
 #include "sdo_server_model.hpp"
+#include "support/omitting.hpp"
 
 #include <gtest/gtest.h>
 #include <canopen/node.hpp>

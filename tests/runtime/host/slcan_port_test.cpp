@@ -17,8 +17,8 @@
 #include <thread>
 #include <utility>
 
-#include "support/omitting.hpp"
 #include "runtime/host/stream_bench.hpp"
+#include "support/omitting.hpp"
 
 namespace {
 

@@ -144,10 +144,10 @@ TEST(SocketcandPort, CallsStartAndPeriodicFunctions) {
   Application lambdas{&stop};
   stop = false;
   auto other = bench::make_node<sample::Device>(bus, canopen::NodeId{6},
-                                                  canopen::on_start([&](auto& starting) { lambdas.start(starting); }),
-                                                  canopen::every<canopen::Milliseconds<10>>([&](auto& running) {
-                                                    lambdas.every(canopen::Milliseconds<10>{}, running);
-                                                  }));
+                                                canopen::on_start([&](auto& starting) { lambdas.start(starting); }),
+                                                canopen::every<canopen::Milliseconds<10>>([&](auto& running) {
+                                                  lambdas.every(canopen::Milliseconds<10>{}, running);
+                                                }));
   bus.run(other, stop);
   check(lambdas);
 }

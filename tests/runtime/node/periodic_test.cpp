@@ -86,12 +86,11 @@ TEST(Start, IsCalledWithoutANodeId) {
 
 TEST(Start, MayReportAnErrorAndConfigureTheNode) {
   bench::RecordingBus bus;
-  auto node =
-      bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::on_start([](auto& starting) {
-                                         starting.emergency(0x5000, ErrorRegister::manufacturer);
-                                         EXPECT_EQ(starting.set(od::producer_heartbeat_time{}, 100), canopen::ok);
-                                         starting.request(NmtCommand::start, starting.now());
-                                       }));
+  auto node = bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::on_start([](auto& starting) {
+                                               starting.emergency(0x5000, ErrorRegister::manufacturer);
+                                               EXPECT_EQ(starting.set(od::producer_heartbeat_time{}, 100), canopen::ok);
+                                               starting.request(NmtCommand::start, starting.now());
+                                             }));
   node.start(TimePoint{});
   EXPECT_EQ(bus.take(), "705 00 | 085 00 50 81 00 00 00 00 00") << "after the boot-up message";
   EXPECT_EQ(node.state(), NmtState::pre_operational) << "a command in Initialisation has no effect";
@@ -110,10 +109,10 @@ TEST(Start, SeesStoredValues) {
   }
   std::uint16_t seen = 0;
   auto node = bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::stored_in(storage),
-                                               canopen::on_start([&](auto& starting) {
-                                                 seen = starting.get(od::cyclic_timer{});
-                                                 EXPECT_EQ(starting.save(), canopen::ok);
-                                               }));
+                                             canopen::on_start([&](auto& starting) {
+                                               seen = starting.get(od::cyclic_timer{});
+                                               EXPECT_EQ(starting.save(), canopen::ok);
+                                             }));
   node.start(TimePoint{});
   EXPECT_EQ(seen, 9);
 }
@@ -145,8 +144,8 @@ TEST(Start, IsCalledForEachHandlerInTheirOrder) {
   First application{&calls};
   bench::RecordingBus bus;
   auto node = bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::on_start([&] { calls += "lambda "; }),
-                                               canopen::application_at(application),
-                                               canopen::on_start([&](auto&) { calls += "last"; }));
+                                             canopen::application_at(application),
+                                             canopen::on_start([&](auto&) { calls += "last"; }));
   node.start(TimePoint{});
   EXPECT_EQ(calls, "lambda class last");
 }
@@ -198,8 +197,8 @@ TEST(Periodic, KeepsItsTimesWhileTheClockWraps) {
   constexpr std::uint64_t period = 333'333;
   std::uint64_t calls = 0;
   bench::RecordingBus bus;
-  auto node = bench::make_node<rk5c::Device>(bus, NodeId{5},
-                                               canopen::every(canopen::Microseconds<period>{}, [&] { ++calls; }));
+  auto node =
+      bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::every(canopen::Microseconds<period>{}, [&] { ++calls; }));
   constexpr std::uint64_t start = 0xFFFF'0000;
   std::uint64_t now = start;
   const auto time = [&] { return TimePoint{Duration{static_cast<std::uint32_t>(now)}}; };

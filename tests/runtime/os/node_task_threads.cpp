@@ -51,8 +51,7 @@ template <class System>
 bool run(const char* name, std::uint32_t requests) {
   QueuePort port;
   canopen::Mailbox<od::unsigned64_value> mailbox;
-  auto node =
-      bench::make_node<sample::Device>(port, canopen::NodeId{5}, Application{}, canopen::values_from(mailbox));
+  auto node = bench::make_node<sample::Device>(port, canopen::NodeId{5}, Application{}, canopen::values_from(mailbox));
   System system;
   std::atomic<bool> started = false;
   std::atomic<bool> stops = false;
