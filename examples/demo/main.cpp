@@ -52,10 +52,35 @@ std::uint16_t statusword_after(std::uint16_t controlword) {
   }
 }
 
-/// A drive's answer to its controlword.
-template <class Statusword>
-constexpr auto answer_controlword =
-    [](auto& node, std::uint16_t controlword) { node.set(Statusword{}, statusword_after(controlword)); };
+// What the drives do when they get a controlword.
+struct Stepper {
+  void write(ezd_1136::od::controlword, std::uint16_t controlword, auto& node) {
+    node.set(ezd_1136::od::statusword{}, statusword_after(controlword));
+  }
+};
+struct Spindle {
+  void write(cpd::od::controlword, std::uint16_t controlword, auto& node) {
+    node.set(cpd::od::statusword{}, statusword_after(controlword));
+  }
+};
+struct Drive {
+  void write(cpc_tc1::od::controlword, std::uint16_t controlword, auto& node) {
+    node.set(cpc_tc1::od::statusword{}, statusword_after(controlword));
+  }
+  void write(cpc_tc1::od::target_velocity, std::int32_t velocity, auto& node) {
+    node.set(cpc_tc1::od::velocity_actual_value{}, velocity);
+  }
+};
+
+// The devices of the demo store nothing.
+using canopen::Composition;
+using WithoutStorage = canopen::without<canopen::part::storage>;
+using WithoutStorageAndLss = canopen::without<canopen::part::storage, canopen::part::lss>;
+using StepperParts = Composition<ezd_1136::Device, Stepper>;
+using SpindleParts = Composition<cpd::Device, Spindle, WithoutStorage>;
+using DriveParts = Composition<cpc_tc1::Device, Drive, WithoutStorageAndLss>;
+using InputsParts = Composition<can_2053c::Device, WithoutStorage>;
+using SensorParts = Composition<rk5c::Device, WithoutStorageAndLss>;
 
 template <class VendorId, class ProductCode, class RevisionNumber, class DeviceName>
 void show_identity(demo::Master& master, NodeId node) {
@@ -139,21 +164,15 @@ int run_demo(demo::CandumpLog& log) {
   demo::Master master{bus};
 
   auto& stepper_port = bus.attach();
-  auto stepper = canopen::make_node<ezd_1136::Device>(
-      stepper_port, stepper_id,
-      canopen::on_write<ezd_1136::od::controlword>(answer_controlword<ezd_1136::od::statusword>));
+  auto stepper = canopen::make_node<StepperParts>(stepper_port, stepper_id);
   auto& spindle_port = bus.attach();
-  auto spindle = canopen::make_node<cpd::Device>(
-      spindle_port, spindle_id, canopen::on_write<cpd::od::controlword>(answer_controlword<cpd::od::statusword>));
+  auto spindle = canopen::make_node<SpindleParts>(spindle_port, spindle_id);
   auto& drive_port = bus.attach();
-  auto drive = canopen::make_node<cpc_tc1::Device>(
-      drive_port, drive_id, canopen::on_write<cpc_tc1::od::controlword>(answer_controlword<cpc_tc1::od::statusword>),
-      canopen::on_write<cpc_tc1::od::target_velocity>(
-          [](auto& node, std::int32_t velocity) { node.set(cpc_tc1::od::velocity_actual_value{}, velocity); }));
+  auto drive = canopen::make_node<DriveParts>(drive_port, drive_id);
   auto& inputs_port = bus.attach();
-  auto inputs = canopen::make_node<can_2053c::Device>(inputs_port, inputs_id);
+  auto inputs = canopen::make_node<InputsParts>(inputs_port, inputs_id);
   auto& sensor_port = bus.attach();
-  auto sensor = canopen::make_node<rk5c::Device>(sensor_port, sensor_id);
+  auto sensor = canopen::make_node<SensorParts>(sensor_port, sensor_id);
   canopen::VirtualBus::connect(stepper_port, stepper);
   canopen::VirtualBus::connect(spindle_port, spindle);
   canopen::VirtualBus::connect(drive_port, drive);

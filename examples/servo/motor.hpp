@@ -2,6 +2,7 @@
 #pragma once
 
 #include <canopen/profile/cia402_node.hpp>
+#include <cpc_tc1/device.hpp>
 #include <cstdint>
 
 struct Motor {
@@ -23,3 +24,6 @@ struct Motor {
   bool powered = false;
   std::int32_t actual = 0, demand = 0, speed = 0;
 };
+
+/// The drive has neither storage nor LSS.
+using ServoParts = canopen::Composition<cpc_tc1::Device, canopen::without<canopen::part::lss, canopen::part::storage>>;

@@ -14,7 +14,7 @@ using canopen::cia402::State;
 int main() {
   canopen::VirtualBus bus{500'000};
   auto& port = bus.attach();
-  canopen::cia402::DriveNode<cpc_tc1::Device, canopen::VirtualBus::Endpoint, Motor> drive{port, canopen::NodeId{5}};
+  canopen::cia402::DriveNode<ServoParts, canopen::VirtualBus::Endpoint, Motor> drive{port, canopen::NodeId{5}};
   bus.connect(port, drive);
   drive.start(bus.now());
 

@@ -11,7 +11,7 @@
 
 namespace od = cpc_tc1::od;
 using canopen::NodeId;
-using Drive = canopen::cia402::DriveNode<cpc_tc1::Device, canopen::VirtualBus::Endpoint, Motor>;
+using Drive = canopen::cia402::DriveNode<ServoParts, canopen::VirtualBus::Endpoint, Motor>;
 
 int main() {
   canopen::VirtualBus bus{500'000};

@@ -29,6 +29,10 @@ struct Drive {
   }
 };
 
+/// The drive has neither storage nor LSS.
+using DriveParts =
+    canopen::Composition<cpc_tc1::Device, Drive, canopen::without<canopen::part::lss, canopen::part::storage>>;
+
 canopen::NodeId parse_node_id(std::string_view text) {
   unsigned value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -48,7 +52,7 @@ int main(int argc, char** argv) {
   std::signal(SIGTERM, [](int) { stop = true; });
   try {
     canopen::SocketCan bus{argv[1]};
-    canopen::Node<cpc_tc1::Device, canopen::SocketCan, Drive> drive{bus, id};
+    canopen::Node<DriveParts, canopen::SocketCan> drive{bus, id};
     bus.run(drive, stop);
   } catch (const std::system_error& problem) {
     std::fprintf(stderr, "%s: %s\n", argv[1], problem.what());

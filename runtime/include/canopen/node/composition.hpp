@@ -35,6 +35,9 @@
 
 namespace canopen {
 
+template <class Device, class B, class... Parts>
+class Node;
+
 /// A device, its application classes and handlers, and `without<...>`. The parts are default-constructible, or their
 /// values are passed to the node.
 template <class Device, class... Parts>
@@ -236,6 +239,40 @@ template <class Part>
 inline constexpr bool is_hardware = storage_detail::is_stored_in<Part> || lss_detail::is_handler<Part>;
 template <class... Parts>
 using HardwareParts = decltype((Types<>{} + ... + If<is_hardware<Parts>, Parts>{}));
+
+/// All parts that are missing, as one part that omits them: for nodes whose parts a library determines.
+template <class... Parts, class... Domains>
+Omits<Parts..., Domains...> omits(Types<Parts...>, ObjectList<Domains...>);
+template <class Device, class... Handlers>
+using OmitsMissing = decltype(omits(If<is_missing<Device, part::lss, Handlers...>, part::lss>{} +
+                                        If<is_missing<Device, part::storage, Handlers...>, part::storage>{},
+                                    MissingDomains<Device, Handlers...>{}));
+
+/// The device of a composition, and the node of a device or a composition with parts that a library adds.
+template <class Device>
+struct Extended {
+  using DeviceType = Device;
+  template <class B, class Added, class... Parts>
+  struct NodeWith;
+  template <class B, class... Added, class... Parts>
+  struct NodeWith<B, Types<Added...>, Parts...> {
+    using type = Node<Device, B, Added..., Parts...>;
+  };
+};
+template <class Device, class... Composed>
+struct Extended<Composition<Device, Composed...>> {
+  using DeviceType = Device;
+  template <class B, class Added, class... Ports>
+  struct NodeWith;
+  template <class B, class... Added, class... Ports>
+  struct NodeWith<B, Types<Added...>, Ports...> {
+    using type = Node<Composition<Device, Composed..., Added...>, B, Ports...>;
+  };
+};
+template <class Device>
+using DeviceOf = typename Extended<Device>::DeviceType;
+template <class Device, class B, class Added, class... Parts>
+using NodeWith = typename Extended<Device>::template NodeWith<B, Added, Parts...>::type;
 
 template <class Part>
 struct Composed {

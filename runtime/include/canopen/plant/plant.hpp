@@ -157,7 +157,9 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
     void boot_time_elapsed() {}
   };
 
-  using OwnNode = Node<typename Network::Master, B, RpdoHandler<RpdoEvents>>;
+  /// The master has its configurations from the network file; it does not have storage, LSS or memory for DOMAINs.
+  using OwnNode = Node<typename Network::Master, B, RpdoHandler<RpdoEvents>,
+                       composition_detail::OmitsMissing<typename Network::Master, RpdoHandler<RpdoEvents>>>;
 
   template <class S>
   struct Function {

@@ -24,10 +24,12 @@
 
 namespace canopen::cia401 {
 
-/// `Handlers`: further handlers of the node, an application class, a storage. Blocks and channels count from 0.
-template <class Device, Bus B, class Terminals, class... Handlers>
-class ModuleNode : public ProfileNode<ModuleNode<Device, B, Terminals, Handlers...>> {
+/// `Parts`: a device or a composition. `Handlers`: further parts of the node, such as an application class or a
+/// storage. Blocks and channels count from 0.
+template <class Parts, Bus B, class Terminals, class... Handlers>
+class ModuleNode : public ProfileNode<ModuleNode<Parts, B, Terminals, Handlers...>> {
   friend ProfileNode<ModuleNode>;
+  using Device = composition_detail::DeviceOf<Parts>;
 
  public:
   constexpr ModuleNode(B& bus, NodeId node_id, Handlers... handlers)
@@ -105,8 +107,10 @@ class ModuleNode : public ProfileNode<ModuleNode<Device, B, Terminals, Handlers.
   [[no_unique_address]] DigitalOutputs<Device> digital_outputs_{};
   [[no_unique_address]] AnalogueInputs<Device> analogue_inputs_{};
   [[no_unique_address]] AnalogueOutputs<Device> analogue_outputs_{};
-  Node<Device, B, StateHandler<StateWatch>, LifeGuardingHandler<GuardWatch>, HeartbeatHandler<HeartbeatWatch>,
-       Handlers...>
+  composition_detail::NodeWith<Parts, B,
+                               composition_detail::Types<StateHandler<StateWatch>, LifeGuardingHandler<GuardWatch>,
+                                                         HeartbeatHandler<HeartbeatWatch>>,
+                               Handlers...>
       node_;
 };
 

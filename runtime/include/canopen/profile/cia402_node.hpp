@@ -27,10 +27,12 @@
 namespace canopen::cia402 {
 
 /// The axis is a member. It may also have the functions of NoApplication, profile/cia402.hpp, for what is specific to
-/// the manufacturer. `Handlers`: further handlers of the node, an application class, a storage.
-template <class Device, Bus B, Axis A, Options options = Options{}, class... Handlers>
-class DriveNode : public ProfileNode<DriveNode<Device, B, A, options, Handlers...>> {
+/// the manufacturer. `Parts`: a device or a composition. `Handlers`: further parts of the node, such as an application
+/// class or a storage.
+template <class Parts, Bus B, Axis A, Options options = Options{}, class... Handlers>
+class DriveNode : public ProfileNode<DriveNode<Parts, B, A, options, Handlers...>> {
   friend ProfileNode<DriveNode>;
+  using Device = composition_detail::DeviceOf<Parts>;
 
  public:
   constexpr DriveNode(B& bus, NodeId node_id, Handlers... handlers)
@@ -96,7 +98,9 @@ class DriveNode : public ProfileNode<DriveNode<Device, B, A, options, Handlers..
 
   A axis_{};
   Control drive_{axis_};
-  Node<Device, B, ErrorHandler<typename Control::ErrorTaker>, Restart, Handlers...> node_;
+  composition_detail::NodeWith<Parts, B, composition_detail::Types<ErrorHandler<typename Control::ErrorTaker>, Restart>,
+                               Handlers...>
+      node_;
 };
 
 }  // namespace canopen::cia402

@@ -20,10 +20,12 @@
 
 namespace canopen::cia406 {
 
-/// `Handlers`: further handlers of the node, an application class, a storage.
-template <class Device, Bus B, class Sensor, class... Handlers>
-class EncoderNode : public ProfileNode<EncoderNode<Device, B, Sensor, Handlers...>> {
+/// `Parts`: a device or a composition. `Handlers`: further parts of the node, such as an application class or a
+/// storage.
+template <class Parts, Bus B, class Sensor, class... Handlers>
+class EncoderNode : public ProfileNode<EncoderNode<Parts, B, Sensor, Handlers...>> {
   friend ProfileNode<EncoderNode>;
+  using Device = composition_detail::DeviceOf<Parts>;
 
  public:
   constexpr EncoderNode(B& bus, NodeId node_id, Handlers... handlers)
@@ -70,7 +72,7 @@ class EncoderNode : public ProfileNode<EncoderNode<Device, B, Sensor, Handlers..
 
   Sensor sensor_{};
   Encoder<Device> encoder_{};
-  Node<Device, B, Written, Handlers...> node_;
+  composition_detail::NodeWith<Parts, B, composition_detail::Types<Written>, Handlers...> node_;
 };
 
 }  // namespace canopen::cia406
