@@ -119,6 +119,10 @@ inline constexpr std::array<Entry, source_count<Device>> sources = [] {
 /// its present COB-IDs: they change with SDO writes, resets, LSS and the application. A node without node-ID
 /// accepts only LSS.
 template <class SomeNode, class Visit>
+requires requires {
+  typename SomeNode::DeviceType;
+  SomeNode::has_lss;
+}
 void for_each_accepted_frame(SomeNode& node, Visit&& visit) {
   using Device = typename SomeNode::DeviceType;
   if constexpr (SomeNode::has_lss) {
