@@ -36,7 +36,8 @@ class Protocol(unittest.TestCase):
         self.stderr = result.stderr
         greeting, *answers = result.stdout.splitlines()
         self.assertEqual(greeting, "edsc-simulation 1")
-        return answers
+        self.compositions = [answer for answer in answers if "composition=" in answer]
+        return ["ok" if answer == "ok composition=edsc" else answer for answer in answers]
 
     def test_the_first_device_boots_up(self) -> None:
         self.assertEqual(self.play("node 5", "run 1000", "run 1000"), ["ok", "55 705 00", "1055"])
@@ -44,6 +45,7 @@ class Protocol(unittest.TestCase):
     def test_a_program_has_several_devices(self) -> None:
         self.assertEqual(self.play("node 5 every_service", "run 1000", "node 6 motor", "run 1000", "node 5 drill"),
                          ["ok", "55 705 00", "ok", "55 706 00", "no"])
+        self.assertEqual(self.compositions, ["ok composition=edsc"], "the motor has an application")
 
     def test_an_answer_comes_when_its_frame_has_passed(self) -> None:
         self.assertEqual(self.play("node 5", "run 1000", "send 605 4000100000000000", "run 1000"),
