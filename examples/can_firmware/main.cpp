@@ -7,10 +7,10 @@
 #include <optional>
 #include <span>
 
+#include "../firmware/firmware_parts.hpp"
 #include "board.hpp"
 #include "can.hpp"
 #include "can_lss.hpp"
-#include "firmware_parts.hpp"
 
 namespace {
 
@@ -31,12 +31,12 @@ template <class D>
 auto make_node() {
   constexpr bool stores = canopen::part::storage::is_promised<D>;
 #ifdef EDSC_NODE_ID
-  if constexpr (stores) return canopen::make_node<FirmwareParts>(can, canopen::stored_in(storage));
-  if constexpr (!stores) return canopen::make_node<FirmwareParts>(can);
+  if constexpr (stores) return canopen::make_node<PartsOf<D>>(can, canopen::stored_in(storage));
+  if constexpr (!stores) return canopen::make_node<PartsOf<D>>(can);
 #else
   const auto by_lss = canopen::configured_by_lss(lss);
-  if constexpr (stores) return canopen::make_node<FirmwareParts>(can, canopen::stored_in(storage), by_lss);
-  if constexpr (!stores) return canopen::make_node<FirmwareParts>(can, by_lss);
+  if constexpr (stores) return canopen::make_node<PartsOf<D>>(can, canopen::stored_in(storage), by_lss);
+  if constexpr (!stores) return canopen::make_node<PartsOf<D>>(can, by_lss);
 #endif
 }
 

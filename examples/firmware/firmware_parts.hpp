@@ -10,12 +10,13 @@ inline constexpr bool node_id_is_set = true;
 inline constexpr bool node_id_is_set = false;
 #endif
 
-template <class Device, bool OmitsLss = node_id_is_set&& canopen::part::lss::is_promised<Device>>
-struct PartsOf {
+template <class Device, bool OmitsLss>
+struct SelectParts {
   using type = canopen::Composition<Device>;
 };
 template <class Device>
-struct PartsOf<Device, true> {
+struct SelectParts<Device, true> {
   using type = canopen::Composition<Device, canopen::without<canopen::part::lss>>;
 };
-using FirmwareParts = PartsOf<EDSC_DEVICE>::type;
+template <class Device>
+using PartsOf = SelectParts<Device, node_id_is_set && canopen::part::lss::is_promised<Device>>::type;

@@ -25,12 +25,12 @@ template <class D>
 auto make_node() {
   constexpr bool stores = canopen::part::storage::is_promised<D>;
 #ifdef EDSC_NODE_ID
-  if constexpr (stores) return canopen::make_node<FirmwareParts>(bus, canopen::stored_in(storage));
-  if constexpr (!stores) return canopen::make_node<FirmwareParts>(bus);
+  if constexpr (stores) return canopen::make_node<PartsOf<D>>(bus, canopen::stored_in(storage));
+  if constexpr (!stores) return canopen::make_node<PartsOf<D>>(bus);
 #else
   const auto by_lss = canopen::configured_by_lss(lss);
-  if constexpr (stores) return canopen::make_node<FirmwareParts>(bus, canopen::stored_in(storage), by_lss);
-  if constexpr (!stores) return canopen::make_node<FirmwareParts>(bus, by_lss);
+  if constexpr (stores) return canopen::make_node<PartsOf<D>>(bus, canopen::stored_in(storage), by_lss);
+  if constexpr (!stores) return canopen::make_node<PartsOf<D>>(bus, by_lss);
 #endif
 }
 
