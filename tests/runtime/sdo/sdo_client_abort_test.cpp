@@ -3,6 +3,7 @@
 #include <canopen/sdo/sdo_client.hpp>
 
 #include <array>
+#include <cstdio>
 
 #include "sdo_client_bench.hpp"
 #include "support/bench.hpp"
@@ -68,9 +69,10 @@ TEST(SdoClient, ReportsTheCodeOfAnAbortAsSent) {
   for (const std::uint32_t sent : {0x0000'0000u, 0x0800'0000u, 0x0000'0001u, 0xFFFF'FFFFu, 0x0602'0000u}) {
     Client client{{.timeout = 100ms}};
     client.upload();
-    canopen::sdo::Data abort = bench::bytes_of("80 12 20 00");
-    canopen::sdo::put_word(abort, sent);
-    EXPECT_EQ(client.answer(bench::text_of(abort)), "");
+    char abort[24];
+    std::snprintf(abort, sizeof abort, "80 12 20 00 %02X %02X %02X %02X", sent & 0xFF, (sent >> 8) & 0xFF,
+                  (sent >> 16) & 0xFF, sent >> 24);
+    EXPECT_EQ(client.answer(abort), "");
     EXPECT_FALSE(client.client.busy());
     EXPECT_NE(client.client.result(), canopen::ok) << sent;
     EXPECT_EQ(code_in_frame(client.client.result()), sent);

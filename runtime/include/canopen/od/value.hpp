@@ -45,10 +45,10 @@ template <std::size_t Capacity>
 struct VisibleString : StringStorage<Capacity> {
   constexpr VisibleString() = default;
   template <std::size_t Size>
-  consteval VisibleString(const char (&literal)[Size]) {  // NOLINT(google-explicit-constructor): text converts to it
+  constexpr VisibleString(const char (&literal)[Size]) {  // NOLINT(google-explicit-constructor): text converts to it
     static_assert(Size <= Capacity + 1, "the text is longer than the string");
     for (const char character : literal) {
-      if (character == 0) break;
+      if (character == 0 || this->size == Capacity) break;
       this->bytes[this->size++] = static_cast<std::uint8_t>(character);
     }
   }
@@ -105,10 +105,10 @@ template <std::size_t Capacity>
 struct UnicodeString : StringStorage<Capacity> {
   constexpr UnicodeString() = default;
   template <std::size_t Size>
-  consteval UnicodeString(const char16_t (&literal)[Size]) {  // NOLINT(google-explicit-constructor)
+  constexpr UnicodeString(const char16_t (&literal)[Size]) {  // NOLINT(google-explicit-constructor)
     static_assert(2 * (Size - 1) <= Capacity, "the text is longer than the string");
     for (const char16_t unit : literal) {
-      if (unit == 0) break;
+      if (unit == 0 || this->size + 2u > Capacity) break;
       append(unit);
     }
   }
