@@ -146,7 +146,7 @@ struct Sensor {
   Port port;
   bench::RecordingBus bus;
   canopen::TimePoint now{};
-  bench::NodeOf<rk5c::Device, bench::RecordingBus, canopen::LssHandler<canopen::LssOptions{}, Port>> node;
+  bench::NodeOf<rk5c::Device, bench::RecordingBus, canopen::ConfiguredByLss<Port>> node;
 };
 
 TEST(NodeWithLss, WithoutNodeIdStaysInInitialisationUntilItGetsOne) {

@@ -23,6 +23,8 @@ using namespace std::chrono_literals;
 struct Host {
   std::string* calls;
   bool has_room = true;
+
+  [[nodiscard]] TimePoint now() const { return {}; }
 };
 
 constexpr TimePoint at(std::uint32_t microseconds) { return TimePoint{canopen::Duration{microseconds}}; }

@@ -215,7 +215,7 @@ TEST(BackgroundStorage, ASaveOfTheApplicationBeginsWhileTheNodeIsIdle) {
 TEST(BackgroundStorage, AnotherClientIsAnsweredMeanwhile) {
   SlowFlash pages;
   FlashStorage<SlowFlash> flash{pages};
-  BackgroundStorage<FlashStorage<SlowFlash>, 512> storage{flash};
+  BackgroundStorage<FlashStorage<SlowFlash>, 2048> storage{flash};
   bench::Bench<every_service::Device, canopen::StoredIn<decltype(storage)>> device{canopen::stored_in(storage)};
   pages.now = &device.now;
   device.ask("605 23 01 12 01 A5 06 00 00");
