@@ -3,6 +3,7 @@
 
 #include <can_2057c/device.hpp>
 #include <cpc_tc1/device.hpp>
+#include <every_service/device.hpp>
 #include <rk5c/device.hpp>
 
 #include <cstring>
@@ -136,8 +137,9 @@ struct Port {
   void start_communication(LssBitTiming) { ++restarts; }
 };
 
-struct Sensor {
-  explicit Sensor(NodeId node_id) : node{bus, node_id, canopen::configured_by_lss(port)} { node.start(now); }
+template <class Device>
+struct DeviceWithLss {
+  explicit DeviceWithLss(NodeId node_id) : node{bus, node_id, canopen::configured_by_lss(port)} { node.start(now); }
   std::string ask(const std::string& request) {
     node.on_frame(bench::frame(request), now);
     return bus.take();
@@ -146,8 +148,9 @@ struct Sensor {
   Port port;
   bench::RecordingBus bus;
   canopen::TimePoint now{};
-  bench::NodeOf<rk5c::Device, bench::RecordingBus, canopen::ConfiguredByLss<Port>> node;
+  bench::NodeOf<Device, bench::RecordingBus, canopen::ConfiguredByLss<Port>> node;
 };
+using Sensor = DeviceWithLss<rk5c::Device>;
 
 TEST(NodeWithLss, WithoutNodeIdStaysInInitialisationUntilItGetsOne) {
   Sensor device{NodeId{255}};
@@ -185,8 +188,8 @@ TEST(NodeWithLss, ResetNodeBringsTheStoredNodeIdBack) {
 }
 
 TEST(NodeWithLss, WithoutNodeIdSendsNoHeartbeatThatIsDue) {
-  Sensor device{NodeId{5}};
-  device.ask("605 2B 17 10 00 0A 00 00 00");  // every 10 ms
+  DeviceWithLss<every_service::Device> device{NodeId{5}};  // the node-ID of the sensor cannot be removed
+  device.ask("605 2B 17 10 00 0A 00 00 00");               // every 10 ms
   device.ask("7E5 04 01 00 00 00 00 00 00");
   EXPECT_EQ(device.ask("7E5 11 FF 00 00 00 00 00 00"), "7E4 11 00 00 00 00 00 00 00");
   device.now = device.now + 20ms;
