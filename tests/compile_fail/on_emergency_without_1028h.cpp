@@ -4,6 +4,8 @@
 #include <every_service/device.hpp>
 #include <sdo_device/device.hpp>
 
+#include "support/omitting.hpp"
+
 struct Bus {
   bool send(const canopen::Frame&) { return true; }
 };
@@ -14,6 +16,6 @@ auto make(Bus& bus) {
 #else
   using Device = sdo_device::Device;
 #endif
-  return canopen::make_node<Device>(bus, canopen::NodeId{5},
-                                    canopen::on_emergency([](const canopen::ConsumedEmergency&) {}));
+  return bench::make_node<Device>(bus, canopen::NodeId{5},
+                                  canopen::on_emergency([](const canopen::ConsumedEmergency&) {}));
 }

@@ -4,6 +4,8 @@
 #include <every_service/device.hpp>
 #include <sdo_device/device.hpp>
 
+#include "support/omitting.hpp"
+
 struct Bus {
   bool send(const canopen::Frame&) { return true; }
 };
@@ -14,5 +16,5 @@ auto make(Bus& bus) {
 #else
   using Device = sdo_device::Device;
 #endif
-  return canopen::make_node<Device>(bus, canopen::NodeId{5}, canopen::on_sync([](std::uint8_t) {}));
+  return bench::make_node<Device>(bus, canopen::NodeId{5}, canopen::on_sync([](std::uint8_t) {}));
 }

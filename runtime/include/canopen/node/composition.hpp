@@ -274,6 +274,19 @@ using DeviceOf = typename Extended<Device>::DeviceType;
 template <class Device, class B, class Added, class... Parts>
 using NodeWith = typename Extended<Device>::template NodeWith<B, Added, Parts...>::type;
 
+/// The node of a device with these parts; of a composition, those that it lists are not added to it.
+template <class Device, class B, class... Given>
+struct NodeFor {
+  using type = Node<Device, B, Given...>;
+};
+template <class Device, class B, class... Ports>
+Node<Device, B, Ports...>* node_with(Types<Ports...>);
+template <class Device, class... Composed, class B, class... Given>
+struct NodeFor<Composition<Device, Composed...>, B, Given...> {
+  using type = std::remove_pointer_t<decltype(node_with<Composition<Device, Composed...>, B>(
+      (Types<>{} + ... + If<!is_among<Given, Composed...>, Given>{})))>;
+};
+
 template <class Part>
 struct Composed {
   using type = Part;

@@ -7,6 +7,7 @@
 
 #include "canopen/can/frame.hpp"
 #include "canopen/can/node_id.hpp"
+#include "canopen/node/composition.hpp"
 
 namespace canopen {
 
@@ -15,10 +16,11 @@ class Node;
 
 /// Returns a node of a device on a bus, with its parts: handlers, applications, storage, LSS port, in any order:
 ///     auto drive = canopen::make_node<cpc_tc1::Device>(bus, canopen::NodeId{5}, canopen::on_write<...>(...));
-/// `Device` may be a Composition; its parts are default-constructed.
+/// `Device` may be a Composition: its parts that are not among the values are default-constructed.
 template <class Device, class B, class... Parts>
 [[nodiscard]] constexpr auto make_node(B& bus, NodeId node_id, Parts&&... parts) {
-  return Node<Device, B, std::remove_cvref_t<Parts>...>{bus, node_id, std::forward<Parts>(parts)...};
+  using Made = typename composition_detail::NodeFor<Device, B, std::remove_cvref_t<Parts>...>::type;
+  return Made{bus, node_id, std::forward<Parts>(parts)...};
 }
 
 /// The same with the handlers in a tuple, as returned by a function that creates all handlers of an application:
@@ -31,7 +33,8 @@ template <class Device, class B, class... Parts>
 /// The same for a node whose node-ID is passed to `start`.
 template <class Device, class B, class... Parts>
 [[nodiscard]] constexpr auto make_node(B& bus, Parts&&... parts) {
-  return Node<Device, B, std::remove_cvref_t<Parts>...>{bus, std::forward<Parts>(parts)...};
+  using Made = typename composition_detail::NodeFor<Device, B, std::remove_cvref_t<Parts>...>::type;
+  return Made{bus, std::forward<Parts>(parts)...};
 }
 
 }  // namespace canopen
