@@ -214,7 +214,8 @@ node axis2 (6): 0 of 1 value differ
         self.fake_axis(ends_at="606 2B 04 20 00")
         result = self.network_command("apply", "plant.json", "--start", timeout=2000)
         self.assertEqual(result.returncode, FAILED)
-        self.assertEqual(result.stderr, self.place("plant.json", '"axis3"') + "node axis3 (7) no longer answers\n")
+        self.assertEqual(result.stderr, self.place("plant.json", '"axis3"') +
+                         "node axis3 (7) no longer answers at 2004h:00 Speed\n")
         self.assertTrue(result.stdout.endswith("2 of 3 nodes configured; none started\n"), result.stdout)
         self.expect_nothing_started()
 
