@@ -122,7 +122,7 @@ def run_cell(job: tuple[Compiler, str, str, Kind, bool, Path, tuple[Path, ...], 
     if run.returncode == 0:
         return f"{cell}: compiles"
     lines = run.stderr.splitlines()
-    if len(lines) > MOST_LINES:
+    if len(lines) > (MOST_LINES_OF_CLANG if compiler.is_clang else MOST_LINES):
         return f"{cell}: {len(lines)} lines:\n{run.stderr[:1500]}"
     is_named = kind.object.split("::")[-1] in run.stderr or "O{}" in run.stderr or "<O>" in run.stderr
     return "" if is_named else f"{cell}: does not name the object:\n{run.stderr[:1500]}"
