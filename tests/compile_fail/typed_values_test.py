@@ -20,7 +20,6 @@ from support.compilers import (CLANG, GCC, SKIPPED, Compiler, compile_only, in_p
                                those_installed)
 
 MOST_LINES = 12
-MOST_LINES_OF_CLANG = 13  # it also shows where a variable is declared
 UNUSED_IS_FINE = ("-Wno-unused-variable", "-Wno-unused-but-set-variable", "-Wno-unused-parameter")
 COMMON_HEADERS = """#include <canopen/sdo/remote_node.hpp>
 #include <canopen/node.hpp>
@@ -122,7 +121,7 @@ def run_cell(job: tuple[Compiler, str, str, Kind, bool, Path, tuple[Path, ...], 
     if run.returncode == 0:
         return f"{cell}: compiles"
     lines = run.stderr.splitlines()
-    if len(lines) > (MOST_LINES_OF_CLANG if compiler.is_clang else MOST_LINES):
+    if len(lines) > MOST_LINES:
         return f"{cell}: {len(lines)} lines:\n{run.stderr[:1500]}"
     is_named = kind.object.split("::")[-1] in run.stderr or "O{}" in run.stderr or "<O>" in run.stderr
     return "" if is_named else f"{cell}: does not name the object:\n{run.stderr[:1500]}"
