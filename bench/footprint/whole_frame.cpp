@@ -12,7 +12,8 @@
 namespace {
 
 CountedBus bus;
-constinit canopen::Node<device::Device, CountedBus, Drive> node{bus};
+using Parts = canopen::Composition<device::Device, Drive, canopen::without<device::od::blob_1k, device::od::blob_8k>>;
+constinit canopen::Node<Parts, CountedBus> node{bus};
 constexpr canopen::TimePoint start{};
 constexpr canopen::TimePoint later{canopen::Duration{1}};
 

@@ -10,22 +10,7 @@ namespace bench {
 
 namespace omitting_detail {
 
-using canopen::composition_detail::is_missing;
 using canopen::composition_detail::Omits;
-
-template <class... Ps, class... Qs>
-Omits<Ps..., Qs...> operator+(Omits<Ps...>, Omits<Qs...>);
-
-template <bool Missing, class Part>
-using If = std::conditional_t<Missing, Omits<Part>, Omits<>>;
-
-template <class... Os>
-Omits<Os...> domains(canopen::ObjectList<Os...>);
-
-template <class Device, class... Parts>
-using MissingParts = decltype(If<is_missing<Device, canopen::part::lss, Parts...>, canopen::part::lss>{} +
-                              If<is_missing<Device, canopen::part::storage, Parts...>, canopen::part::storage>{} +
-                              domains(canopen::composition_detail::MissingDomains<Device, Parts...>{}));
 
 template <class Device, class Bus, class Missing, class... Parts>
 struct Select {
@@ -41,7 +26,8 @@ struct Select<Device, Bus, Omits<>, Parts...> {
 /// A node of a device that omits each part that is not among `Parts`.
 template <class Device, class Bus, class... Parts>
 using NodeOf =
-    typename omitting_detail::Select<Device, Bus, omitting_detail::MissingParts<Device, Parts...>, Parts...>::type;
+    typename omitting_detail::Select<Device, Bus, canopen::composition_detail::OmitsMissing<Device, Parts...>,
+                                     Parts...>::type;
 
 /// The same with the values of its parts.
 template <class Device, class Bus, class... Parts>

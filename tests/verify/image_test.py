@@ -36,7 +36,7 @@ CASES = (
 
 
 def image_of(device: str, *flags: str, source_dir: Path, build_dir: Path, folder: Path) -> Image:
-    include = (source_dir / "runtime/include", build_dir / "edsc" / device)
+    include = (source_dir / "runtime/include", source_dir / "tests", build_dir / "edsc" / device)
     return build(source_dir / "tests/verify/image/node.cpp", include, folder, f"-DDEVICE={device}::Device",
                  f"-DDEVICE_HEADER=<{device}/device.hpp>", *flags)
 

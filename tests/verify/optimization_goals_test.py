@@ -21,13 +21,15 @@ NODE = """
 #include <can_2057c/device.hpp>
 struct Bus { bool send(const canopen::Frame&) { return true; } };
 Bus bus;
-canopen::Node<can_2057c::Device, Bus> node{bus, canopen::NodeId{5}};
+using Parts = canopen::Composition<can_2057c::Device, canopen::without<canopen::part::storage>>;
+canopen::Node<Parts, Bus> node{bus, canopen::NodeId{5}};
 """
 USER = """
 #include <canopen/node.hpp>
 #include <can_2057c/device.hpp>
 struct Bus { bool send(const canopen::Frame&) { return true; } };
-extern canopen::Node<can_2057c::Device, Bus> node;
+using Parts = canopen::Composition<can_2057c::Device, canopen::without<canopen::part::storage>>;
+extern canopen::Node<Parts, Bus> node;
 int main() { node.on_time(canopen::TimePoint{}); }
 """
 SYMBOL = "canopen_optimization_goal"

@@ -1,4 +1,6 @@
 /// A complete node as in firmware. DEVICE and DEVICE_HEADER name the device; with STORED it stores its parameters.
+#include "support/omitting.hpp"
+
 #include <canopen/node.hpp>
 #include DEVICE_HEADER
 
@@ -35,9 +37,9 @@ struct Flash {
 };
 Flash flash;
 constinit canopen::FlashStorage storage{flash};
-constinit auto node = canopen::make_node<DEVICE>(can, canopen::NodeId{5}, canopen::stored_in(storage));
+constinit auto node = bench::make_node<DEVICE>(can, canopen::NodeId{5}, canopen::stored_in(storage));
 #else
-constinit auto node = canopen::make_node<DEVICE>(can, canopen::NodeId{5});
+constinit auto node = bench::make_node<DEVICE>(can, canopen::NodeId{5});
 #endif
 
 int main() {
