@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 
 #include <canopen/od/dictionary.hpp>
 #include <canopen/od/object.hpp>
@@ -2551,7 +2552,9 @@ inline constexpr canopen::NodeIdRelative node_id_relative_communication[] = {
     {offsetof(Values, communication_preset.tpdo_communication_parameter_4.cob_id_used_by_tpdo), 4},  // 1803h:01
 };
 
+static_assert(std::is_standard_layout_v<Values>, "the words of the tables hold offsets of its members");
 static_assert(sizeof(Values) <= 0x10000, "the words of the tables hold offsets of 16 bits");
+static_assert(std::is_standard_layout_v<Constants>, "the words of the tables hold offsets of its members");
 static_assert(sizeof(Constants) <= 0x10000, "the words of the tables hold offsets of 16 bits");
 }  // namespace table
 

@@ -281,6 +281,45 @@ TEST(FlashStorage, WaitsForAnEraseThatHasOnlyBeenStarted) {
   EXPECT_EQ(pages.erased[0], 1);
 }
 
+/// Does not become ready again after an erase.
+struct StuckFlash : SlowFlash::Cells {
+  static constexpr std::uint32_t max_polls = 1000;
+  std::uint32_t polls = 0;
+  [[nodiscard]] bool ready() {
+    if (erased[0] + erased[1] == 0) return true;
+    ++polls;
+    return false;
+  }
+};
+
+constexpr auto not_stored = "585 80 10 10 01 20 00 06 06";  // 0606 0020h: hardware
+
+TEST(FlashStorage, FailsIfAnEraseDoesNotEnd) {
+  StuckFlash pages;
+  FlashStorage<StuckFlash> storage{pages};
+  auto device = bench::with<stored_device::Device>(canopen::stored_in(storage));
+  EXPECT_EQ(device.ask(save_all), not_stored);
+  EXPECT_EQ(pages.polls, StuckFlash::max_polls + 1);
+}
+
+TEST(BackgroundStorage, AResetDoesNotWaitForAnEraseThatDoesNotEnd) {
+  StuckFlash pages;
+  FlashStorage<StuckFlash> flash{pages};
+  int steps = 0;
+  BackgroundStorage<FlashStorage<StuckFlash>, 768, step_size, CountSteps> storage{flash, CountSteps{&steps}};
+  auto device = bench::with<stored_device::Device>(canopen::stored_in(storage));
+  change(device);
+  device.ask(save_all);
+  device.pass(1s);
+  EXPECT_TRUE(storage.busy());
+  device.bus.take();
+  steps = 0;
+  EXPECT_EQ(device.ask(bench::reset_node), "705 00");
+  EXPECT_FALSE(storage.busy());
+  EXPECT_TRUE(storage.failed());
+  EXPECT_EQ(steps, static_cast<int>(StuckFlash::max_polls));  // the watchdog is served meanwhile
+}
+
 TEST(BackgroundStorage, APowerLossLeavesTheOldValuesOrTheNewOnes) {
   for (int last = 0; last < 100; ++last) {
     Memory memory;

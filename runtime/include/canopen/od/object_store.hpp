@@ -7,6 +7,7 @@
 #include <cstring>
 #include <memory>
 #include <span>
+#include <type_traits>
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/bytes.hpp"
@@ -157,7 +158,10 @@ class ObjectStore {
     for (std::size_t i = 0; i < domain_count; ++i) std::memcpy(ram() + domain_offsets[i], &bound[i], sizeof(Domain));
   }
 
-  [[nodiscard]] std::uint8_t* ram() { return reinterpret_cast<std::uint8_t*>(&values_); }
+  [[nodiscard]] std::uint8_t* ram() {
+    static_assert(std::is_standard_layout_v<ObjectStore>, "its address is that of its values, for EntryAccess");
+    return reinterpret_cast<std::uint8_t*>(&values_);
+  }
 
   /// Whether the node-ID is added to COB-IDs only, which is the usual case: words of four bytes.
   static constexpr bool adds_to_words = [] {

@@ -82,7 +82,7 @@ class RpdoService {
   bool on_frame(const Frame& frame, std::uint32_t cob_id, Host host) {
     std::size_t i = 0;
     if constexpr (has_short_path) {
-      i = find(cob_id, host.entries(), std::make_index_sequence<count>{});
+      i = find(cob_id, host.entries());
       if (i == count) return false;
       Slot& slot = slots_[i];
       const bool waits = (slot.flags & ~buffered) == at_sync && frame.size >= slot.size && !host.window_over();
@@ -176,17 +176,19 @@ class RpdoService {
     return Column<pdo_parameter::cob_id>::get(entries, i, CobId::invalid_bit) & ~CobId::no_rtr_bit;
   }
 
-  /// Returns the first RPDO with a CAN-ID; `count` if there is none.
-  template <std::size_t... I>
-  [[nodiscard]] static std::size_t find(std::uint32_t cob_id, EntryAccess<Device> entries, std::index_sequence<I...>) {
-    constexpr std::size_t few = 8;
-    std::size_t i = 0;
+  /// Returns the first RPDO with a CAN-ID; `count` if there is none. Up to this number, the loop is unrolled.
+  static constexpr std::size_t few = 8;
+  template <std::size_t I = 0>
+  [[nodiscard, gnu::always_inline]] static std::size_t find(std::uint32_t cob_id, EntryAccess<Device> entries) {
     if constexpr (count > few) {
+      std::size_t i = 0;
       while (i < count && cob_id_at(i, entries) != cob_id) ++i;
+      return i;
+    } else if constexpr (I == count) {
+      return count;
     } else {
-      static_cast<void>((true && ... && (cob_id_at(I, entries) != cob_id && ++i != 0)));
+      return cob_id_at(I, entries) == cob_id ? I : find<I + 1>(cob_id, entries);
     }
-    return i;
   }
 
   [[nodiscard]] static std::uint16_t number_of(std::size_t i) { return number_of_pdo<Pdos>(i); }

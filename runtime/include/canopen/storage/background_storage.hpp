@@ -87,11 +87,14 @@ class BackgroundStorage {
     }
   }
 
-  /// Executes all steps that are left, and waits for the other storage between them: it must become ready.
+  /// Executes all steps that are left, and waits for the other storage between them. If it does not become ready in
+  /// `max_polls` calls of its `ready`, in all steps together, the image has failed.
   void finish() {
-    while (busy()) {
+    for (std::uint32_t polls = 0; busy();) {
       if (ready()) {
         step();
+      } else if (polls++ == max_polls) {
+        after(false, Work::none);
       } else {
         watchdog_();
       }
@@ -99,6 +102,7 @@ class BackgroundStorage {
   }
 
  private:
+  static constexpr std::uint32_t max_polls = storage_detail::max_polls<S>;
   enum class Work : std::uint8_t { none, begin, write, commit };
 
   void after(bool good, Work next) {

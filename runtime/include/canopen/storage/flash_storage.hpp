@@ -16,6 +16,7 @@ namespace canopen {
 /// Two pages, 0 and 1, of `page_size` bytes. After an erase each word can be written once; a word has `word_size`
 /// bytes, a power of two, 32 at most. Offsets and sizes of `write` are multiples of it. False: the medium has failed.
 /// Pages with a function `bool ready()` may return from `erase` before it is complete: it is then false until it is.
+/// Such pages may have a constant `max_polls`: how often `ready` is called in one wait, before the medium has failed.
 template <class T>
 concept FlashPages = requires(T& pages, std::uint8_t page, std::uint32_t offset, std::span<const std::uint8_t> words,
                               std::span<std::uint8_t> to) {
@@ -34,6 +35,9 @@ concept FlashPages = requires(T& pages, std::uint8_t page, std::uint32_t offset,
 template <FlashPages Pages>
 class FlashStorage {
  public:
+  /// Calls of `ready` in one wait, after which the medium has failed.
+  static constexpr std::uint32_t max_polls = storage_detail::max_polls<Pages>;
+
   explicit constexpr FlashStorage(Pages& flash_pages) : pages_{flash_pages} {}
 
   [[nodiscard]] StorageState open() {
@@ -142,16 +146,18 @@ class FlashStorage {
   }
 
   [[nodiscard]] bool write_word(std::uint32_t offset) {
-    wait_until_erased();
-    return pages_.write(spare(), offset, word_);
+    return wait_until_erased() && pages_.write(spare(), offset, word_);
   }
 
-  /// A BackgroundStorage writes only when the pages are ready, and does not wait here.
-  void wait_until_erased() const {
+  /// Returns false if the pages do not become ready. A BackgroundStorage writes only when they are, and does not wait
+  /// here.
+  [[nodiscard]] bool wait_until_erased() const {
     if constexpr (requires { pages_.ready(); }) {
-      while (!pages_.ready()) {
+      for (std::uint32_t polls = 0; !pages_.ready(); ++polls) {
+        if (polls == max_polls) return false;
       }
     }
+    return true;
   }
 
   // Separate functions, so that their buffers are not on the stack at the same time.
@@ -159,8 +165,7 @@ class FlashStorage {
     std::array<std::uint8_t, image_at> bytes;
     bytes.fill(0xFF);
     std::memcpy(bytes.data(), &header_, sizeof header_);
-    wait_until_erased();
-    return pages_.write(spare(), offset, bytes);
+    return wait_until_erased() && pages_.write(spare(), offset, bytes);
   }
 
   /// Returns the state of a page; `header_` is then its header.

@@ -55,6 +55,14 @@ struct NoStorage {};
 
 namespace storage_detail {
 
+/// Calls of `ready` of a medium in one wait, unless it has a `max_polls` of its own. At 10 cycles for each, 10 s at
+/// 100 MHz: longer than any erase of a page.
+template <class Medium>
+inline constexpr std::uint32_t max_polls = 100'000'000;
+template <class Medium>
+requires requires { Medium::max_polls; }
+inline constexpr std::uint32_t max_polls<Medium> = Medium::max_polls;
+
 template <class Handler>
 inline constexpr bool is_stored_in = false;
 template <Storage S>
@@ -63,6 +71,7 @@ inline constexpr bool is_stored_in<StoredIn<S>> = true;
 /// Whether a storage is among the handlers of a node.
 template <class... Handlers>
 inline constexpr bool has_storage = (is_stored_in<Handlers> || ...);
+
 template <class Handler>
 inline constexpr bool is_stepped = false;
 template <Storage S>
