@@ -431,18 +431,25 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   /// Sends what is due, in order of importance; what the bus has no room for remains due. A command that a handler has
   /// requested is executed after the response of the SDO server.
   [[gnu::noinline]] void serve() {
-    attention_ = false;
-    idle_.end();
-    if (services_.silent()) return;
-    if (!services_.serve(host())) {
-      attention_ = true;
-      services_.keep_deadlines(host());
-    }
+    do {
+      attention_ = false;
+      idle_.end();
+      if (services_.silent()) return;
+      if (!services_.serve(host())) {
+        attention_ = true;
+        services_.keep_deadlines(host());
+      }
+    } while (carry_out_deferred());
+  }
+
+  /// Returns whether a handler had requested a command.
+  bool carry_out_deferred() {
     if constexpr (calls_handlers) {
-      if (!handler_calls_.has_deferred() || services_.template get<Sdo>().has_reply()) return;
+      if (!handler_calls_.has_deferred() || services_.template get<Sdo>().has_reply()) return false;
       carry_out(handler_calls_.deferred());
-      serve();
+      return true;
     }
+    return false;
   }
 
   /// The whole function of a node without node-ID.

@@ -292,13 +292,13 @@ struct StuckFlash : SlowFlash::Cells {
   }
 };
 
-constexpr auto not_stored = "585 80 10 10 01 20 00 06 06";  // 0606 0020h: hardware
+constexpr auto hardware_error = "585 80 10 10 01 00 00 06 06";
 
 TEST(FlashStorage, FailsIfAnEraseDoesNotEnd) {
   StuckFlash pages;
   FlashStorage<StuckFlash> storage{pages};
   auto device = bench::with<stored_device::Device>(canopen::stored_in(storage));
-  EXPECT_EQ(device.ask(save_all), not_stored);
+  EXPECT_EQ(device.ask(save_all), hardware_error);
   EXPECT_EQ(pages.polls, StuckFlash::max_polls + 1);
 }
 
