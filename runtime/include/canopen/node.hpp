@@ -435,10 +435,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
       attention_ = false;
       idle_.end();
       if (services_.silent()) return;
-      if (!services_.serve(host())) {
-        attention_ = true;
-        services_.keep_deadlines(host());
-      }
+      if (!services_.serve(host())) keep_attention();
     } while (carry_out_deferred());
   }
 
@@ -450,6 +447,12 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
       return true;
     }
     return false;
+  }
+
+  /// What the bus had no room for remains due.
+  [[gnu::noinline]] void keep_attention() {
+    attention_ = true;
+    services_.keep_deadlines(host());
   }
 
   /// The whole function of a node without node-ID.

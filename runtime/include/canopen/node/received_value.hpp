@@ -1,4 +1,6 @@
 /// Values that a node receives: the checks of services and handlers, and what follows from a new value.
+///
+/// The functions are `inline`: GCC then inlines them like functions that are defined in a class.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +17,8 @@ namespace canopen {
 /// Checks whether a received value, whose length and limits are correct, may be written: asks the services, then calls
 /// the write handlers of the object. Both may change the bytes.
 template <class Host>
-[[nodiscard]] AbortCode before_write(Host& host, std::uint16_t index, std::uint8_t sub_index,
-                                     std::span<std::uint8_t> bytes) {
+[[nodiscard]] inline AbortCode before_write(Host& host, std::uint16_t index, std::uint8_t sub_index,
+                                            std::span<std::uint8_t> bytes) {
   if (may_concern_services(index) || service::DriveModes<typename Host::Device>::checks(index, sub_index)) {
     if (const AbortCode code = host.check_write(index, sub_index, bytes); code != ok) return code;
   }
@@ -27,8 +29,8 @@ template <class Host>
 /// Calls the handlers that use an object after it has been written. A command that they request is executed after the
 /// response of the SDO server.
 template <class Host>
-void notify_written([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t index,
-                    [[maybe_unused]] std::uint8_t sub_index) {
+inline void notify_written([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t index,
+                           [[maybe_unused]] std::uint8_t sub_index) {
   if constexpr (Host::Handlers::has_written_handlers) {
     static_cast<void>(host.handler_calls().ask(0, [&] {
       host.handlers().after_write(host.node(), object_key(index, sub_index), host.store());
@@ -40,7 +42,7 @@ void notify_written([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t 
 /// Applies a value from a PDO to an object by index and sub-index. A value outside its limits, or rejected by its
 /// handler, is ignored.
 template <class Host>
-void take_received(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
+inline void take_received(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
   using Entries = EntryAccess<typename Host::Device>;
   const entry::Word word = Entries::find(index, sub_index);
   if (Entries::kinds.booleans && entry::is_boolean(word)) bytes[0] = bytes[0] != 0 ? 1 : 0;
@@ -55,7 +57,7 @@ void take_received(Host& host, std::uint16_t index, std::uint8_t sub_index, std:
 
 /// The same for an object that is known at compile time.
 template <DictionaryObject O, class Host>
-void take_received(Host& host, const typename O::type& value) {
+inline void take_received(Host& host, const typename O::type& value) {
   if (check_limits<O>(value) != ok) return;
   if constexpr (Host::Handlers::template handles_write<O>) {
     const auto ask = [&] { return host.handlers().template before_write<O>(host.node(), value); };

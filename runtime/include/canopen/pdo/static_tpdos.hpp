@@ -17,15 +17,17 @@ namespace canopen {
 
 namespace pdo_detail {
 
+// `inline` makes GCC inline them, as functions that are defined in a class.
+
 template <class Pdo, class Device, std::size_t... I>
-void pack_objects([[maybe_unused]] const ObjectStore<Device>& store, std::array<std::uint8_t, 8>& data,
-                  std::index_sequence<I...>) {
+inline void pack_objects([[maybe_unused]] const ObjectStore<Device>& store, std::array<std::uint8_t, 8>& data,
+                         std::index_sequence<I...>) {
   Pdo::pack_into_words(data, store.template get<typename Pdo::template Entry<I>>()...);
 }
 
 template <class Pdo, bool IsStatic, class Device>
-void pack_if([[maybe_unused]] bool it_is, [[maybe_unused]] const ObjectStore<Device>& store,
-             [[maybe_unused]] std::array<std::uint8_t, 8>& data) {
+inline void pack_if([[maybe_unused]] bool it_is, [[maybe_unused]] const ObjectStore<Device>& store,
+                    [[maybe_unused]] std::array<std::uint8_t, 8>& data) {
   if constexpr (IsStatic) {
     if (it_is) pack_objects<Pdo>(store, data, std::make_index_sequence<Pdo::entries>{});
   }

@@ -110,7 +110,6 @@ class SdoServer {
   static constexpr bool has_block = Device::options.sdo_block_transfer;
 
   [[nodiscard]] AbortCode handle(const sdo::Data& request, auto& hooks) {
-    if (transfer_.state() == State::idle) transfer_.forget();
     if constexpr (has_block) {
       if (takes_segments() && request[0] != sdo::abort_command) return Blocks::take_segment(request, transfer_, hooks);
     }
@@ -155,7 +154,7 @@ class SdoServer {
   }
 
   [[nodiscard]] AbortCode upload_segment(std::uint8_t command, auto& hooks) {
-    if (transfer_.state() != State::uploading) return AbortCode::command_specifier;
+    if (transfer_.state() != State::uploading) return transfer_.reject_command();
     if ((command & sdo::toggle) != transfer_.toggle()) return AbortCode::toggle_bit;
     transfer_.clear_reply(transfer_.toggle());
     std::uint32_t size = 0;
@@ -189,7 +188,7 @@ class SdoServer {
   }
 
   [[nodiscard]] AbortCode download_segment(const sdo::Data& request, auto& hooks) {
-    if (transfer_.state() != State::downloading) return AbortCode::command_specifier;
+    if (transfer_.state() != State::downloading) return transfer_.reject_command();
     if ((request[0] & sdo::toggle) != transfer_.toggle()) return AbortCode::toggle_bit;
     const bool last = (request[0] & sdo::last_segment) != 0;
     const std::uint32_t size = sdo::segment_bytes - ((request[0] >> 1) & 7u);

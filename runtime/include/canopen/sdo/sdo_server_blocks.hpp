@@ -52,7 +52,7 @@ class SdoServerBlocks {
         transfer.enter(State::idle);
         return ok;
     }
-    return AbortCode::command_specifier;
+    return transfer.reject_command();
   }
 
   /// Whether the sub-block has a further segment to send.
@@ -129,7 +129,7 @@ class SdoServerBlocks {
 
   /// Completes a block download, if its CRC is right.
   [[nodiscard]] static AbortCode end_download(const sdo::Data& request, Transfer& transfer, auto& hooks) {
-    if (transfer.state() != State::block_download_ending) return AbortCode::command_specifier;
+    if (transfer.state() != State::block_download_ending) return transfer.reject_command();
     SdoBlockProgress& progress = transfer.progress();
     const std::uint32_t size = sdo::segment_bytes - ((request[0] >> 2) & 7u);
     if (const AbortCode code = transfer.check_room(size); code != ok) return code;

@@ -48,8 +48,12 @@ class SdoServerTransfer {
     multiplexer_ = sdo::multiplexer_of(request);
   }
 
-  /// No transfer is running: an abort contains 0000h:00.
-  void forget() { multiplexer_ = 0; }
+  /// Rejects a request that does not belong to the state of the transfer: the abort contains the entry of the transfer
+  /// that it ends, or 0000h:00 if none is running.
+  [[nodiscard]] AbortCode reject_command() {
+    if (state_ == State::idle) multiplexer_ = 0;
+    return AbortCode::command_specifier;
+  }
 
   [[nodiscard]] State state() const { return state_; }
   void enter(State next) { state_ = next; }
