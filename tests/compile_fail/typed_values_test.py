@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from support.compilers import (CLANG, GCC, SKIPPED, Compiler, compile_only, in_parallel, precompiled,  # noqa: E402
-                               those_installed)
+from support.compilers import CLANG, GCC, SKIPPED, Compiler, in_parallel, precompiled, those_installed  # noqa: E402
+from support.messages import messages_of_cases  # noqa: E402
 
 MOST_LINES = 12
 UNUSED_IS_FINE = ("-Wno-unused-variable", "-Wno-unused-but-set-variable", "-Wno-unused-parameter")
@@ -27,28 +27,29 @@ COMMON_HEADERS = """#include <canopen/sdo/remote_node.hpp>
 #include <canopen/host/blocking_sdo.hpp>
 #include <every_type/device.hpp>
 #include "support/omitting.hpp"
-"""
-SOURCE = """namespace od = every_type::od;
+namespace od = every_type::od;
 using Device = every_type::Device;
-struct Bus {{
-  bool send(const canopen::Frame&) {{ return true; }}
+struct Bus {
+  bool send(const canopen::Frame&) { return true; }
   std::optional<canopen::Frame> receive(canopen::Duration);
   canopen::TimePoint now();
-}};
-struct Lock {{
-  void lock() {{}}
-  void unlock() {{}}
-}};
-enum Setting : std::uint16_t {{ setting = 7 }};
-enum class Mode : std::uint16_t {{ on = 7 }};
-using O = {object};
+};
+struct Lock {
+  void lock() {}
+  void unlock() {}
+};
+enum Setting : std::uint16_t { setting = 7 };
+enum class Mode : std::uint16_t { on = 7 };
 using Node = bench::NodeOf<Device, Bus>;
-using Box = canopen::Mailbox<O>;
-void pass(Node& node, canopen::Locked<Node, Lock>& locked, Box& box, canopen::RemoteNode<Device, Bus>& remote,
+"""
+CASE = """namespace case_{number} {{
+void pass(Node& node, canopen::Locked<Node, Lock>& locked, canopen::Mailbox<{object}>& box,
+          canopen::RemoteNode<Device, Bus>& remote,
           canopen::BlockingObjects<Device, canopen::BlockingSdo<Bus>>& objects, canopen::TimePoint now,
-          canopen::Frame& frame, Bus& bus) {{
+          canopen::Frame& frame) {{
   {declaration}
   {statement}
+}}
 }}
 """
 
@@ -86,18 +87,18 @@ TEXTS = (Kind("long literal", TEXT, "", '"longer"'), Kind("text of unknown lengt
 # The name, the statement, and the kinds of values that it can be given.
 NODE, CODEC = (*NUMBERS, *CHECKED, *TEXTS), NUMBERS
 WAYS = {
-    "node, tag": ("node.set(O{{}}, {value});", NODE),
-    "node, template": ("node.set<O>({value});", NODE),
-    "locked, tag": ("locked.set(O{{}}, {value});", NODE),
-    "locked, template": ("locked.set<O>({value});", NODE),
-    "mailbox, tag": ("box.post(O{{}}, {value});", NODE),
-    "mailbox, template": ("box.post<O>({value});", NODE),
-    "remote node": ("remote.write<O>({value}, now);", (*NUMBERS, *CHECKED)),
-    "blocking, tag": ("objects.write(O{{}}, {value});", NODE),
-    "blocking, template": ("objects.write<O>({value});", NODE),
-    "PDO, pack": ("(void)canopen::PdoLayout<O>::pack({value});", CODEC),
-    "PDO, set": ("canopen::PdoLayout<O>::set<0>(frame, {value});", CODEC),
-    "PDO, put": ("canopen::PdoLayout<O>::put<0>(frame, {value});", CODEC),
+    "node, tag": ("node.set({object}{{}}, {value});", NODE),
+    "node, template": ("node.set<{object}>({value});", NODE),
+    "locked, tag": ("locked.set({object}{{}}, {value});", NODE),
+    "locked, template": ("locked.set<{object}>({value});", NODE),
+    "mailbox, tag": ("box.post({object}{{}}, {value});", NODE),
+    "mailbox, template": ("box.post<{object}>({value});", NODE),
+    "remote node": ("remote.write<{object}>({value}, now);", (*NUMBERS, *CHECKED)),
+    "blocking, tag": ("objects.write({object}{{}}, {value});", NODE),
+    "blocking, template": ("objects.write<{object}>({value});", NODE),
+    "PDO, pack": ("(void)canopen::PdoLayout<{object}>::pack({value});", CODEC),
+    "PDO, set": ("canopen::PdoLayout<{object}>::set<0>(frame, {value});", CODEC),
+    "PDO, put": ("canopen::PdoLayout<{object}>::put<0>(frame, {value});", CODEC),
 }
 # What compiles: a value of the type, of a narrower one, and a constant.
 RIGHT = (Kind("type", PLAIN, "std::uint16_t value = 5;", "value"), Kind("narrower", PLAIN, "std::uint8_t value = 5;", "value"),
@@ -105,31 +106,61 @@ RIGHT = (Kind("type", PLAIN, "std::uint16_t value = 5;", "value"), Kind("narrowe
          Kind("real constant", REAL, "", "0.5"))
 
 
-def run_cell(job: tuple[Compiler, str, str, Kind, bool, Path, tuple[Path, ...], tuple[str, ...]]) -> str:
-    """Returns the problem of a cell; empty if it has none."""
-    compiler, way, statement, kind, is_right, folder, include, flags = job
-    name = "".join(letter if letter.isalnum() else "_" for letter in f"{compiler.name} {way} {kind.name} {is_right}")
-    source = folder / f"{name}.cpp"
-    text = statement.format(value=kind.value)
-    if is_right and "(void)" not in text:
-        text = f"(void){text}"
-    source.write_text(SOURCE.format(object=kind.object, declaration=kind.declaration, statement=text))
-    run = compile_only(compiler, source, include, flags)
-    cell = f"{compiler.name}: {way}, {kind.name}"
-    if is_right:
-        return f"{cell}: does not compile:\n{run.stderr[:1500]}" if run.returncode != 0 else ""
-    if run.returncode == 0:
-        return f"{cell}: compiles"
-    lines = run.stderr.splitlines()
+@dataclass(frozen=True)
+class Unit:
+    """Cells that are compiled as one file."""
+    compiler: Compiler
+    cells: tuple[tuple[str, Kind], ...]  # a way and a kind
+    is_right: bool
+
+    def name(self, cell: tuple[str, Kind]) -> str:
+        return f"{self.compiler.name}: {cell[0]}, {'right ' if self.is_right else ''}{cell[1].name}"
+
+    def text(self, number: int) -> str:
+        way, kind = self.cells[number]
+        statement = WAYS[way][0].format(object=kind.object, value=kind.value)
+        if self.is_right and "(void)" not in statement:
+            statement = f"(void){statement}"
+        return CASE.format(number=number, object=kind.object, declaration=kind.declaration, statement=statement)
+
+
+def units_of(compiler: Compiler, only: list[str]) -> list[Unit]:
+    """A variable and a constant of one type are in different units: both can be an error of the same specialization."""
+    units, right = [], []
+    for way, (_, kinds) in WAYS.items():
+        if only and way != only[0]:
+            continue
+        chosen = [kind for kind in kinds if len(only) < 2 or kind.name == only[1]]
+        for is_variable in (True, False):
+            cells = tuple((way, kind) for kind in chosen if (kind.declaration != "") == is_variable)
+            units += [Unit(compiler, cells, False)] if cells else []
+        right += [(way, kind) for kind in RIGHT if len(only) < 2 or kind.name == only[1]]
+    return units + ([Unit(compiler, tuple(right), True)] if right else [])
+
+
+def problem_of(unit: Unit, kind: Kind, lines: list[str]) -> str:
+    """Returns the problem of a cell with the messages of the compiler; empty if it has none."""
+    if unit.is_right:
+        return "does not compile" if lines else ""
+    if not lines:
+        return "compiles"
     if len(lines) > MOST_LINES:
-        return f"{cell}: {len(lines)} lines:\n{run.stderr[:1500]}"
-    is_named = kind.object.split("::")[-1] in run.stderr or "O{}" in run.stderr or "<O>" in run.stderr
-    return "" if is_named else f"{cell}: does not name the object:\n{run.stderr[:1500]}"
+        return f"{len(lines)} lines"
+    return "" if kind.object.split("::")[-1] in "\n".join(lines) else "does not name the object"
+
+
+def run_unit(job: tuple[Unit, Path, tuple[Path, ...], tuple[str, ...]]) -> list[str]:
+    """Returns the problems of the cells."""
+    unit, folder, include, flags = job
+    cases = [(unit.name(cell), unit.text(number)) for number, cell in enumerate(unit.cells)]
+    messages = messages_of_cases(unit.compiler, cases, folder, include, flags)
+    problems = [(unit.name(cell), problem_of(unit, cell[1], messages[unit.name(cell)])) for cell in unit.cells]
+    problems.append(("", "messages of no case" if messages[""] else ""))
+    return ["\n".join((f"{name}: {problem}", *messages[name])) for name, problem in problems if problem]
 
 
 def main() -> int:
     source_dir, generated = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-    only = sys.argv[3:]
     compilers = those_installed((GCC, CLANG))
     include = (*(path for path in sorted(generated.iterdir()) if path.is_dir()), generated,
                source_dir / "runtime/include", source_dir / "tests")
@@ -139,16 +170,13 @@ def main() -> int:
             folder = Path(scratch) / compiler.name
             folder.mkdir()
             flags = (*UNUSED_IS_FINE, *precompiled(compiler, COMMON_HEADERS, include, folder, UNUSED_IS_FINE))
-            for way, (statement, kinds) in WAYS.items():
-                if only and way != only[0]:
-                    continue
-                for kind, is_right in [*((kind, False) for kind in kinds), *((kind, True) for kind in RIGHT)]:
-                    if len(only) < 2 or kind.name == only[1]:
-                        jobs.append((compiler, way, statement, kind, is_right, folder, include, flags))
-        problems = [problem for problem in in_parallel(run_cell, jobs) if problem]
+            jobs += [(unit, folder / f"unit_{number}", include, flags)
+                     for number, unit in enumerate(units_of(compiler, sys.argv[3:]))]
+        problems = [problem for found in in_parallel(run_unit, jobs) for problem in found]
     for problem in problems:
         print(problem)
-    print(f"{len(jobs) - len(problems)} of {len(jobs)} cells, {len(compilers)} compilers")
+    cells = sum(len(unit.cells) for unit, *_ in jobs)
+    print(f"{cells} cells, {len(problems)} problems, {len(compilers)} compilers")
     if not compilers:
         return SKIPPED
     return 1 if problems or not jobs else 0

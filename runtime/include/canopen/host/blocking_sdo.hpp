@@ -110,33 +110,41 @@ class BlockingObjects {
   /// Writes a number, a string or a DOMAIN: `write<od::x>(value)` or `write(od::x{}, value)`. A value outside the
   /// limits is rejected without sending a frame; 0607 0012h: a string is longer than the capacity of the object.
   template <DictionaryObject O, class V>
-  Result<void> write(const V& value) {
-    if constexpr (remote_detail::can_be_written<O, Device, std::decay_t<const V&>>()) {
-      if constexpr (NumberObject<O>) {
-        if (const AbortCode code = check_value<O>(value); code != ok) return code;
-        return write_number<O>(static_cast<typename O::type>(value));
-      } else if constexpr (std::convertible_to<const V&, std::string_view>) {
-        const std::string_view text = value;
-        return write_bytes<O>(std::span{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-      } else {
-        return write_bytes<O>(value);
-      }
+  requires remote_detail::WrittenTo<std::decay_t<const V&>, O, Device>
+  [[nodiscard]] Result<void> write(const V& value) {
+    if constexpr (NumberObject<O>) {
+      if (const AbortCode code = check_value<O>(value); code != ok) return code;
+      return write_number<O>(static_cast<typename O::type>(value));
+    } else if constexpr (std::convertible_to<const V&, std::string_view>) {
+      const std::string_view text = value;
+      return write_bytes<O>(std::span{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+    } else {
+      return write_bytes<O>(value);
     }
-    return AbortCode::general;
   }
   template <DictionaryObject O, class V>
-  Result<void> write(O, const V& value) {
-    if constexpr (remote_detail::can_be_written<O, Device, std::decay_t<const V&>>()) return write<O>(value);
-    return AbortCode::general;
+  requires remote_detail::WrittenTo<std::decay_t<const V&>, O, Device>
+  [[nodiscard]] Result<void> write(O, const V& value) { return write<O>(value); }
+  /// What does not compile.
+  template <DictionaryObject O, class V>
+  remote_detail::NotWritten write(const V&) {
+    static_cast<void>(remote_detail::can_be_written<O, Device, std::decay_t<const V&>>());
+    return {};
+  }
+  template <DictionaryObject O, class V>
+  remote_detail::NotWritten write(O, const V&) {
+    static_cast<void>(remote_detail::can_be_written<O, Device, std::decay_t<const V&>>());
+    return {};
   }
   template <DictionaryObject O>
-  requires(StringObject<O> || DomainObject<O>) Result<void> write(std::initializer_list<std::uint8_t> bytes) {
+  requires(StringObject<O> || DomainObject<O>)
+      [[nodiscard]] Result<void> write(std::initializer_list<std::uint8_t> bytes) {
     return write<O>(std::span{bytes.begin(), bytes.size()});
   }
 
   /// Writes a constant, whose limits the compiler checks.
   template <NumberObject O, auto Value>
-  Result<void> write() {
+  [[nodiscard]] Result<void> write() {
     if constexpr (remote_detail::can_be_written_with<O, Device, Value>())
       return write_number<O>(static_cast<typename O::type>(Value));
     return AbortCode::general;

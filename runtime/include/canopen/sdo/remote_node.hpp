@@ -87,6 +87,15 @@ template <class O, class Device, class V>
   return exists && has_the_type_of<O, V>;
 }
 
+/// Whether `can_be_written` is true, without a message.
+template <class V, class O, class Device>
+concept WrittenTo = device_has<O, Device> && is_of_device<O, Device> && is_writable<O> && has_the_type_of<O, V>;
+
+/// What `write` returns where it does not compile: the compiler then does not also report that it is not used.
+struct NotWritten : Result<void> {
+  constexpr NotWritten() : Result{AbortCode::general} {}
+};
+
 /// The same with a constant.
 template <class O, class Device, auto Value>
 [[nodiscard]] constexpr bool can_be_written_with() {
@@ -112,32 +121,36 @@ class RemoteNode {
 
   /// Starts to read an object; `value<O>()` then returns it. 060A 0023h while busy.
   template <NumberObject O>
-  Result<void> read(TimePoint now) {
+  [[nodiscard]] Result<void> read(TimePoint now) {
     if constexpr (remote_detail::can_be_read<O, Device>()) return begun(client_.template read<O>(now));
     return AbortCode::general;
   }
 
   /// Starts to read a string or DOMAIN into memory; `data()` then returns its bytes.
   template <DictionaryObject O>
-  requires(StringObject<O> || DomainObject<O>) Result<void> read(std::span<std::uint8_t> memory, TimePoint now) {
+  requires(StringObject<O> || DomainObject<O>)
+      [[nodiscard]] Result<void> read(std::span<std::uint8_t> memory, TimePoint now) {
     if constexpr (remote_detail::can_be_read<O, Device>())
       return begun(client_.upload(O::index, O::sub_index, memory, now));
     return AbortCode::general;
   }
 
   /// Starts to write an object. A value outside the limits is rejected at once and not sent.
+  template <NumberObject O, remote_detail::WrittenTo<O, Device> V>
+  [[nodiscard]] Result<void> write(V value, TimePoint now) {
+    if (const AbortCode code = check_value<O>(value); code != ok) return code;
+    return begun(client_.template write<O>(static_cast<typename O::type>(value), now));
+  }
+  /// What does not compile.
   template <NumberObject O, class V>
-  Result<void> write(V value, TimePoint now) {
-    if constexpr (remote_detail::can_be_written<O, Device, V>()) {
-      if (const AbortCode code = check_value<O>(value); code != ok) return code;
-      return begun(client_.template write<O>(static_cast<typename O::type>(value), now));
-    }
-    return AbortCode::general;
+  remote_detail::NotWritten write(V, TimePoint) {
+    static_cast<void>(remote_detail::can_be_written<O, Device, V>());
+    return {};
   }
 
   /// Starts to write a constant.
   template <NumberObject O, auto Value>
-  Result<void> write(TimePoint now) {
+  [[nodiscard]] Result<void> write(TimePoint now) {
     if constexpr (remote_detail::can_be_written_with<O, Device, Value>())
       return begun(client_.template write<O>(static_cast<typename O::type>(Value), now));
     return AbortCode::general;
@@ -146,7 +159,8 @@ class RemoteNode {
   /// Starts to write a string or DOMAIN from memory. A string longer than the capacity of the object is rejected at
   /// once with 0607 0012h.
   template <DictionaryObject O>
-  requires(StringObject<O> || DomainObject<O>) Result<void> write(std::span<const std::uint8_t> bytes, TimePoint now) {
+  requires(StringObject<O> || DomainObject<O>)
+      [[nodiscard]] Result<void> write(std::span<const std::uint8_t> bytes, TimePoint now) {
     if constexpr (remote_detail::can_be_written<O, Device, std::span<const std::uint8_t>>()) {
       if constexpr (StringObject<O>) {
         if (bytes.size() > O::type::capacity()) return AbortCode::length_too_high;
