@@ -106,7 +106,7 @@ class MpdoLists {
   static constexpr std::size_t list_count = [] {
     std::size_t count = 0;
     for (unsigned index = Element::first_list; index <= Element::last_list; ++index) {
-      count += capacity(static_cast<std::uint16_t>(index)) != 0 ? 1 : 0;
+      count += capacity(static_cast<std::uint16_t>(index)) != 0 ? 1u : 0u;
     }
     return count;
   }();

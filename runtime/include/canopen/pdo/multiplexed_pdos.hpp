@@ -107,7 +107,7 @@ struct MpdoFeatures {
     std::size_t count = 0;
     if (!Device::options.mpdo) return count;
     Device::dictionary.for_each_entry(
-        [&](std::uint16_t, std::uint8_t, entry::Word word) { count += carries(word, entry::tpdo) ? 1 : 0; });
+        [&](std::uint16_t, std::uint8_t, entry::Word word) { count += carries(word, entry::tpdo) ? 1u : 0u; });
     return count;
   }();
 
