@@ -31,6 +31,7 @@ struct Parameters {
     std::uint32_t modes = 0;
     for (const AcceptedRange& row : Device::dictionary.accepted) {
       if (row.index != At<object::ModesOfOperation>::index) continue;
+      // NOLINTNEXTLINE(bugprone-signed-char-misuse): modes of the manufacturer are negative
       for (int number = row.values.low; number <= row.values.high; ++number) {
         modes |= bit_of_mode(static_cast<std::int8_t>(number));
       }
