@@ -18,7 +18,7 @@ class Lss(LiveTest):
     shown = "vendor-ID 00ABCDEFh, product code 00001001h, revision 00010002h, serial number 00000101h"
 
     def lss(self, *arguments: object) -> subprocess.CompletedProcess[str]:
-        return self.edsc("lss", "--timeout", 2000, "--step", 200, *arguments)
+        return self.edsc("lss", "--timeout", 2000, "--step", 50, *arguments)
 
     def test_assign_by_address(self) -> None:
         self.expect(self.lss("assign", *self.address, "--node-id", 7, "--store"), FINE,
@@ -27,8 +27,10 @@ class Lss(LiveTest):
             "7E5 04 00 00 00 00 00 00 00",
             "7E5 40 EF CD AB 00 00 00 00", "7E5 41 01 10 00 00 00 00 00",
             "7E5 42 02 00 01 00 00 00 00", "7E5 43 01 01 00 00 00 00 00", "7E4 44 00 00 00 00 00 00 00",
+            "7E5 5E 00 00 00 00 00 00 00", "7E4 5E FF 00 00 00 00 00 00",
             "7E5 11 07 00 00 00 00 00 00", "7E4 11 00 00 00 00 00 00 00",
             "7E5 17 00 00 00 00 00 00 00", "7E4 17 00 00 00 00 00 00 00",
+            "7E5 5E 00 00 00 00 00 00 00", "7E4 5E FF 00 00 00 00 00 00",
             "7E5 04 00 00 00 00 00 00 00"])
 
     def test_the_new_node_answers(self) -> None:
@@ -43,7 +45,7 @@ class Lss(LiveTest):
         self.expect(self.lss("fastscan"), FAILED, stderr="edsc: fastscan: no device without node-ID answers\n")
 
     def test_a_scan_with_fastscan(self) -> None:
-        found = self.expect_json(self.edsc("scan", "--nodes", 9, "--listen", 0, "--timeout", 2000, "--lss", "--step", 500, "--format", "json"),
+        found = self.expect_json(self.edsc("scan", "--nodes", 9, "--listen", 0, "--timeout", 2000, "--lss", "--step", 50, "--format", "json"),
                                  "scan.schema.json")
         self.assertEqual([device["serial_number"] for device in found["unconfigured"]], [0x101])
 

@@ -127,7 +127,7 @@ class Silence(LiveTest):
         content = bytes(i % 7 for i in range(200))
         (self.folder / "firmware.bin").write_bytes(content)
         for end_of_block, words in (
-                ("585 80 00 00 00 03 00 04 05", "no answer, but an abort of 0000h:00: 0504 0003h, invalid sequence number"),
+                ("585 80 00 00 00 03 00 04 05", "refused by the device: 0504 0003h, invalid sequence number"),
                 ("585 80 00 20 00 04 00 04 05", "refused by the device: 0504 0004h, CRC error"),
                 ("", "no answer")):
             with self.subTest(end_of_block), Network(EDSC, LIVE_NODES) as network:

@@ -35,18 +35,20 @@ class Write(LiveTest):
                     stderr="edsc: " + why.format("150 rpm", '2004h:00 "Speed"', "0.1 rpm"))
         self.expect(self.edsc("send", "pdo", "5=device.eds", 1, "60FFh=2 inc/s", "6040h=0"), WRONG_USAGE,
                     stderr="edsc: 60FFh:00 Target velocity: " + why.format("2 inc/s", '60FFh:00 "Target velocity"', "100 inc/s"))
-        self.assertEqual(self.network.frames("605", "205"), [])
         self.expect(self.edsc("write", 5, "speed", "1500", "--eds", "device.eds", "--verify"), FINE,
                     "2004h:00 Speed = 1500 (05DCh), verified\n")
         self.expect(self.edsc("read", 5, "speed", "--eds", "device.eds"), FINE, "2004h:00 Speed = 1500 (05DCh)\n")
         read = self.expect_json(self.edsc("read", 5, "speed", "--eds", "device.eds", "--format", "json"), "read.schema.json")
         self.assertNotIn("rpm", json.dumps(read))
+        self.assertEqual(self.network.frames("605", "205"), ["605 2B 04 20 00 DC 05 00 00"] + 3 * ["605 40 04 20 00 00 00 00 00"])
         (self.folder / "bus.log").write_text("(1.0) can0 205#0F00FEFFFFFF\n(2.0) can0 605#2B042000E8030000\n")
-        for arguments in (("decode",), ("decode", "--format", "json"), ("decode", "--format", "csv")):
-            with self.subTest(arguments):
-                shown = self.without_bus(*arguments, "--node", "5=device.eds", "bus.log").stdout
-                self.assertIn("Target velocity = -2", shown)
-                self.assertIn("Speed = 1000 (03E8h)", shown)
+        for form, values in (("text", ("Target velocity = -2", "Speed = 1000 (03E8h)")),
+                             ("json", ("Target velocity = -2", "Speed = 1000 (03E8h)")),
+                             ("csv", ("Target velocity,-2,", "Speed,1000,"))):
+            with self.subTest(form):
+                shown = self.without_bus("decode", "--format", form, "--node", "5=device.eds", "bus.log").stdout
+                for value in values:
+                    self.assertIn(value, shown)
                 self.assertNotRegex(shown, "rpm|inc/s")
         plot = self.without_bus("plot", "bus.log", "60FFh", "--node", "5=device.eds").stdout
         self.assertIn("Target velocity", plot)
