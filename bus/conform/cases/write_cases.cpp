@@ -156,11 +156,13 @@ bool is_allowed(const LiveEntry& entry, std::uint64_t value) {
   return entry.sub_index != 6 || number <= 240;
 }
 
-/// A COB-ID with a CAN-ID that CiA 301 does not restrict, and the other bits of the present one.
+/// A COB-ID with a CAN-ID that CiA 301 does not restrict, and the other bits of the present one. Some devices keep the
+/// lowest seven bits, which are the node-ID: they stay as they are if the CAN-ID is not restricted.
 std::uint32_t other_cob_id(std::uint32_t present) {
-  constexpr std::uint32_t first = 0x6A0, second = 0x6A1;  // above the default SDO, where nothing is predefined
+  constexpr std::uint32_t above_sdo = 0x680, restricted = 0x6E0, other = 0x6A1;  // nothing is predefined between them
   const std::uint32_t flags = present & ~std::uint32_t{CobId::extended_bit | 0x1FFF'FFFFU};
-  return flags | (CobId{present}.can_id() == first ? second : first);
+  const std::uint32_t can_id = above_sdo | (present & canopen::highest_node_id);
+  return flags | (can_id < restricted && can_id != CobId{present}.can_id() ? can_id : other);
 }
 
 /// A heartbeat consumer time of one second for a node that 1016h does not monitor.
