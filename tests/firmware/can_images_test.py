@@ -16,11 +16,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from support.compilers import ARM_GCC, SKIPPED, those_installed  # noqa: E402
+from support.compilers import ARM_GCC, SKIPPED, WARNINGS, those_installed  # noqa: E402
 
 DATA_SHEET, NAMESPACE = "eds/rk5c.eds", "rk5c"
 FLASH_LIMIT, RAM_LIMIT = 13_312, 512  # bytes
-WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Wpedantic", "-Werror")
 CODE = ("-std=c++20", "-Os", "-DNDEBUG", "-mthumb", "-ffunction-sections", "-fdata-sections", "-fno-exceptions", "-fno-rtti",
         "-fno-threadsafe-statics")
 HEAP = ("malloc", "calloc", "realloc", "free", "_malloc_r", "_calloc_r", "_realloc_r", "_free_r")

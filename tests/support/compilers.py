@@ -12,10 +12,8 @@ from pathlib import Path
 
 SKIPPED = 77  # the exit code that CTest reports as skipped
 
-FLAGS = (
-    "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Wpedantic", "-Werror",
-    "-fno-exceptions", "-fno-rtti",
-)
+WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wsign-conversion", "-Wshadow", "-Wpedantic", "-Werror")
+FLAGS = ("-std=c++20", "-fsyntax-only", *WARNINGS, "-fno-exceptions", "-fno-rtti")
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from support.compilers import WARNINGS
+
 COMMAND = (
-    "arm-none-eabi-g++", "-std=c++20", "-Os", "-mcpu=cortex-m0plus", "-mthumb", "-fno-exceptions", "-fno-rtti", "-Wall",
-    "-Wextra", "-Wconversion", "-Wshadow", "-Wpedantic", "-Werror", "-ffunction-sections", "-fdata-sections",
+    "arm-none-eabi-g++", "-std=c++20", "-Os", "-mcpu=cortex-m0plus", "-mthumb", "-fno-exceptions", "-fno-rtti", *WARNINGS,
+    "-ffunction-sections", "-fdata-sections",
 )
 
 

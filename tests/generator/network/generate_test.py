@@ -319,7 +319,8 @@ class Generate(unittest.TestCase):
                 self.assertIn(message, found)
 
     def compile(self, header: str, fails: bool = False) -> str:
-        result = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion",
+        result = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow",
+                                 "-Wconversion", "-Wsign-conversion",
                                  "-Werror", "-I", SOURCE_DIR / "runtime/include", "-I", self.out, "-x", "c++", "-"],
                                 input=f"#include <{header}>\n", capture_output=True, text=True)
         self.assertEqual(result.returncode != 0, fails, result.stderr)

@@ -40,7 +40,7 @@ class MultiplexedPdos {
 
   static constexpr std::size_t count = [] {
     std::size_t sum = 0;
-    Pdos::for_each([&]<class Pdo, std::size_t>() { sum += may_be<Pdo>() ? 1 : 0; });
+    Pdos::for_each([&]<class Pdo, std::size_t>() { sum += may_be<Pdo>() ? 1u : 0u; });
     return sum;
   }();
 

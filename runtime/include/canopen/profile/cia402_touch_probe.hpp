@@ -84,10 +84,11 @@ class TouchProbes {
 
   template <class Position, class Node, class A>
   void store(Node& node, A& axis, unsigned probe, bool positive) {
-    const unsigned bits = function_ >> probe * 8;
+    const unsigned bits = unsigned{function_} >> probe * 8;
     const unsigned wanted = positive ? touch_probe::positive_edge : touch_probe::negative_edge;
     if ((bits & touch_probe::enable) == 0 || (bits & wanted) == 0) return;
-    const unsigned stored = (positive ? touch_probe::positive_stored : touch_probe::negative_stored) << probe * 8;
+    const unsigned stored = unsigned{positive ? touch_probe::positive_stored : touch_probe::negative_stored}
+                            << probe * 8;
     if ((status_ & stored) != 0 && (bits & touch_probe::continuous) == 0) return;
     const auto position = axis.latched(edge_of(node, probe, positive));
     if (!position) return;
