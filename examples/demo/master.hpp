@@ -23,7 +23,7 @@ class Master {
   [[nodiscard]] const std::set<std::uint8_t>& booted() const { return booted_; }
 
   /// Sends the command to a node; 0: to all nodes.
-  void command(canopen::NmtCommand command, canopen::NodeId node = canopen::NodeId{0});
+  void command(canopen::NmtCommand command, canopen::NodeId node = canopen::all_nodes);
 
   /// Reads a remote object; std::nullopt if the server aborts: `last_abort()` returns the abort code.
   template <canopen::DictionaryObject O>

@@ -89,7 +89,7 @@ class PlantMaster {
     ready_[node_id.value() - 1u] = true;
     if (std::ranges::find(ready_, false) != ready_.end()) return;
     if (!listening_) listen();
-    static_cast<void>(master_.command(canopen::NmtCommand::start, canopen::NodeId{0}));
+    static_cast<void>(master_.command(canopen::NmtCommand::start, canopen::all_nodes));
     log_("all nodes are configured: started");
     running_ = true;
     written_.reset();

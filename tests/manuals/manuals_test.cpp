@@ -214,8 +214,8 @@ TYPED_TEST(EveryDevice, IgnoresExtendedFrames) {
 
 // shows 000.9, 001.4, 002.1
 TYPED_TEST(EveryDevice, TakesNodeIds1To127) {
-  EXPECT_FALSE(canopen::NodeId{0}.valid());
-  EXPECT_FALSE(canopen::NodeId{128}.valid());
+  EXPECT_FALSE(canopen::NodeId::from(0));
+  EXPECT_FALSE(canopen::NodeId::from(128));
   bench::RecordingBus bus;
   bench::NodeOf<typename TestFixture::Device, bench::RecordingBus> first{bus, canopen::NodeId{1}};
   bench::NodeOf<typename TestFixture::Device, bench::RecordingBus> last{bus, canopen::NodeId{127}};

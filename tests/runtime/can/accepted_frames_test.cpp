@@ -47,7 +47,7 @@ TEST(AcceptedFrames, FollowTheCobIds) {
 
 TEST(AcceptedFrames, OfANodeWithoutNodeIdAreThoseOfNoService) {
   bench::RecordingBus bus;
-  bench::NodeOf<sample::Device, bench::RecordingBus> node{bus, canopen::NodeId{255}};
+  bench::NodeOf<sample::Device, bench::RecordingBus> node{bus, canopen::unconfigured_node_id};
   node.start(canopen::TimePoint{});
   std::size_t count = 0;
   canopen::for_each_accepted_frame(node, [&](const canopen::AcceptedFrame&) { ++count; });

@@ -88,7 +88,7 @@ TEST(LssMaster, ConfiguresABitRate) {
 
 TEST(LssMaster, GivesTheErrorOfASlave) {
   MasterBench bench;
-  EXPECT_TRUE(bench.master.configure_node_id(NodeId{0x80}, bench.now));
+  EXPECT_TRUE(bench.master.configure_node_id(NodeId{std::uint8_t{0x80}}, bench.now));
   bench.hear("7E4 11 01 00 00 00 00 00 00");
   EXPECT_EQ(bench.master.outcome(), LssOutcome::refused);
   EXPECT_EQ(bench.master.error(), canopen::lss::node_id_out_of_range);

@@ -44,7 +44,7 @@ TEST(NmtMaster, SendsEachCommandToOneNodeOrToAll) {
   for (const NmtCommand command : {NmtCommand::start, NmtCommand::stop, NmtCommand::enter_pre_operational,
                                    NmtCommand::reset_node, NmtCommand::reset_communication}) {
     EXPECT_TRUE(master.command(command, NodeId{5}));
-    EXPECT_TRUE(master.command(command, NodeId{0}));
+    EXPECT_TRUE(master.command(command, canopen::all_nodes));
   }
   EXPECT_EQ(bus.take(),
             "000 01 05 | 000 01 00 | 000 02 05 | 000 02 00 | 000 80 05 | 000 80 00 | 000 81 05 | 000 81 00 | "

@@ -153,7 +153,7 @@ struct DeviceWithLss {
 using Sensor = DeviceWithLss<rk5c::Device>;
 
 TEST(NodeWithLss, WithoutNodeIdStaysInInitialisationUntilItGetsOne) {
-  Sensor device{NodeId{255}};
+  Sensor device{canopen::unconfigured_node_id};
   EXPECT_EQ(device.bus.take(), "");
   EXPECT_EQ(device.node.state(), NmtState::initialisation);
   EXPECT_EQ(device.ask("000 01 00"), "");

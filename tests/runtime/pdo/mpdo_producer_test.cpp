@@ -169,7 +169,7 @@ TEST(DamProducer, SendsNegativeValuesInTheirOwnLength) {
 
 TEST(DamProducer, SendsAValueToAllNodes) {
   Running device;
-  EXPECT_TRUE(device.node.send_mpdo({NodeId{0}, 0x6041, 2}, 0x12345678));
+  EXPECT_TRUE(device.node.send_mpdo({canopen::all_nodes, 0x6041, 2}, 0x12345678));
   EXPECT_EQ(device.pass(0s), "285 80 41 60 02 78 56 34 12");
 }
 

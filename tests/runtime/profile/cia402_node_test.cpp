@@ -51,7 +51,8 @@ TEST_F(DriveNode, HasNoPowerAfterAnNmtReset) {
 
 TEST_F(DriveNode, ReportsAFaultAndEndsIt) {
   for (const char* word : {"205 06 00", "205 07 00", "205 0F 00"}) ask(word);
-  drive.fault(0x2310, canopen::ErrorRegister::current, now);
+  // A constant that is not an emergency error code does not compile.
+  drive.fault(canopen::EmergencyCode{0x2310}, canopen::ErrorRegister::current, now);
   EXPECT_NE(bus.take().find("085 10 23 03"), std::string::npos) << "EMCY: current and generic";
   EXPECT_EQ(state() & 0x4F, 0x08u) << "fault; the bit of quick stop does not matter";
   EXPECT_FALSE(drive.axis().powered);

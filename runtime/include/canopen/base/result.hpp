@@ -19,15 +19,23 @@ class [[nodiscard]] Result {
   [[nodiscard]] constexpr bool has_value() const { return abort_code_ == ok; }
   constexpr explicit operator bool() const { return has_value(); }
 
+  /// Returns the value, which must not be missing: the program ends with a trap, on a processor with its fault handler.
+  constexpr const T& operator*() const { return *required(); }
+  constexpr const T* operator->() const { return required(); }
+  /// Returns the value, or `other` if it is missing.
+  [[nodiscard]] constexpr T value_or(T other) const { return has_value() ? value_ : other; }
   /// Returns the value; a default-constructed one if it is missing.
   [[nodiscard]] constexpr const T& value() const { return value_; }
-  constexpr const T& operator*() const { return value_; }
-  constexpr const T* operator->() const { return &value_; }
 
   /// Returns the reason for a missing value; `ok` if there is a value.
   [[nodiscard]] constexpr AbortCode abort_code() const { return abort_code_; }
 
  private:
+  [[nodiscard]] constexpr const T* required() const {
+    if (!has_value()) __builtin_trap();
+    return &value_;
+  }
+
   T value_{};
   AbortCode abort_code_ = ok;
 };

@@ -11,7 +11,7 @@
 namespace canopen {
 
 /// The node-ID of a device that has not been configured.
-inline constexpr NodeId unconfigured_node_id{255};
+inline constexpr NodeId unconfigured_node_id{std::uint8_t{255}};
 
 /// The four numbers of 1018h that identify a device.
 struct LssAddress {

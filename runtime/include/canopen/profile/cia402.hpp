@@ -105,7 +105,7 @@ class Drive {
 
   /// Reports an error of the drive: transition 13, 603Fh and an EMCY. A fault reset ends it.
   template <class Node>
-  void fault(Node& node, std::uint16_t code, ErrorRegister bits, const EmergencyInfo& info = {}) {
+  void fault(Node& node, EmergencyCode code, ErrorRegister bits, const EmergencyInfo& info = {}) {
     node.emergency(code, bits, info);
     signal_fault(node, bits);
   }

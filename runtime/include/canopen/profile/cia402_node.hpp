@@ -50,7 +50,7 @@ class DriveNode : public ProfileNode<DriveNode<Parts, B, A, options, Handlers...
   }
 
   /// Reports an error of the drive, like Drive::fault.
-  void fault(std::uint16_t code, ErrorRegister bits, TimePoint now, const EmergencyInfo& info = {}) {
+  void fault(EmergencyCode code, ErrorRegister bits, TimePoint now, const EmergencyInfo& info = {}) {
     drive_.fault(node_, code, bits, info);
     on_time(now);
   }

@@ -1,0 +1,20 @@
+// expect: node_id_is_not_1_to_127
+// A node-ID is 1..127 (CiA 301, 7.2.2); 0 is all nodes in an NMT command.
+#include <canopen/node.hpp>
+#include <every_type/device.hpp>
+
+#include "support/omitting.hpp"
+
+namespace od = every_type::od;
+
+struct Bus {
+  bool send(const canopen::Frame&) { return true; }
+};
+
+#ifdef GOOD
+constexpr canopen::NodeId node_id{127};
+#else
+constexpr canopen::NodeId node_id{0};
+#endif
+
+auto make(Bus& bus) { return bench::make_node<every_type::Device>(bus, node_id); }
