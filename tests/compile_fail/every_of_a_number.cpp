@@ -1,4 +1,4 @@
-// expect: no matching function for call to .*every .*Period
+// expect: every: the period is known at compile time .*duration
 // A period that is not known at compile time.
 #include <canopen/node.hpp>
 #include <chrono>

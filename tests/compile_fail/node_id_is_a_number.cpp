@@ -1,4 +1,4 @@
-// expect: a node-ID is NodeId{n} .*KnownHandler<int>
+// expect: a node-ID is NodeId{n} .*KnownHandler<int
 // A number is neither a node-ID nor a handler.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>

@@ -19,6 +19,11 @@ INCLUDED = re.compile(r"^In file included from |^ +from \S+:\d+")
 SUMMARY = re.compile(r"^\d+ (error|warning)s?.* generated\.$|^cc1plus: (all|some) warnings being treated as errors$")
 
 
+def without_lists(output: str) -> list[str]:
+    """Returns the lines of the messages, without the lists of including files and without a summary."""
+    return [line for line in output.splitlines() if not INCLUDED.match(line) and not SUMMARY.match(line)]
+
+
 def errors_in(output: str) -> list[list[str]]:
     """Returns the lines of each error, with its notes and excerpts of sources. A summary of all errors is left out."""
     errors: list[list[str]] = []

@@ -57,16 +57,18 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   using DeviceType = Device;
 
   static_assert(CheckedBus<B>::is_good);
-  static_assert(checked_handlers<Device, Node, Handlers...>());
-  static_assert(!(composition_detail::is_without<Handlers> || ...),
-                "without: state it in a canopen::Composition, which the conformance test uses as well");
-  static_assert(!composition_detail::is_missing<Device, part::lss, Handlers...>,
+  static_assert(CheckedHandlers<Device, Node, Handlers...>::is_good);
+  static_assert((lss_detail::options_fit<Device, Handlers> && ...),
+                "configured_by_lss: these are not the options of the device; write configured_by_lss(port)");
+  static constexpr bool has_without = (composition_detail::is_without<Handlers> || ...);
+  static_assert(!has_without, "without: state it in a canopen::Composition, which the conformance test uses as well");
+  static_assert(has_without || !composition_detail::is_missing<Device, part::lss, Handlers...>,
                 "composition: the EDS has LSS (LSS_Supported); pass canopen::configured_by_lss(port) to the node, or "
                 "state canopen::without<canopen::part::lss> in a canopen::Composition");
-  static_assert(!composition_detail::is_missing<Device, part::storage, Handlers...>,
+  static_assert(has_without || !composition_detail::is_missing<Device, part::storage, Handlers...>,
                 "composition: the EDS has 1010h or 1011h; pass canopen::stored_in(storage) to the node, or state "
                 "canopen::without<canopen::part::storage> in a canopen::Composition");
-  static_assert(composition_detail::is_empty<composition_detail::MissingDomains<Device, Handlers...>>,
+  static_assert(has_without || composition_detail::is_empty<composition_detail::MissingDomains<Device, Handlers...>>,
                 "composition: the EDS has this DOMAIN; pass canopen::bound_to<od::object>(memory) or handlers of its "
                 "transfers to the node, or state canopen::without<od::object> in a canopen::Composition");
   static_assert(composition_detail::is_empty<composition_detail::UnpromisedParts<Device, Handlers...>>,
@@ -91,7 +93,8 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
   Node& operator=(const Node&) = delete;
 
   /// Power-on: sets default and stored values, calls `start` of the application, sends the boot-up message, enters
-  /// Pre-operational (CiA 301, 7.3.2.1).
+  /// Pre-operational (CiA 301, 7.3.2.1). A node whose node-ID is not 1..127 sends nothing and remains in
+  /// Initialisation, which `state()` returns: an LSS master can give it a node-ID.
   void start(TimePoint now) {
     now_ = now;
     services_.on_start(host());
@@ -107,7 +110,7 @@ class Node : private ServiceHost<Node<Device, B, Handlers...>, Device,
     serve();
   }
 
-  /// The same with a node-ID that is known only at run time.
+  /// The same with a node-ID that is known only at run time: `NodeId::from` checks it.
   void start(NodeId node_id, TimePoint now) {
     node_id_ = node_id;
     start(now);

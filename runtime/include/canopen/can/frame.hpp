@@ -47,13 +47,16 @@ concept Bus = requires(T& bus, const Frame& frame) {
   { bus.send(frame) } -> std::same_as<bool>;
 };
 
+template <class B>
+inline constexpr bool is_bus = Bus<B>;
+
 /// The bus of a node; does not compile if it is not a Bus.
 template <class B>
 struct CheckedBus {
-  static_assert(
-      Bus<B>,
-      "bus: it must have `bool send(const canopen::Frame&)`, which returns false if the controller has no room");
   static constexpr bool is_good = true;
+  static_assert(
+      is_bus<B>,
+      "bus: it must have `bool send(const canopen::Frame&)`, which returns false if the controller has no room");
 };
 
 /// The data bytes of a frame as two words, in memory order.

@@ -173,7 +173,7 @@ class WithHandlers {
   static_assert(!handler_detail::is_application<Application> || has_application<Application, Handlers>,
                 "application: of a class with handlers(), the node calls the functions of the class itself only if "
                 "application_at(*this) is one of these handlers");
-  static_assert(!handler_detail::has_uncalled_tick<Application>());
+  static_assert(decltype(handler_detail::check_tick<Application>())::type::is_good);
 
   Application application_{};
   HardwareFor<Handlers> hardware_{};

@@ -73,12 +73,12 @@ template <HasLss Device, class Port>
 inline constexpr LssOptions options_of<Device, ConfiguredByLss<Port>> = Device::lss_options;
 template <class Device, LssOptions Options, class Port>
 inline constexpr LssOptions options_of<Device, LssHandler<Options, Port>> = Options;
+
+/// Whether the options of an LSS handler are those of a device with LSS.
+template <class Device, class Handler>
+inline constexpr bool options_fit = true;
 template <HasLss Device, LssOptions Options, class Port>
-inline constexpr LssOptions options_of<Device, LssHandler<Options, Port>> = [] {
-  static_assert(Options == Device::lss_options,
-                "configured_by_lss: these are not the options of the device; write configured_by_lss(port)");
-  return Options;
-}();
+inline constexpr bool options_fit<Device, LssHandler<Options, Port>> = Options == Device::lss_options;
 
 /// The slave for a handler; an empty class if there is none.
 template <class Device, class Handler>

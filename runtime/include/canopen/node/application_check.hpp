@@ -13,6 +13,7 @@
 #include "canopen/base/clock.hpp"
 #include "canopen/base/label.hpp"
 #include "canopen/base/result.hpp"
+#include "canopen/base/verdict.hpp"
 #include "canopen/node/application.hpp"
 #include "canopen/node/functions.hpp"
 #include "canopen/node/period.hpp"
@@ -54,20 +55,28 @@ struct ObjectOfAnother {
       const;  // NOLINT(google-explicit-constructor): stands for an object
 };
 
-/// An object of another device, in the compiler's message.
-template <class Device, class Object>
-struct KnownObject {
-  static_assert(!DictionaryObject<Object>, "application: this device does not have the object of one of its functions");
+/// A function for an object of another device; `Object` is known if the function has no overloads.
+template <class Device, class Application, class Function, class Object>
+struct FunctionOfAnotherDevice {
   static constexpr bool is_good = true;
+  static_assert(!Function::template is_declared<Application>,
+                "application: this device does not have the object of one of its functions");
 };
 
-/// The same, as an error for the first type that it converts to.
-template <class Device>
-struct NamesObjectOfAnother {
-  template <DictionaryObject T>
-  requires(!is_in<T, typename Device::Objects> && !is_element_in<T, typename Device::Objects> &&
-           KnownObject<Device, T>::is_good)
-  operator T() const;  // NOLINT(google-explicit-constructor): stands for an object
+/// The type of the first parameter of the function; void if it is overloaded or a template.
+template <class Function, class A>
+struct FirstParameter {
+  using type = void;
+};
+template <class Function, class A>
+requires requires { Function::template address<A>; }
+struct FirstParameter<Function, A> {
+  template <class Result, class First, class... Others>
+  static std::type_identity<std::remove_cvref_t<First>> first(Result (A::*)(First, Others...));
+  template <class Result, class First, class... Others>
+  static std::type_identity<std::remove_cvref_t<First>> first(Result (A::*)(First, Others...) const);
+  static std::type_identity<void> first(...);
+  using type = typename decltype(first(Function::template address<A>))::type;
 };
 
 template <class T, class List>
@@ -78,12 +87,12 @@ inline constexpr bool is_listed<T, ObjectList<Os...>> = (std::is_same_v<T, Os> |
 /// A function with an object that the node does not call for it.
 template <class Application, class Function, class Object>
 struct UncalledFunction {
+  static constexpr bool is_good = true;
   static_assert(!DictionaryObject<Object> || std::is_same_v<Function, function::Read>,
                 "application: the node calls write and written with (object, value) or (object, value, node); a value "
                 "is passed by value or as const&");
   static_assert(!DictionaryObject<Object> || !std::is_same_v<Function, function::Read>,
                 "application: the node calls read with (object) or (object, node)");
-  static constexpr bool is_good = true;
 };
 
 /// Converts to each object of `Device` that is not one of `Called`.
@@ -91,15 +100,6 @@ template <class Device, class Called>
 struct UncalledObject {
   template <DictionaryObject T>
   requires((is_in<T, typename Device::Objects> || is_element_in<T, typename Device::Objects>)&&!is_listed<T, Called>)
-  operator T() const;  // NOLINT(google-explicit-constructor): stands for an object
-};
-
-/// The same, as an error for the first type that it converts to.
-template <class Device, class Called, class Application, class Function>
-struct NamesUncalledObject {
-  template <DictionaryObject T>
-  requires((is_in<T, typename Device::Objects> || is_element_in<T, typename Device::Objects>)&&!is_listed<T, Called> &&
-           UncalledFunction<Application, Function, T>::is_good)
   operator T() const;  // NOLINT(google-explicit-constructor): stands for an object
 };
 
@@ -139,6 +139,7 @@ inline constexpr bool is_reachable<Function, Index, ObjectList<Os...>> =
 /// A function `write`, `written` or `read` of an application for one of its objects.
 template <class Application, class Function, class Object, bool TypeFits, bool Reachable, bool AnswerFits>
 struct ApplicationFunction {
+  static constexpr bool is_good = true;
   static_assert(AnswerFits || std::is_same_v<Function, function::Read>,
                 "application: write returns an AbortCode, a Result<void> or nothing, and written nothing");
   static_assert(AnswerFits || !std::is_same_v<Function, function::Read>,
@@ -148,14 +149,13 @@ struct ApplicationFunction {
                 "application: the object is ro or const, so that this function can never be called");
   static_assert(Reachable || !std::is_same_v<Function, function::Read>,
                 "application: the object is wo, so that this function can never be called");
-  static constexpr bool is_good = true;
 };
 
 /// The functions of an application with one of these three names.
 template <class Device, class Application, class Function, bool None>
 struct ApplicationFunctions {
-  static_assert(!None, "application: none of these functions has an object of this device and its type as parameters");
   static constexpr bool is_good = true;
+  static_assert(!None, "application: none of these functions has an object of this device and its type as parameters");
 };
 
 /// Whether the result of `write` or `written` is one that the node can use.
@@ -171,48 +171,69 @@ template <class Function, class A, class Node, class O>
   }
 }
 
+/// Selects the objects that a function accepts with other arguments than those of the node.
+template <class Function, class A, class Called>
+struct WithOtherArguments {
+  template <class O>
+  static constexpr bool selects = !is_listed<O, Called> && !none_fits_anything<Function, A, O>;
+};
+
+template <class Application, class Function>
+[[nodiscard]] constexpr Verdict<Passed> check_uncalled(ObjectList<> /*none*/) {
+  return {};
+}
+template <class Application, class Function, class O, class... Os>
+[[nodiscard]] constexpr Verdict<UncalledFunction<Application, Function, O>> check_uncalled(ObjectList<O, Os...>) {
+  return {};
+}
+
+/// A function for an object that can be called with any value.
+template <class Function, class A, class Node, class Exact, class O>
+[[nodiscard]] constexpr auto check_object() {
+  constexpr bool fits = has_index<O::index, Exact>;
+  constexpr bool reads = std::is_same_v<Function, function::Read>;
+  constexpr bool reachable = !fits || is_reachable<Function, O::index, Exact>;
+  constexpr bool answer_fits = reads ? fits : !fits || check_answer<Function, A, Node, O>();
+  constexpr bool passes = (fits || reads) && reachable && answer_fits;
+  return VerdictOf<passes, ApplicationFunction<A, Function, O, fits || reads, reachable, answer_fits>>{};
+}
+template <class Function, class A, class Node, class Exact, class... Os>
+[[nodiscard]] constexpr auto check_each_object(ObjectList<Os...> /*objects*/) {
+  return canopen::first_failure(check_object<Function, A, Node, Exact, Os>()...);
+}
+
 template <class Device, class Node, class A, class Function>
-[[nodiscard]] constexpr bool check_objects() {
+[[nodiscard]] constexpr auto check_objects() {
   if constexpr (!Function::template is_declared<A>) {
-    return true;
+    return Verdict<Passed>{};
   } else {
     using Objects = typename Device::Objects;
     using Any = SelectObjects<WithAnyFunction<Function, A, Node>, Objects>;
     using Exact = SelectObjects<WithFunction<Function, A, Node>, Objects>;
     constexpr bool is_for_all =
         has_function<Function, A, Node, NoObject, AnyValue> || has_function<Function, A, Node, NoObject>;
-    constexpr bool is_foreign = !is_for_all && !(none_fits<Function, A, ObjectOfAnother<Device>> &&
-                                                 none_fits<Function, A, ObjectOfAnother<Device>, AnyValue> &&
-                                                 none_fits<Function, A, ObjectOfAnother<Device>, AnyValue, AnyValue>);
-    bool good = true;
-    if constexpr (is_foreign) {
-      using Foreign = NamesObjectOfAnother<Device>;
-      good = !has_function<Function, A, Node, Foreign> && !has_function<Function, A, Node, Foreign, AnyValue>;
+    using None = VerdictOf<Any::size != 0, ApplicationFunctions<Device, A, Function, Any::size == 0>>;
+    if constexpr (is_for_all) {
+      return None{};
+    } else if constexpr (!none_fits<Function, A, ObjectOfAnother<Device>> ||
+                         !none_fits<Function, A, ObjectOfAnother<Device>, AnyValue> ||
+                         !none_fits<Function, A, ObjectOfAnother<Device>, AnyValue, AnyValue>) {
+      return Verdict<FunctionOfAnotherDevice<Device, A, Function, typename FirstParameter<Function, A>::type>>{};
+    } else if constexpr (!none_fits_anything<Function, A, UncalledObject<Device, Any>>) {
+      return check_uncalled<A, Function>(SelectObjects<WithOtherArguments<Function, A, Any>, Objects>{});
     } else {
-      good = ApplicationFunctions<Device, A, Function, Any::size == 0>::is_good;
+      return canopen::first_failure(None{}, check_each_object<Function, A, Node, Exact>(Any{}));
     }
-    if constexpr (!is_for_all && !none_fits_anything<Function, A, UncalledObject<Device, Any>>)
-      good = none_fits_anything<Function, A, NamesUncalledObject<Device, Any, A, Function>>;
-    if constexpr (!is_for_all) {
-      Any::for_each([&]<class O>() {
-        constexpr bool fits = has_index<O::index, Exact>;
-        constexpr bool reads = std::is_same_v<Function, function::Read>;
-        constexpr bool reachable = !fits || is_reachable<Function, O::index, Exact>;
-        constexpr bool answer_fits = reads ? fits : !fits || check_answer<Function, A, Node, O>();
-        good = good && ApplicationFunction < A, Function, O, fits || reads, reachable, answer_fits > ::is_good;
-      });
-    }
-    return good;
   }
 }
 
 /// The function of an event.
 template <class Application, class Event, class Label, bool Fits, bool Single, bool Exists>
 struct ApplicationEvent {
+  static constexpr bool is_good = true;
   static_assert(Fits, "application: the parameters of this function are not those of its event");
   static_assert(!Fits || Single, "application: a second function of this name can never be called");
   static_assert(Exists, "application: this device does not have the object that this event needs");
-  static constexpr bool is_good = true;
 };
 
 template <std::uint16_t Index>
@@ -278,35 +299,39 @@ template <class Event, class A, class Node>
 inline constexpr bool is_only_function = is_only<Event, A, Node>(typename Event::Arguments{});
 
 template <class Device, class Node, class A, class Event>
-[[nodiscard]] constexpr bool check_event() {
+[[nodiscard]] constexpr auto check_event() {
   if constexpr (!Event::template is_declared<A>) {
-    return true;
+    return Verdict<Passed>{};
   } else {
-    return ApplicationEvent < A, Event, pdo_detail::LabelOf<EventObject<Event::object>>, has_event<Event, A, Node>,
-           is_only_function<Event, A, Node>, Event::object == 0 || Device::dictionary.has(Event::object, 0) > ::is_good;
+    constexpr bool fits = has_event<Event, A, Node>;
+    constexpr bool single = is_only_function<Event, A, Node>;
+    constexpr bool exists = Event::object == 0 || Device::dictionary.has(Event::object, 0);
+    constexpr bool passes = fits && single && exists;
+    using Label = pdo_detail::LabelOf<EventObject<Event::object>>;
+    return VerdictOf<passes, ApplicationEvent<A, Event, Label, fits, single, exists>>{};
   }
 }
 
 /// The functions `every` of an application: whether each of them has a period as its first parameter.
 template <class Application, bool HavePeriods>
 struct PeriodicFunctions {
+  static constexpr bool is_good = true;
   static_assert(HavePeriods,
                 "application: the first parameter of every is a period such as canopen::Milliseconds<10>, and the node "
                 "is the only other one");
-  static constexpr bool is_good = true;
 };
 
 /// One of them.
 template <class Application, class Period, bool Fits, bool Single, bool ReturnsNothing>
 struct PeriodicFunction {
+  static constexpr bool is_good = true;
   static_assert(Fits, "application: the node calls every with (period) or (period, node); it is auto& node");
   static_assert(!Fits || Single, "application: a second function every of this period can never be called");
   static_assert(!Fits || !Single || ReturnsNothing, "application: every returns nothing");
-  static constexpr bool is_good = true;
 };
 
 template <class A, class Node, class P>
-[[nodiscard]] constexpr bool check_period() {
+[[nodiscard]] constexpr auto check_period() {
   constexpr bool without_node = !none_fits<function::Every, A, P>;
   constexpr bool with_any = !none_fits<function::Every, A, P, AnyReference>;
   constexpr bool fits = has_function<function::Every, A, Node, P>;
@@ -318,14 +343,16 @@ template <class A, class Node, class P>
       return false;
     }
   }();
-  return PeriodicFunction<A, P, fits, !(with_any && without_node), returns_nothing>::is_good;
+  constexpr bool single = !(with_any && without_node);
+  constexpr bool passes = fits && single && returns_nothing;
+  return VerdictOf<passes, PeriodicFunction<A, P, fits, single, returns_nothing>>{};
 }
 
 template <class A, class Node>
-[[nodiscard]] constexpr bool check_periods() {
+[[nodiscard]] constexpr auto check_periods() {
   using function::Every;
   if constexpr (!Every::template is_declared<A>) {
-    return true;
+    return Verdict<Passed>{};
   } else {
     constexpr bool without_period = requires(A & application) { Every::call(application); };
     // A template of periods, which the search does not find, accepts each period.
@@ -336,30 +363,31 @@ template <class A, class Node>
                             !none_fits<Every, A, AnyReference, AnyReference, AnyReference>;
     constexpr bool have_periods = takes_first<Every, A, AnyPeriod> && !others;
     constexpr auto check_each = []<class... P>(PeriodList<P...>) {
-      return (true && ... && check_period<A, Node, P>());
+      return canopen::first_failure(check_period<A, Node, P>()...);
     };
-    return PeriodicFunctions<A, have_periods>::is_good && check_each(periods_of_application<A>());
+    return canopen::first_failure(VerdictOf<have_periods, PeriodicFunctions<A, have_periods>>{},
+                                  check_each(periods_of_application<A>()));
   }
 }
 
 /// A function with a name that the node does not call, but that resembles one that it calls.
 template <class Application, class Meant>
 struct MisspeltFunction {
+  static constexpr bool is_good = true;
   static_assert(!Meant::template is_declared<Application>,
                 "application: the node does not call a function of this name; canopen/node/functions.hpp lists those "
                 "that it calls, such as write, written, read and on_state");
-  static constexpr bool is_good = true;
 };
 
 /// The same for names that an application may use for something else: its function has a period, or the parameters
 /// `(node, TimePoint)` of a function that was called each millisecond.
 template <class Application, class Name, bool IsPeriodic>
 struct MisspeltPeriodicFunction {
+  static constexpr bool is_good = true;
   static_assert(
       !IsPeriodic,
       "application: the node does not call a function of this name; write void every(canopen::Milliseconds<1>, "
       "auto& node), with its period");
-  static constexpr bool is_good = true;
 };
 
 template <class Function, class A, class... Values>
@@ -376,39 +404,40 @@ template <class A, class Name>
 }
 
 template <class A, class... Names>
-[[nodiscard]] constexpr bool check_periodic_names() {
-  return (MisspeltPeriodicFunction<A, Names, is_periodic<A, Names>()>::is_good && ...);
+[[nodiscard]] constexpr auto check_periodic_names() {
+  return canopen::first_failure(VerdictOf<!is_periodic<A, Names>(), MisspeltPeriodicFunction<A, Names, true>>{}...);
 }
 
-/// Whether a class has the function `tick(node, TimePoint)`, which no node calls; does not compile if it has.
+/// Checks that a class does not have the function `tick(node, TimePoint)`, which no node calls.
 template <class A>
-[[nodiscard]] constexpr bool has_uncalled_tick() {
+[[nodiscard]] constexpr auto check_tick() {
   if constexpr (std::is_class_v<A> && !std::is_final_v<A>) {
-    return !check_periodic_names<A, function::Tick>();
+    return check_periodic_names<A, function::Tick>();
   } else {
-    return false;
+    return Verdict<Passed>{};
   }
 }
 
 template <class A, class... Names>
-[[nodiscard]] constexpr bool check_names() {
-  return (MisspeltFunction<A, Names>::is_good && ...);
+[[nodiscard]] constexpr auto check_names() {
+  return canopen::first_failure(VerdictOf<!Names::template is_declared<A>, MisspeltFunction<A, Names>>{}...);
 }
 
 template <class Device, class Node, class A>
-[[nodiscard]] constexpr bool check_application() {
+[[nodiscard]] constexpr auto check_application() {
   using namespace function;
-  return check_names<A, Writen, OnWrite, OnWritten, OnRead, OnNmtState, OnEmcy, OnPdo, OnChange, OnChanged, OnUpdate,
-                     OnReceive, OnReceived, OnStateChange, OnNmt, OnHeartBeat, OnNodeGuarding, OnErrors, Wrote, Wirte,
-                     OnStart, OnEvery, OnTick, OnTimer>() &&
-         check_periodic_names<A, Tick, Evry, Each, Periodic, OnTime>() && check_periods<A, Node>() &&
-         check_event<Device, Node, A, Start>() && check_objects<Device, Node, A, Write>() &&
-         check_objects<Device, Node, A, Written>() && check_objects<Device, Node, A, Read>() &&
-         check_event<Device, Node, A, OnState>() && check_event<Device, Node, A, OnSync>() &&
-         check_event<Device, Node, A, OnTimeOfDay>() && check_event<Device, Node, A, OnHeartbeat>() &&
-         check_event<Device, Node, A, OnLifeGuarding>() && check_event<Device, Node, A, OnEmergency>() &&
-         check_event<Device, Node, A, OnError>() && check_event<Device, Node, A, OnRpdo>() &&
-         check_event<Device, Node, A, OnStoredValue>();
+  return canopen::first_failure(
+      check_names<A, Writen, OnWrite, OnWritten, OnRead, OnNmtState, OnEmcy, OnPdo, OnChange, OnChanged, OnUpdate,
+                  OnReceive, OnReceived, OnStateChange, OnNmt, OnHeartBeat, OnNodeGuarding, OnErrors, Wrote, Wirte,
+                  OnStart, OnEvery, OnTick, OnTimer>(),
+      check_periodic_names<A, Tick, Evry, Each, Periodic, OnTime>(), check_periods<A, Node>(),
+      check_event<Device, Node, A, Start>(), check_objects<Device, Node, A, Write>(),
+      check_objects<Device, Node, A, Written>(), check_objects<Device, Node, A, Read>(),
+      check_event<Device, Node, A, OnState>(), check_event<Device, Node, A, OnSync>(),
+      check_event<Device, Node, A, OnTimeOfDay>(), check_event<Device, Node, A, OnHeartbeat>(),
+      check_event<Device, Node, A, OnLifeGuarding>(), check_event<Device, Node, A, OnEmergency>(),
+      check_event<Device, Node, A, OnError>(), check_event<Device, Node, A, OnRpdo>(),
+      check_event<Device, Node, A, OnStoredValue>());
 }
 
 }  // namespace canopen::handler_detail

@@ -34,6 +34,7 @@ struct NoneFits {};
 //   Both         with an application as the other base: the name is ambiguous if the application has it
 //   is_declared  whether the application has a function of this name; a member of another kind is not one
 //   call         calls the function; is not viable if no overload fits
+//   address      of the function; not declared if it has overloads
 //   OrNone       the application with a function for all other arguments
 #define CANOPEN_FUNCTION(Row, function_name, needed_object, ...)                                    \
   struct Row {                                                                                      \
@@ -46,6 +47,8 @@ struct NoneFits {};
         requires { requires !std::is_function_v<std::remove_reference_t<decltype(A::function_name)>>; };\
     template <class A> static constexpr bool is_declared =                                          \
         !requires { &Both<A>::function_name; } && !is_other<A>;                                     \
+    template <class A> requires requires { &A::function_name; }                                     \
+    static constexpr auto address = &A::function_name;                                              \
     template <class A> struct OrNone : A {                                                          \
       using A::function_name;                                                                       \
       static NoneFits function_name(...);                                                           \

@@ -11,12 +11,14 @@
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/label.hpp"
 #include "canopen/base/result.hpp"
+#include "canopen/base/verdict.hpp"
 #include "canopen/lss/lss_handler.hpp"
 #include "canopen/node/application.hpp"
 #include "canopen/node/application_check.hpp"
 #include "canopen/node/composition.hpp"
 #include "canopen/node/handlers.hpp"
 #include "canopen/node/mailbox.hpp"
+#include "canopen/od/device_object.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/value_for.hpp"
 #include "canopen/sdo/domain_handlers.hpp"
@@ -26,17 +28,15 @@ namespace canopen {
 
 namespace handler_detail {
 
-template <class H>
+template <class H, bool IsFinal>
 struct KnownHandler {
-  static constexpr bool is_final = std::is_final_v<typename ApplicationOf<H>::type>;
-  static_assert(is_handler<H> || !is_final,
+  static constexpr bool is_good = true;
+  static_assert(is_handler<H> || !IsFinal,
                 "application: the class is final; without `final` it can be one: a derived class finds its functions");
-  static constexpr bool has_tick = has_uncalled_tick<typename ApplicationOf<H>::type>();
   static_assert(
-      has_tick || is_handler<H> || is_final || is_application<typename ApplicationOf<H>::type>,
+      is_handler<H> || IsFinal,
       "not a handler: pass on_write(object, ...), on_read(object, ...), on_state(...) or another on_...(), or "
       "an application, a class with functions of canopen/node/functions.hpp; a node-ID is NodeId{n}");
-  static constexpr bool is_good = true;
 };
 
 /// The event that a handler is called for.
@@ -65,18 +65,31 @@ template <class H, class Other>
   }
 }
 
-/// The handlers of one object: the event they are called for, its entry in the device's dictionary, and their number.
-template <class Object, class Label, Called When, entry::Word Entry, std::size_t Count>
+/// The handlers of one object: the event they are called for, and what is wrong with them.
+template <class Object, class Label, Called When, bool Exists, bool IsForeign, bool Reachable, std::size_t Count>
 struct ObjectHandler {
-  static constexpr bool exists = Entry > Dictionary::no_sub_index;
-  static_assert(exists, "handler: this device does not have the object");
-  static_assert(!exists || When == Called::on_upload || (Entry & entry::writable) != 0,
+  static constexpr bool is_good = true;
+  static_assert(Exists, "handler: this device does not have the object");
+  static_assert(!IsForeign, "handler: this is an object of another device; this device has another one at its index");
+  static_assert(!Exists || IsForeign || Reachable || When == Called::on_upload,
                 "on_write: the object is ro or const, so that the handler can never be called");
-  static_assert(!exists || When != Called::on_upload || (Entry & entry::readable) != 0,
+  static_assert(!Exists || IsForeign || Reachable || When != Called::on_upload,
                 "on_read: the object is wo, so that the handler can never be called");
   static_assert(Count == 1, "handler: the object has two of them; join them to one");
-  static constexpr bool is_good = true;
 };
+
+template <class Device, class H, class... Handlers>
+[[nodiscard]] constexpr auto check_object_handler() {
+  using Object = typename H::object;
+  constexpr entry::Word word = Device::dictionary.find(Object::index, Object::sub_index);
+  constexpr bool exists = word > Dictionary::no_sub_index;
+  constexpr bool is_foreign = exists && is_of_another_device<Object, Device>;
+  constexpr bool reachable = (word & (called<H> == Called::on_upload ? entry::readable : entry::writable)) != 0;
+  constexpr std::size_t count = (std::size_t{is_same_call<H, Handlers>()} + ...);
+  constexpr bool passes = exists && !is_foreign && reachable && count == 1;
+  return VerdictOf<
+      passes, ObjectHandler<Object, pdo_detail::LabelOf<Object>, called<H>, exists, is_foreign, reachable, count>>{};
+}
 
 /// The objects without which a service never calls its handler. Handlers of error control are accepted by each device:
 /// code that several devices share passes those of heartbeat and of guarding, of which a device may have one.
@@ -85,54 +98,81 @@ inline constexpr bool is_of = false;
 template <class Event, class F>
 inline constexpr bool is_of<EventHandler<Event, F>, Event> = true;
 
-template <class Device, class H>
+template <class H, bool HasObject>
 struct ServiceHandler {
-  static constexpr bool has(std::uint16_t index) { return Device::dictionary.has(index, 0); }
-  static_assert(!is_of<H, function::OnSync> || has(0x1005),
+  static constexpr bool is_good = true;
+  static_assert(!is_of<H, function::OnSync> || HasObject,
                 "on_sync: this device does not have 1005h, so that the handler can never be called");
-  static_assert(!is_of<H, function::OnTimeOfDay> || has(0x1012),
+  static_assert(!is_of<H, function::OnTimeOfDay> || HasObject,
                 "on_time_of_day: this device does not have 1012h, so that the handler can never be called");
-  static_assert(!is_of<H, function::OnEmergency> || has(0x1028),
+  static_assert(!is_of<H, function::OnEmergency> || HasObject,
                 "on_emergency: this device does not have 1028h, so that the handler can never be called");
-  static constexpr bool is_good = KnownHandler<H>::is_good;
 };
 
-/// A mailbox with objects of this device.
 template <class Device, class H>
-inline constexpr bool mailbox_fits = true;
-template <class Device, class M>
-inline constexpr bool mailbox_fits<Device, ValuesFrom<M>> = M::template fits<Device>;
-template <class Device, class H>
-struct MailboxHandler {
-  static_assert(mailbox_fits<Device, H>, "values_from: this device does not have an object of the mailbox");
+[[nodiscard]] constexpr auto check_service_handler() {
+  constexpr auto index = is_of<H, function::OnSync>        ? std::uint16_t{0x1005}
+                         : is_of<H, function::OnTimeOfDay> ? std::uint16_t{0x1012}
+                         : is_of<H, function::OnEmergency> ? std::uint16_t{0x1028}
+                                                           : std::uint16_t{0};
+  constexpr bool has_object = index == 0 || Device::dictionary.has(index, 0);
+  constexpr bool is_final = std::is_final_v<typename ApplicationOf<H>::type>;
+  return canopen::first_failure(check_tick<typename ApplicationOf<H>::type>(),
+                                VerdictOf<is_handler<H>, KnownHandler<H, is_final>>{},
+                                VerdictOf<has_object, ServiceHandler<H, has_object>>{});
+}
+
+/// An object of a mailbox.
+template <class Object, class Label, bool Exists, bool IsForeign>
+struct MailboxObject {
   static constexpr bool is_good = true;
+  static_assert(Exists, "values_from: this device does not have an object of the mailbox");
+  static_assert(!IsForeign,
+                "values_from: the mailbox has an object of another device; this one has another at its index");
 };
+
+template <class Device, class H>
+[[nodiscard]] constexpr Verdict<Passed> check_mailbox(std::type_identity<H> /*handler*/) {
+  return {};
+}
+template <class Device, class Object>
+[[nodiscard]] constexpr auto check_mailbox_object() {
+  constexpr bool exists = is_in_dictionary<Object, Device>;
+  constexpr bool is_foreign = exists && is_of_another_device<Object, Device>;
+  constexpr bool passes = exists && !is_foreign;
+  return VerdictOf<passes, MailboxObject<Object, pdo_detail::LabelOf<Object>, exists, is_foreign>>{};
+}
+template <class Device, class... Objects>
+[[nodiscard]] constexpr auto check_mailbox(std::type_identity<ValuesFrom<Mailbox<Objects...>>> /*handler*/) {
+  return canopen::first_failure(check_mailbox_object<Device, Objects>()...);
+}
 
 template <class Device, class Node, class H, class... Handlers>
-[[nodiscard]] constexpr bool check_handler() {
+[[nodiscard]] constexpr auto check_handler() {
   using Application = typename ApplicationOf<H>::type;
   if constexpr (composition_detail::is_omits<H> || composition_detail::is_without<H>) {
-    return true;  // node/composition.hpp
+    return Verdict<Passed>{};  // node/composition.hpp
   } else if constexpr (is_application<Application>) {
     return check_application<Device, Node, Application>();
   } else if constexpr (called<H> != Called::by_service) {
-    using Object = typename H::object;
-    constexpr std::size_t count = (std::size_t{is_same_call<H, Handlers>()} + ...);
-    return ObjectHandler<Object, pdo_detail::LabelOf<Object>, called<H>,
-                         Device::dictionary.find(Object::index, Object::sub_index), count>::is_good;
+    return check_object_handler<Device, H, Handlers...>();
   } else {
-    return MailboxHandler<Device, H>::is_good && ServiceHandler<Device, H>::is_good;
+    return canopen::first_failure(handler_detail::check_mailbox<Device>(std::type_identity<H>{}),
+                                  check_service_handler<Device, H>());
   }
+}
+
+template <class Device, class Node, class... Handlers>
+[[nodiscard]] constexpr auto check_handlers() {
+  return canopen::first_failure(check_handler<Device, Node, Handlers, Handlers...>()...);
 }
 
 }  // namespace handler_detail
 
-/// Whether each of these handlers can be called in a node of this device; does not compile if one cannot. `Node` may be
-/// incomplete.
+/// A class with `is_good`, which does not compile if one of these handlers can never be called in a node of this
+/// device. `Node` may be incomplete.
 template <class Device, class Node, class... Handlers>
-[[nodiscard]] constexpr bool checked_handlers() {
-  return (true && ... && handler_detail::check_handler<Device, Node, Handlers, Handlers...>());
-}
+using CheckedHandlers = typename decltype(handler_detail::check_handlers<Device, Node, Handlers...>())::type;
 
 namespace handler_detail {
 

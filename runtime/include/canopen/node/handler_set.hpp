@@ -45,7 +45,7 @@ class HandlerSet {
   template <class... Given>
   constexpr explicit HandlerSet(std::tuple<Given...> parts)
       : HandlerSet{parts, std::index_sequence_for<Handlers...>{}} {
-    static_assert(part_detail::checked<Given...>(std::type_identity<std::tuple<Handlers...>>{}));
+    static_assert(part_detail::CheckedParts<std::tuple<Handlers...>, Given...>::is_good);
   }
 
   /// Whether the value of `O` is checked before it is written, or used after it.

@@ -63,7 +63,7 @@ template <class F>
 using StoredValueHandler = EventHandler<function::OnStoredValue, F>;
 
 /// The handler of a period.
-template <Period P, class F>
+template <class P, class F>
 struct PeriodicHandler {
   using period = P;
   [[no_unique_address]] F call;
@@ -82,8 +82,10 @@ template <Period P, class F>
 [[nodiscard]] constexpr PeriodicHandler<P, F> every(F handler) {
   return {std::move(handler)};
 }
-template <Period P, class F>
+template <class P, class F>
 [[nodiscard]] constexpr PeriodicHandler<P, F> every(P, F handler) {
+  static_assert(period_detail::length_of<P> != 0,
+                "every: the period is known at compile time, such as canopen::Milliseconds<10>{}");
   return {std::move(handler)};
 }
 

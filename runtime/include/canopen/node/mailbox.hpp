@@ -13,6 +13,7 @@
 #include "canopen/base/shared_value.hpp"
 #include "canopen/node/object_setters.hpp"
 #include "canopen/node/value_check.hpp"
+#include "canopen/od/device_object.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/value.hpp"
 #include "canopen/od/value_for.hpp"
@@ -107,7 +108,10 @@ class Mailbox {
 
   template <DictionaryObject O, class Node>
   void take_over_one(Node& node) {
-    if (const auto value = slot<O>().take()) static_cast<void>(node.template set<O>(*value));  // limits: see post
+    using Device = typename Node::DeviceType;
+    if constexpr (is_in_dictionary<O, Device> && !is_of_another_device<O, Device>) {  // see node/handler_check.hpp
+      if (const auto value = slot<O>().take()) static_cast<void>(node.template set<O>(*value));  // limits: see post
+    }
   }
 
   Slots slots_;

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "canopen/base/verdict.hpp"
 #include "canopen/node/application.hpp"
 
 namespace canopen::part_detail {
@@ -19,13 +20,14 @@ namespace canopen::part_detail {
 /// `Given` are references: an application as a variable would be copied: changes of the copy in the node would not be
 /// seen in the variable.
 template <class Given>
+inline constexpr bool is_copy =
+    std::is_lvalue_reference_v<Given>&& handler_detail::is_application<std::remove_cvref_t<Given>>;
+template <class Given>
 struct GivenPart {
-  using Part = std::remove_cvref_t<Given>;
-  static constexpr bool is_copy = std::is_lvalue_reference_v<Given> && handler_detail::is_application<Part>;
-  static_assert(!is_copy,
+  static constexpr bool is_good = true;
+  static_assert(!is_copy<Given>,
                 "application: this would copy the variable into the node; pass canopen::application_at(variable), or "
                 "move it");
-  static constexpr bool is_good = true;
 };
 
 template <class Part, class... Parts>
@@ -34,9 +36,9 @@ inline constexpr std::size_t count_of = (std::size_t{std::is_same_v<Part, Parts>
 /// A value that a node of these parts does not have.
 template <class Given, class... Parts>
 struct KnownPart {
+  static constexpr bool is_good = true;
   static_assert(count_of<Given, Parts...> == 1,
                 "node: this value is not one of the parts of the node's type, or one of two of the same type");
-  static constexpr bool is_good = true;
 };
 
 /// Parts that refer to something outside of the node.
@@ -46,28 +48,37 @@ inline constexpr bool refers =
 template <class Application>
 inline constexpr bool refers<ApplicationAt<Application>> = true;
 
+template <class Part>
+inline constexpr bool has_default = std::is_default_constructible_v<Part> && !refers<Part>;
+
 /// A part that is neither given nor default-constructible.
 template <class Part, bool IsGiven>
 struct MissingPart {
-  static_assert(IsGiven || (std::is_default_constructible_v<Part> && !refers<Part>),
-                "node: this part of the node's type needs a value, which is passed to the node");
   static constexpr bool is_good = true;
+  static_assert(IsGiven || has_default<Part>,
+                "node: this part of the node's type needs a value, which is passed to the node");
 };
 
 /// Whether all parts are given, in their order.
 template <class Parts, class... Given>
 inline constexpr bool is_complete = std::is_same_v<Parts, std::tuple<std::remove_cvref_t<Given>...>>;
 
-/// Checks the values given to a constructor; does not compile if one is wrong or missing.
+/// Checks the values given to a constructor.
 template <class... Given, class... Parts>
-[[nodiscard]] constexpr bool checked(std::type_identity<std::tuple<Parts...>>) {
-  if constexpr ((GivenPart<Given>::is_copy || ...) || is_complete<std::tuple<Parts...>, Given...>) {
-    return true;
+[[nodiscard]] constexpr auto check_given(std::type_identity<std::tuple<Parts...>> /*parts*/) {
+  if constexpr ((is_copy<Given> || ...) || is_complete<std::tuple<Parts...>, Given...>) {
+    return canopen::first_failure(VerdictOf<!is_copy<Given>, GivenPart<Given>>{}...);
   } else {
-    return (KnownPart<std::remove_cvref_t<Given>, Parts...>::is_good && ... && true) &&
-           (MissingPart<Parts, count_of<Parts, std::remove_cvref_t<Given>...> != 0>::is_good && ... && true);
+    return canopen::first_failure(VerdictOf<count_of<std::remove_cvref_t<Given>, Parts...> == 1,
+                                            KnownPart<std::remove_cvref_t<Given>, Parts...>>{}...,
+                                  VerdictOf < count_of<Parts, std::remove_cvref_t<Given>...> != 0 || has_default<Parts>,
+                                  MissingPart < Parts, false >> {}...);
   }
 }
+
+/// A class with `is_good`, which does not compile if a value is wrong or missing.
+template <class Parts, class... Given>
+using CheckedParts = typename decltype(part_detail::check_given<Given...>(std::type_identity<Parts>{}))::type;
 
 /// The position of the value for a part, the I-th of `Parts`; the number of values if it is not given.
 template <std::size_t I, class Parts, class... Given>

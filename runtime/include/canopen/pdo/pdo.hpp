@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "canopen/base/label.hpp"
+#include "canopen/base/verdict.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object.hpp"
@@ -39,9 +40,9 @@ struct Padded : O {
 /// always have this length.
 template <class O, std::uint16_t Bytes>
 struct FixedString : O {
+  static constexpr std::uint16_t bits = Bytes * 8;
   static_assert(value_detail::StringValue<typename O::type>, "only a string has a length to be fixed");
   static_assert(Bytes <= O::type::capacity(), "the entry is longer than the string can be");
-  static constexpr std::uint16_t bits = Bytes * 8;
 };
 
 template <class O>
@@ -67,46 +68,49 @@ static_assert(offsetof(Frame, data) % frame_data_align == 0 && alignof(Frame) % 
 template <class A, class B>
 inline constexpr bool same_object = A::index == B::index&& A::sub_index == B::sub_index;
 
-template <class Layout, class Label, class O>
+template <class Layout, class Label, class O, bool Found>
 struct MappedObject {
-  static_assert(Layout::template maps<O>, "this PDO does not map the object");
-  static constexpr bool found = Layout::template maps<O>;
+  static constexpr bool is_good = true;
+  static_assert(Found, "this PDO does not map the object");
 };
 
 // Checks one entry at a time, so that the compiler's message names the wrong one.
 
-template <class Number, class Label, class O, unsigned Begin>
+template <class Number, class Label, class O, bool HasLength, bool Fits>
 struct PdoEntry {
-  static_assert(FixedLength<O>,
-                "a PDO carries no value without a fixed length: no DOMAIN, and strings as FixedString only");
-  static_assert(Begin > 64 || Begin + O::bits <= 64,
-                "the objects of this PDO are longer than its 64 bits together (CiA 301, 7.5.2.36)");
-  static constexpr bool fits = true;
+  static constexpr bool is_good = true;
+  static_assert(HasLength, "a PDO carries no value without a fixed length: no DOMAIN, and strings as FixedString only");
+  static_assert(Fits, "the objects of this PDO are longer than its 64 bits together (CiA 301, 7.5.2.36)");
 };
 
 template <class Number, class Label, class O>
 struct TpdoEntry {
+  static constexpr bool passes = TpdoMappable<O>;
+  static constexpr bool is_good = true;
   static_assert(O::mappable != Mappable::no, "a TPDO may not carry this object: PDOMapping=0");
-  static_assert(O::mappable == Mappable::no || TpdoMappable<O>,
-                "a TPDO may not carry this object: its access is wo or rww");
-  static constexpr bool fits = true;
+  static_assert(O::mappable == Mappable::no || passes, "a TPDO may not carry this object: its access is wo or rww");
 };
 
 template <class Number, class Label, class O>
 struct RpdoEntry {
+  static constexpr bool passes = RpdoMappable<O>;
+  static constexpr bool is_good = true;
   static_assert(O::mappable != Mappable::no, "an RPDO may not carry this object: PDOMapping=0");
-  static_assert(O::mappable == Mappable::no || RpdoMappable<O>,
+  static_assert(O::mappable == Mappable::no || passes,
                 "an RPDO may not carry this object: its access is ro, rwr or const");
-  static constexpr bool fits = true;
 };
 
 /// Whether each object can be mapped into a PDO of this direction.
-template <template <class, class, class> class EntryCheck, class Positions, class... Objects>
-struct Direction;
-template <template <class, class, class> class EntryCheck, std::size_t... I, class... Objects>
-struct Direction<EntryCheck, std::index_sequence<I...>, Objects...> {
-  static constexpr bool fits = (true && ... && EntryCheck<EntryNumber<I + 1>, LabelOf<Objects>, Objects>::fits);
-};
+template <class... Objects, std::size_t... I>
+[[nodiscard]] constexpr auto check_tpdo(std::index_sequence<I...> /*entries*/) {
+  return canopen::first_failure(
+      VerdictOf<TpdoMappable<Objects>, TpdoEntry<EntryNumber<I + 1>, LabelOf<Objects>, Objects>>{}...);
+}
+template <class... Objects, std::size_t... I>
+[[nodiscard]] constexpr auto check_rpdo(std::index_sequence<I...> /*entries*/) {
+  return canopen::first_failure(
+      VerdictOf<RpdoMappable<Objects>, RpdoEntry<EntryNumber<I + 1>, LabelOf<Objects>, Objects>>{}...);
+}
 
 /// First bit of each entry, and the end of the last one.
 template <class... Objects>
@@ -118,13 +122,13 @@ inline constexpr std::array<unsigned, sizeof...(Objects) + 1> offsets_of = [] {
 }();
 
 /// Whether each object has a fixed length and ends within the frame.
-template <class Positions, class... Objects>
-struct Room;
-template <std::size_t... I, class... Objects>
-struct Room<std::index_sequence<I...>, Objects...> {
-  static constexpr bool suffices =
-      (true && ... && PdoEntry<EntryNumber<I + 1>, LabelOf<Objects>, Objects, offsets_of<Objects...>[I]>::fits);
-};
+template <class... Objects, std::size_t... I>
+[[nodiscard]] constexpr auto check_room(std::index_sequence<I...> /*entries*/) {
+  constexpr auto& begin = offsets_of<Objects...>;
+  return canopen::first_failure(VerdictOf < (Objects::bits > 0) && (begin[I] > 64 || begin[I + 1] <= 64),
+                                PdoEntry < EntryNumber<I + 1>, LabelOf<Objects>, Objects, (Objects::bits > 0),
+                                (begin[I] > 64 || begin[I + 1] <= 64) >> {}...);
+}
 
 }  // namespace pdo_detail
 
@@ -137,7 +141,7 @@ template <DictionaryObject... Objects>
 struct PdoLayout {
   static constexpr std::size_t entries = sizeof...(Objects);
   static_assert(entries <= 64, "a PDO maps 64 objects at most (CiA 301, 7.5.2.36)");
-  static_assert(pdo_detail::Room<std::index_sequence_for<Objects...>, Objects...>::suffices);
+  static_assert(decltype(pdo_detail::check_room<Objects...>(std::index_sequence_for<Objects...>{}))::type::is_good);
   static constexpr unsigned bits = (0u + ... + Objects::bits);
   static constexpr std::uint8_t size = (bits + 7) / 8;  ///< data bytes of the frame
 
@@ -158,10 +162,9 @@ struct PdoLayout {
   /// Position of the entry that maps an object, from 0; the first one if there are several.
   template <class O>
   static constexpr std::size_t position_of = [] {
-    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<O>, O>::found);
     std::size_t position = 0;
     static_cast<void>(((pdo_detail::same_object<O, Objects> || (++position, false)) || ...));
-    return position;
+    return maps<O> ? position : 0;
   }();
 
   /// Returns the data bytes for these values. A value has the type of its object or a narrower one, or is a constant,
@@ -219,10 +222,12 @@ struct PdoLayout {
   /// Returns the value of an object in these data bytes.
   template <DictionaryObject O>
   [[nodiscard]] static constexpr typename O::type get(const Data& data) {
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<O>, O, maps<O>>::is_good);
     return get_aligned<position_of<O>, 1>(data);
   }
   template <DictionaryObject O>
   [[nodiscard]] static constexpr typename O::type get(const Frame& frame) {
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<O>, O, maps<O>>::is_good);
     return get_aligned<position_of<O>, pdo_detail::frame_data_align>(frame.data);
   }
 
@@ -240,10 +245,12 @@ struct PdoLayout {
   /// Sets the value of an object. All other bits keep their value.
   template <DictionaryObject O>
   static constexpr void set(Data& data, ParameterFor<O> value) {
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<O>, O, maps<O>>::is_good);
     set<position_of<O>>(data, value_for_detail::value_in(value));
   }
   template <DictionaryObject O>
   static constexpr void set(Frame& frame, ParameterFor<O> value) {
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<O>, O, maps<O>>::is_good);
     set<position_of<O>>(frame, value_for_detail::value_in(value));
   }
 
@@ -299,13 +306,15 @@ struct PdoLayout {
 /// A PDO that a device transmits.
 template <DictionaryObject... Objects>
 struct Tpdo : PdoLayout<Objects...> {
-  static_assert(pdo_detail::Direction<pdo_detail::TpdoEntry, std::index_sequence_for<Objects...>, Objects...>::fits);
+  static constexpr bool has_direction = true;
+  static_assert(decltype(pdo_detail::check_tpdo<Objects...>(std::index_sequence_for<Objects...>{}))::type::is_good);
 };
 
 /// A PDO that a device receives.
 template <DictionaryObject... Objects>
 struct Rpdo : PdoLayout<Objects...> {
-  static_assert(pdo_detail::Direction<pdo_detail::RpdoEntry, std::index_sequence_for<Objects...>, Objects...>::fits);
+  static constexpr bool has_direction = true;
+  static_assert(decltype(pdo_detail::check_rpdo<Objects...>(std::index_sequence_for<Objects...>{}))::type::is_good);
 };
 
 }  // namespace canopen

@@ -36,42 +36,63 @@ template <class O>
 // One check per entry or PDO, so that the compiler's message names it. A failed assertion is not repeated by
 // later ones.
 
-template <const Dictionary& D, class Pdo, class Number, class Label, class O, unsigned End, unsigned Granularity>
-struct CheckedEntry {
-  static constexpr entry::Word word = D.find(O::index, O::sub_index);
-  static constexpr bool has_object = word != Dictionary::no_object;
-  static constexpr bool exists = has_object && word != Dictionary::no_sub_index;
-  static constexpr bool maps_nothing = (word & (entry::tpdo | entry::rpdo)) == 0;
-  static constexpr bool maps_here = (word & (Pdo::receive ? entry::rpdo : entry::tpdo)) != 0;
-  static constexpr bool has_length = !entry::is_domain(word) && O::bits > 0;
-
-  static_assert(has_object, "PDO mapping: the device has no such object");
-  static_assert(!has_object || exists, "PDO mapping: the object has no such sub-index");
-  static_assert(!exists || !maps_nothing, "PDO mapping: the object cannot be mapped, its EDS says PDOMapping=0");
-  static_assert(!exists || maps_nothing || maps_here || Pdo::receive,
-                "PDO mapping: a TPDO carries ro, rw, rwr and const objects, none that are rww or wo");
-  static_assert(!exists || maps_nothing || maps_here || !Pdo::receive,
-                "PDO mapping: an RPDO carries rw, rww and wo objects, none that are ro, rwr or const");
-  static_assert(!exists || has_length,
-                "PDO mapping: the object has no fixed length; a string needs FixedString, a DOMAIN cannot be mapped");
-  static_assert(!exists || !has_length || length_fits<O>(word),
-                "PDO mapping: the entry has another length than the object");
-  static_assert(O::bits % Granularity == 0,
-                "PDO mapping: the entry's length is not a multiple of the device's Granularity");
-  static_assert(End <= 64, "PDO mapping: the entry ends beyond the 64 bits of a PDO");
-  static constexpr bool holds = true;
+/// What is wrong with an entry of a mapping.
+enum class EntryFault : std::uint8_t {
+  none,
+  no_object,
+  no_sub_index,
+  not_mappable,
+  not_in_a_tpdo,
+  not_in_an_rpdo,
+  no_fixed_length,
+  other_length,
+  dummy_in_a_tpdo,
+  dummy_of_another_length,
+  granularity,
 };
 
-template <const Dictionary& D, class Pdo, class Number, class Label, class O, unsigned End, unsigned Granularity>
-requires is_dummy<O>
-struct CheckedEntry<D, Pdo, Number, Label, O, End, Granularity> {
-  static_assert(Pdo::receive, "PDO mapping: only an RPDO has dummies");
-  static_assert(O::index > 0x0008 || O::bits == dummy_bits[O::index > 0x0008 ? 0 : O::index],
+/// A layout with a direction has checked it, and each layout its length.
+template <const Dictionary& D, class Pdo, class Layout, class O, unsigned Granularity>
+[[nodiscard]] constexpr EntryFault fault_of() {
+  constexpr entry::Word word = D.find(O::index, O::sub_index);
+  constexpr bool is_directed = requires { Layout::has_direction; };
+  if constexpr (is_dummy<O>) {
+    if (!Pdo::receive) return EntryFault::dummy_in_a_tpdo;
+    if (O::index <= 0x0008 && O::bits != dummy_bits[O::index > 0x0008 ? 0 : O::index])
+      return EntryFault::dummy_of_another_length;
+  } else {
+    if (word == Dictionary::no_object) return EntryFault::no_object;
+    if (word == Dictionary::no_sub_index) return EntryFault::no_sub_index;
+    const bool maps_nothing = (word & (entry::tpdo | entry::rpdo)) == 0;
+    const bool maps_here = (word & (Pdo::receive ? entry::rpdo : entry::tpdo)) != 0;
+    if (maps_nothing) return is_directed && O::mappable == Mappable::no ? EntryFault::none : EntryFault::not_mappable;
+    if (!maps_here) return Pdo::receive ? EntryFault::not_in_an_rpdo : EntryFault::not_in_a_tpdo;
+    if (entry::is_domain(word)) return EntryFault::no_fixed_length;
+    if (O::bits == 0) return EntryFault::none;
+    if (!length_fits<O>(word)) return EntryFault::other_length;
+  }
+  return O::bits % Granularity != 0 ? EntryFault::granularity : EntryFault::none;
+}
+
+template <const Dictionary& D, class Pdo, class Number, class Label, class O, EntryFault Fault>
+struct CheckedEntry {
+  static constexpr bool is_good = true;
+  static_assert(Fault != EntryFault::no_object, "PDO mapping: the device has no such object");
+  static_assert(Fault != EntryFault::no_sub_index, "PDO mapping: the object has no such sub-index");
+  static_assert(Fault != EntryFault::not_mappable,
+                "PDO mapping: the object cannot be mapped, its EDS says PDOMapping=0");
+  static_assert(Fault != EntryFault::not_in_a_tpdo,
+                "PDO mapping: a TPDO carries ro, rw, rwr and const objects, none that are rww or wo");
+  static_assert(Fault != EntryFault::not_in_an_rpdo,
+                "PDO mapping: an RPDO carries rw, rww and wo objects, none that are ro, rwr or const");
+  static_assert(Fault != EntryFault::no_fixed_length,
+                "PDO mapping: the object has no fixed length; a string needs FixedString, a DOMAIN cannot be mapped");
+  static_assert(Fault != EntryFault::other_length, "PDO mapping: the entry has another length than the object");
+  static_assert(Fault != EntryFault::dummy_in_a_tpdo, "PDO mapping: only an RPDO has dummies");
+  static_assert(Fault != EntryFault::dummy_of_another_length,
                 "PDO mapping: the dummy has another length than its data type");
-  static_assert(O::bits % Granularity == 0,
+  static_assert(Fault != EntryFault::granularity,
                 "PDO mapping: the entry's length is not a multiple of the device's Granularity");
-  static_assert(End <= 64, "PDO mapping: the entry ends beyond the 64 bits of a PDO");
-  static constexpr bool holds = true;
 };
 
 /// Returns the CAN-ID for messages: that of node-ID 1, if the node-ID is added.
@@ -81,25 +102,25 @@ struct CheckedEntry<D, Pdo, Number, Label, O, End, Granularity> {
 
 template <class Pdo, class Id, bool Legal>
 struct CheckedCobId {
-  static_assert(Legal, "PDO: its COB-ID is restricted, or has more than 11 bits, for some node-ID (CiA 301, 7.3.5)");
   static constexpr bool is_legal = true;
+  static_assert(Legal, "PDO: its COB-ID is restricted, or has more than 11 bits, for some node-ID (CiA 301, 7.3.5)");
 };
 
-template <const Dictionary& D, class Pdo, unsigned Granularity, class Positions, class... O>
-struct CheckedEntries;
-template <const Dictionary& D, class Pdo, unsigned Granularity, std::size_t... I, class... O>
-struct CheckedEntries<D, Pdo, Granularity, std::index_sequence<I...>, O...> {
-  static constexpr bool hold =
-      (true && ... &&
-       CheckedEntry<D, Pdo, EntryNumber<I + 1>, LabelOf<O>, O, offsets_of<O...>[I + 1], Granularity>::holds);
-};
-
-template <const Dictionary& D, class Pdo, unsigned Granularity, class... O>
-CheckedEntries<D, Pdo, Granularity, std::index_sequence_for<O...>, O...> checked_entries(const PdoLayout<O...>*);
+template <const Dictionary& D, class Pdo, class Number, class Layout, class O, unsigned Granularity>
+[[nodiscard]] constexpr auto check_entry() {
+  constexpr EntryFault fault = fault_of<D, Pdo, Layout, O, Granularity>();
+  return VerdictOf<fault == EntryFault::none, CheckedEntry<D, Pdo, Number, LabelOf<O>, O, fault>>{};
+}
+template <const Dictionary& D, class Pdo, class Layout, unsigned Granularity, std::size_t... I>
+[[nodiscard]] constexpr auto check_entries(std::index_sequence<I...> /*entries*/) {
+  return canopen::first_failure(
+      check_entry<D, Pdo, EntryNumber<I + 1>, Layout, typename Layout::template Entry<I>, Granularity>()...);
+}
 
 template <const Dictionary& D, class Pdo, class Layout, PdoParameters P, unsigned Granularity>
 struct CheckedPdo {
   using Label = Pdo;
+  static constexpr bool holds = true;
   static constexpr std::uint16_t index = (Pdo::receive ? 0x1400 : 0x1800) + Pdo::number - 1;
   static constexpr PdoCobId cob_id{Pdo::receive, P.cob_id, P.plus_node_id};
 
@@ -115,14 +136,14 @@ struct CheckedPdo {
   static_assert(P.event_timer == 0 || event_timer_is_used(Pdo::receive, P.transmission_type),
                 "PDO: an event timer is for RPDOs, and for TPDOs of transmission types 254 and 255");
   static_assert(Layout::entries <= 64, "PDO mapping: a PDO maps 64 objects at most");
-  static constexpr bool holds =
-      decltype(checked_entries<D, Pdo, Granularity>(static_cast<const Layout*>(nullptr)))::hold;
+  static_assert(
+      decltype(check_entries<D, Pdo, Layout, Granularity>(std::make_index_sequence<Layout::entries>{}))::type::is_good);
 };
 
 template <class First, class Second, class Id, bool Clash>
 struct DistinctCobIds {
+  static constexpr bool hold = true;
   static_assert(!Clash, "PDO: two of the device have the same COB-ID");
-  static constexpr bool hold = !Clash;
 };
 
 template <class... Checked>

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "canopen/base/label.hpp"
+#include "canopen/base/verdict.hpp"
 #include "canopen/pdo/pdo.hpp"
 
 namespace canopen {
@@ -90,17 +91,23 @@ template <class Produced, class Consumed>
 /// Checks one entry of an RPDO, so that the compiler's message names both objects.
 template <class Number, class ConsumerLabel, class Consumer, class ProducerLabel, class Producer, Link L>
 struct CompatibleEntry {
+  static constexpr bool is_good = true;
   static_assert(L != Link::too_short, "PDO link: the TPDO ends before this entry of the RPDO does");
   static_assert(L != Link::nothing_begins_there,
                 "PDO link: no entry of the TPDO begins where this one of the RPDO does");
   static_assert(L != Link::other_length, "PDO link: the entry of the TPDO has another length than that of the RPDO");
   static_assert(L != Link::other_kind, "PDO link: the entry of the TPDO is of another kind than that of the RPDO");
-  static constexpr bool fits = L == Link::fits;
 };
 
 template <std::size_t I, class Link>
 using CheckedLink = CompatibleEntry<EntryNumber<I + 1>, LabelOf<typename Link::Consumer>, typename Link::Consumer,
                                     LabelOf<typename Link::Producer>, typename Link::Producer, Link::value>;
+
+template <class Produced, class Consumed, std::size_t... I>
+[[nodiscard]] constexpr auto check_links(std::index_sequence<I...> /*entries*/) {
+  return canopen::first_failure(VerdictOf<LinkOf<Produced, Consumed, I>::value == Link::fits,
+                                          CheckedLink<I, LinkOf<Produced, Consumed, I>>>{}...);
+}
 
 }  // namespace pdo_detail
 
@@ -112,10 +119,8 @@ inline constexpr bool compatible = pdo_detail::all_links_fit<Produced, Consumed>
 /// The same check with a message that names the entry that differs and the objects on both sides.
 template <class Produced, class Consumed>
 struct CompatiblePdos {
-  static constexpr bool hold = []<std::size_t... I>(std::index_sequence<I...>) {
-    return (true && ... && pdo_detail::CheckedLink<I, pdo_detail::LinkOf<Produced, Consumed, I>>::fits);
-  }
-  (std::make_index_sequence<Consumed::entries>{});
+  static constexpr bool hold = decltype(pdo_detail::check_links<Produced, Consumed>(
+      std::make_index_sequence<Consumed::entries>{}))::type::is_good;
 };
 
 }  // namespace canopen

@@ -30,9 +30,9 @@ inline constexpr bool is_rpdo<Rpdo<Objects...>> = true;
 /// The PDO with a new mapping. `Number` is RpdoNumber or TpdoNumber.
 template <class Device, class Number, std::size_t Entries, std::size_t Capacity>
 struct RemappedPdo {
+  static constexpr bool is_good = true;
   static_assert(Capacity != 0, "PDO mapping: the mapping of this PDO is static, or the device does not have the PDO");
   static_assert(Capacity == 0 || Entries <= Capacity, "PDO mapping: the PDO maps fewer objects");
-  static constexpr bool is_good = true;
 };
 
 }  // namespace pdo_detail
@@ -49,8 +49,8 @@ struct Remapping {
   using Pdo = std::conditional_t<transmit, TpdoNumber<Number>, RpdoNumber<Number>>;
   static_assert(
       pdo_detail::RemappedPdo<Device, Pdo, Layout::entries, mapping_capacity(Device::dictionary, mapping)>::is_good);
-  static_assert(decltype(pdo_detail::checked_entries<Device::dictionary, Pdo, Device::granularity>(
-      static_cast<const Layout*>(nullptr)))::hold);
+  static_assert(decltype(pdo_detail::check_entries<Device::dictionary, Pdo, Layout, Device::granularity>(
+      std::make_index_sequence<Layout::entries>{}))::type::is_good);
 
   /// The values of the sub-indices from 1 on.
   static constexpr std::array<std::uint32_t, Layout::entries> entries = [] {

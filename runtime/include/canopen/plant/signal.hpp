@@ -48,15 +48,15 @@ struct LinkedEntry {
 template <std::size_t Position, class Produced, std::size_t Sent, class Consumed, std::size_t Taken>
 struct ReceivedSignal : LinkedEntry<Produced, Sent, Consumed, Taken> {
   static constexpr std::size_t node = Position;
-  using object = typename ReceivedSignal::taken_object;  ///< of the master
+  using object = typename Consumed::template Entry<Taken>;  ///< of the master
 };
 
 /// A value that the master sends to node `Position` of the plant.
 template <std::size_t Position, class Produced, std::size_t Sent, class Consumed, std::size_t Taken>
 struct SentSignal : LinkedEntry<Produced, Sent, Consumed, Taken> {
   static constexpr std::size_t node = Position;
-  using object = typename SentSignal::sent_object;     ///< of the master
-  using receiver = typename SentSignal::taken_object;  ///< of the node, with its limits
+  using object = typename Produced::template Entry<Sent>;     ///< of the master
+  using receiver = typename Consumed::template Entry<Taken>;  ///< of the node, with its limits
 };
 
 template <class... Signals>
