@@ -6,11 +6,12 @@
 Tests the headers of the runtime and those that edsc generates for the reference devices and the fixtures. Whether a generated
 header includes all that it needs is tested with g++, where it is the main file. The other compilers read all headers of a device
 twice, after those of the runtime, which they compile once. All headers also compile after `using namespace std;`: g++ reads those
-of the runtime and of all devices in one file, the other compilers those of each device.
+of the runtime and of all devices in one file, the other compilers those of each device. g++ also reads all headers in a project whose macros have one capital letter.
 """
 
 from __future__ import annotations
 
+import string
 import subprocess
 import sys
 import tempfile
@@ -32,6 +33,8 @@ HOSTED_ONLY = ("host/descriptor.hpp", "host/event_descriptor.hpp", "host/file_st
 USING_STD = "".join(f"#include <{header}>\n" for header in (
     "algorithm", "array", "bit", "chrono", "concepts", "functional", "iterator", "limits", "memory", "numeric", "optional",
     "ranges", "span", "string", "string_view", "tuple", "type_traits", "utility", "variant", "vector")) + "using namespace std;\n"
+ONE_LETTER_MACROS = tuple(f"-D{letter}=1" for letter in string.ascii_uppercase)
+NAMED_BY_EDS = "names"  # a device with parameters that have one letter as their name
 NAMED_LIKE_STD = "ranges"  # a device whose namespace has the name of one in `std`
 
 
@@ -91,10 +94,16 @@ def jobs_of_main_files(device: Path, runtime: Path) -> list[Job]:
             for header in sorted(device.glob("*.hpp"))]
 
 
-def job_after_using_std(devices: list[Path], runtime: Path, scratch: Path) -> Job:
-    headers = headers_below(runtime) + [str(path.relative_to(device.parent)) for device in devices for path in sorted(device.glob("*.hpp"))]
-    return Job(GCC, "all headers after using namespace std", source_of(headers, scratch / "using_std.cpp", USING_STD),
-               (devices[0].parent, runtime), ("-fexceptions",))
+def jobs_of_all_headers(devices: list[Path], runtime: Path, scratch: Path) -> list[Job]:
+    """All headers in one file, after what a project may have."""
+    generated = {device.name: [f"{device.name}/{path.name}" for path in sorted(device.glob("*.hpp"))] for device in devices}
+    everything = headers_below(runtime) + sum(generated.values(), [])
+    of_edsc = [header for header in everything if header not in generated[NAMED_BY_EDS]]
+    include = (devices[0].parent, runtime)
+    return [Job(GCC, "all headers after using namespace std", source_of(everything, scratch / "using_std.cpp", USING_STD),
+                include, ("-fexceptions",)),
+            Job(GCC, "all headers with macros of one letter", source_of(of_edsc, scratch / "one_letter.cpp"),
+                include, ("-fexceptions", *ONE_LETTER_MACROS))]
 
 
 def jobs_of_devices(devices: list[Path], compiler: Compiler, runtime: Path, scratch: Path) -> list[Job]:
@@ -122,7 +131,7 @@ def main() -> int:
         for compiler in compilers:
             if compiler == GCC:
                 jobs += [job for device in devices for job in jobs_of_main_files(device, runtime)]
-                jobs.append(job_after_using_std(devices, runtime, scratch))
+                jobs += jobs_of_all_headers(devices, runtime, scratch)
             else:
                 jobs += jobs_of_devices(devices, compiler, runtime, scratch)
         problems = [problem for problem in in_parallel(Job.run, jobs) if problem]

@@ -36,9 +36,10 @@ namespace pdo_detail {
   return "0123456789ABCDEF"[(value >> (4 * place)) & 0xF];
 }
 
-template <class O>
-using LabelOf = ObjectAt<hex_digit(O::index, 3), hex_digit(O::index, 2), hex_digit(O::index, 1), hex_digit(O::index, 0),
-                         'h', ':', hex_digit(O::sub_index, 1), hex_digit(O::sub_index, 0)>;
+template <class Object>
+using LabelOf =
+    ObjectAt<hex_digit(Object::index, 3), hex_digit(Object::index, 2), hex_digit(Object::index, 1),
+             hex_digit(Object::index, 0), 'h', ':', hex_digit(Object::sub_index, 1), hex_digit(Object::sub_index, 0)>;
 
 template <std::uint32_t Id>
 using CanIdLabel =

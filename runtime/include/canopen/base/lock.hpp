@@ -7,8 +7,8 @@
 namespace canopen {
 
 /// A lock that one context holds at a time, such as std::mutex.
-template <class T>
-concept Lock = requires(T& lock) {
+template <class Type>
+concept Lock = requires(Type& lock) {
   lock.lock();
   lock.unlock();
 };
@@ -21,10 +21,10 @@ struct NoLock {
 
 /// The interrupts of a core: `disable` returns their state before, `restore` sets it again. `CortexMInterrupts` in
 /// port/cortex_m.hpp is one.
-template <class T>
+template <class Type>
 concept InterruptControl = requires(std::uint32_t state) {
-  { T::disable() } -> std::same_as<std::uint32_t>;
-  T::restore(state);
+  { Type::disable() } -> std::same_as<std::uint32_t>;
+  Type::restore(state);
 };
 
 /// No interrupt occurs while it is held. May be taken again by the context that holds it. For a core with one

@@ -30,19 +30,19 @@ struct WordOf<4> {
 };
 
 /// A value that every core loads and stores at once.
-template <class T>
+template <class Type>
 class WordCell {
-  using Word = typename WordOf<sizeof(T)>::type;
+  using Word = typename WordOf<sizeof(Type)>::type;
 
  public:
-  void write(const T& value) {
+  void write(const Type& value) {
     Word word;
     std::memcpy(&word, &value, sizeof word);
     word_.store(word, std::memory_order_release);
   }
-  [[nodiscard]] T read() {
+  [[nodiscard]] Type read() {
     const Word word = word_.load(std::memory_order_acquire);
-    T value;
+    Type value;
     std::memcpy(&value, &word, sizeof word);
     return value;
   }
@@ -54,17 +54,17 @@ class WordCell {
 /// A wider value in one of four places: H. R. Simpson, "Four-slot fully asynchronous communication mechanism", IEE
 /// Proceedings 137 (1990). The writer uses the pair of places that the reader has not announced, and in it the place
 /// that is not the newest. The order of a store and the following load matters: both are sequentially consistent.
-template <class T>
+template <class Type>
 class FourPlaces {
  public:
-  void write(const T& value) {
+  void write(const Type& value) {
     const std::uint8_t pair = other(reading_.load());
     const std::uint8_t place = other(newest_[pair].load());
     places_[pair][place] = value;
     newest_[pair].store(place);
     written_.store(pair);
   }
-  [[nodiscard]] T read() {
+  [[nodiscard]] Type read() {
     const std::uint8_t pair = written_.load();
     reading_.store(pair);
     return places_[pair][newest_[pair].load()];
@@ -73,28 +73,28 @@ class FourPlaces {
  private:
   [[nodiscard]] static std::uint8_t other(std::uint8_t number) { return number == 0 ? 1 : 0; }
 
-  std::array<std::array<T, 2>, 2> places_{};
+  std::array<std::array<Type, 2>, 2> places_{};
   std::array<std::atomic<std::uint8_t>, 2> newest_{};  ///< place in each pair
   std::atomic<std::uint8_t> written_{0};               ///< pair that was written last
   std::atomic<std::uint8_t> reading_{0};               ///< pair that the reader uses
 };
 
-template <class T>
-inline constexpr bool is_word = sizeof(T) == 1 || sizeof(T) == 2 || sizeof(T) == 4;
+template <class Type>
+inline constexpr bool is_word = sizeof(Type) == 1 || sizeof(Type) == 2 || sizeof(Type) == 4;
 
 }  // namespace shared_detail
 
 /// One context calls `publish`, any other one `is_new` and `take`. Values between two calls of `take` are lost, the
 /// last one never is, and no value is torn. Loads and stores alone: a Cortex-M0 needs no library and no lock. RAM: the
 /// size of a value of up to four bytes, four times that of a wider one and four bytes; and eight bytes.
-template <class T>
+template <class Type>
 class SharedValue {
-  static_assert(std::is_trivially_copyable_v<T>);
+  static_assert(std::is_trivially_copyable_v<Type>);
 
  public:
   // ---- the writer ----
 
-  void publish(const T& value) {
+  void publish(const Type& value) {
     cell_.write(value);
     published_.publish(published_.own() + 1);
   }
@@ -105,7 +105,7 @@ class SharedValue {
   [[nodiscard]] bool is_new() const { return published_.read() != taken_; }
 
   /// Returns the latest value if one has been published since the last call.
-  [[nodiscard]] std::optional<T> take() {
+  [[nodiscard]] std::optional<Type> take() {
     const std::uint32_t published = published_.read();
     if (published == taken_) return std::nullopt;
     taken_ = published;
@@ -113,7 +113,8 @@ class SharedValue {
   }
 
  private:
-  using Cell = std::conditional_t<shared_detail::is_word<T>, shared_detail::WordCell<T>, shared_detail::FourPlaces<T>>;
+  using Cell =
+      std::conditional_t<shared_detail::is_word<Type>, shared_detail::WordCell<Type>, shared_detail::FourPlaces<Type>>;
 
   Cell cell_;
   SharedNumber<std::uint32_t> published_;  ///< number of values

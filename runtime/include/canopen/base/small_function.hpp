@@ -20,16 +20,17 @@ class SmallFunction<void(Arguments...)> {
 
   constexpr SmallFunction() = default;
 
-  template <class F>
-  requires(!std::is_same_v<std::decay_t<F>, SmallFunction> && std::is_invocable_v<std::decay_t<F>&, Arguments...>)
+  template <class Function>
+  requires(!std::is_same_v<std::decay_t<Function>, SmallFunction> &&
+           std::is_invocable_v<std::decay_t<Function>&, Arguments...>)
       // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): clang-tidy 14 does not see the constraint
-      SmallFunction(F&& function) {
-    using Kept = std::decay_t<F>;
+      SmallFunction(Function&& function) {
+    using Kept = std::decay_t<Function>;
     static_assert(sizeof(Kept) <= capacity && alignof(Kept) <= alignof(void*),
                   "the lambda captures more than two pointers or references; capture a struct by reference");
     static_assert(std::is_trivially_copyable_v<Kept>,
                   "the lambda captures an object with a copy constructor or a destructor by value");
-    ::new (static_cast<void*>(memory_)) Kept(std::forward<F>(function));
+    ::new (static_cast<void*>(memory_)) Kept(std::forward<Function>(function));
     call_ = [](std::byte* memory, Arguments... arguments) {
       static_cast<void>((*std::launder(reinterpret_cast<Kept*>(memory)))(std::forward<Arguments>(arguments)...));
     };

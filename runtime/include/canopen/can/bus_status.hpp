@@ -20,9 +20,9 @@ struct BusStatus {
 
 /// Whether a port interrupts, or wakes its loop, when the status becomes error passive or bus-off: it has a constant
 /// `has_status_interrupt`. A loop must look at the status of another port now and then.
-template <class T>
+template <class Type>
 inline constexpr bool has_status_interrupt = requires {
-  requires T::has_status_interrupt;
+  requires Type::has_status_interrupt;
 };
 
 }  // namespace canopen

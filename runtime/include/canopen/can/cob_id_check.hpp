@@ -60,23 +60,23 @@ struct CheckedCobId {
   static constexpr bool is_legal = true;
 };
 
-template <StartCobId C>
+template <StartCobId CobIdType>
 struct Labelled {
-  static constexpr std::uint16_t index = C.index;
-  static constexpr std::uint8_t sub_index = C.sub_index;
+  static constexpr std::uint16_t index = CobIdType.index;
+  static constexpr std::uint8_t sub_index = CobIdType.sub_index;
   /// For node-ID 1, if the node-ID is added.
-  static constexpr std::uint32_t can_id = (C.cob_id & 0x1FFF'FFFF) + (C.plus_node_id ? 1 : 0);
+  static constexpr std::uint32_t can_id = (CobIdType.cob_id & 0x1FFF'FFFF) + (CobIdType.plus_node_id ? 1 : 0);
 };
 
 }  // namespace cob_id_detail
 
 /// Whether a device may start with these COB-IDs; does not compile if it may not.
-template <StartCobId... C>
+template <StartCobId... CobIdType>
 [[nodiscard]] constexpr bool checked_cob_ids() {
   using namespace cob_id_detail;
   return (true && ... &&
-          CheckedCobId<pdo_detail::LabelOf<Labelled<C>>, pdo_detail::CanIdLabel<Labelled<C>::can_id>,
-                       is_legal(C)>::is_legal);
+          CheckedCobId<pdo_detail::LabelOf<Labelled<CobIdType>>, pdo_detail::CanIdLabel<Labelled<CobIdType>::can_id>,
+                       is_legal(CobIdType)>::is_legal);
 }
 
 }  // namespace canopen

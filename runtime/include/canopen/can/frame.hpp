@@ -42,20 +42,20 @@ struct Frame {
 
 /// The interface that a node sends through. `send` returns false if the controller has no room; the frame is
 /// then not sent.
-template <class T>
-concept Bus = requires(T& bus, const Frame& frame) {
+template <class Type>
+concept Bus = requires(Type& bus, const Frame& frame) {
   { bus.send(frame) } -> std::same_as<bool>;
 };
 
-template <class B>
-inline constexpr bool is_bus = Bus<B>;
+template <class BusType>
+inline constexpr bool is_bus = Bus<BusType>;
 
 /// The bus of a node; does not compile if it is not a Bus.
-template <class B>
+template <class BusType>
 struct CheckedBus {
   static constexpr bool is_good = true;
   static_assert(
-      is_bus<B>,
+      is_bus<BusType>,
       "bus: it must have `bool send(const canopen::Frame&)`, which returns false if the controller has no room");
 };
 
@@ -88,23 +88,23 @@ static_assert(sizeof(FrameWords) == sizeof Frame::data);
 }
 
 /// Sends the first `size` of eight data bytes, given as two words in memory order, with a COB-ID of the dictionary.
-template <Bus B>
-[[nodiscard, gnu::noinline]] bool send_words(B& bus, std::uint32_t cob_id, std::uint8_t size, std::uint32_t first,
+template <Bus BusType>
+[[nodiscard, gnu::noinline]] bool send_words(BusType& bus, std::uint32_t cob_id, std::uint8_t size, std::uint32_t first,
                                              std::uint32_t second = 0) {
   const bool extended = (cob_id & 0x2000'0000) != 0;
   return bus.send(make_frame(can_id_of(cob_id, extended), size, {first, second}, extended));
 }
 
 /// The same for a service with a configurable COB-ID: if it is not usable, nothing is sent, and the result is true.
-template <Bus B>
-[[nodiscard, gnu::noinline]] bool send_configured(B& bus, std::uint32_t cob_id, std::uint8_t size, std::uint32_t first,
-                                                  std::uint32_t second = 0) {
+template <Bus BusType>
+[[nodiscard, gnu::noinline]] bool send_configured(BusType& bus, std::uint32_t cob_id, std::uint8_t size,
+                                                  std::uint32_t first, std::uint32_t second = 0) {
   return !is_usable(cob_id) || send_words(bus, cob_id, size, first, second);
 }
 
 /// The same for bytes at an address that is a multiple of four.
-template <Bus B>
-[[nodiscard]] bool send_data(B& bus, std::uint32_t cob_id, std::uint8_t size, const std::uint8_t* data) {
+template <Bus BusType>
+[[nodiscard]] bool send_data(BusType& bus, std::uint32_t cob_id, std::uint8_t size, const std::uint8_t* data) {
   FrameWords words;
   std::memcpy(&words, std::assume_aligned<4>(data), sizeof words);
   return send_words(bus, cob_id, size, words.first, words.second);

@@ -117,8 +117,8 @@ class EmergencyProducer {
   }
 
   /// Sends the EMCY before a requested reset, if the device has one. It is lost if the bus has no room.
-  template <Bus B>
-  void announce_reset([[maybe_unused]] const ObjectStore<Device>& store, [[maybe_unused]] B& bus) const {
+  template <Bus BusType>
+  void announce_reset([[maybe_unused]] const ObjectStore<Device>& store, [[maybe_unused]] BusType& bus) const {
     if constexpr (has_cob_id && Device::options.reset_emergency != 0) {
       constexpr std::uint16_t code = Device::options.reset_emergency;
       const auto bits =
@@ -141,8 +141,8 @@ class EmergencyProducer {
   void end_inhibit_time(TimePoint now) { static_cast<void>(is_inhibited(now)); }
 
   /// Sends waiting messages. Returns false if the bus had no room; they keep waiting.
-  template <Bus B>
-  bool serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
+  template <Bus BusType>
+  bool serve(const ObjectStore<Device>& store, BusType& bus, TimePoint now) {
     if constexpr (has_cob_id) {
       while (waiting_ != 0 && !is_inhibited(now)) {
         if (CobId{store.template number<0x1014, 0>()}.valid()) {
@@ -240,8 +240,8 @@ class EmergencyProducer {
     return {code | std::uint32_t{bits} << 16 | std::uint32_t{info[0]} << 24, number_in(std::span{info}.subspan(1))};
   }
 
-  template <Bus B>
-  [[nodiscard]] static bool send(const ObjectStore<Device>& store, B& bus, FrameWords message) {
+  template <Bus BusType>
+  [[nodiscard]] static bool send(const ObjectStore<Device>& store, BusType& bus, FrameWords message) {
     return send_configured(bus, store.template number<0x1014, 0>(), 8, message.first, message.second);
   }
 

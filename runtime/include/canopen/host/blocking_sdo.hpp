@@ -35,33 +35,33 @@
 namespace canopen {
 
 /// A bus with a blocking `receive`: SocketCan, VirtualBusPort.
-template <class T>
-concept BlockingBus = Bus<T> && requires(T& bus, Duration timeout) {
+template <class Type>
+concept BlockingBus = Bus<Type> && requires(Type& bus, Duration timeout) {
   { bus.receive(timeout) } -> std::same_as<std::optional<Frame>>;
   { bus.now() } -> std::same_as<TimePoint>;
 };
 
-template <class Device, BlockingBus B>
+template <class Device, BlockingBus BusType>
 class BlockingRemoteNode;
 
 /// Returns the value of a number, or why its bytes are not one: 0607 0010h if there are more or fewer. A server need
 /// not indicate how many of the four bytes of an expedited response are valid.
-template <NumberObject O>
-[[nodiscard]] Result<typename O::type> number_from(const SdoAnswer& answer) {
+template <NumberObject Object>
+[[nodiscard]] Result<typename Object::type> number_from(const SdoAnswer& answer) {
   if (answer.result != ok) return answer.result;
-  constexpr std::size_t size = (O::bits + 7u) / 8u;
+  constexpr std::size_t size = (Object::bits + 7u) / 8u;
   const std::size_t received = answer.data.size();
   if (received != size && (answer.size_known || received < size)) return AbortCode::length_mismatch;
   std::array<std::uint8_t, 8> bytes{};
   std::memcpy(bytes.data(), answer.data.data(), size);
-  return value_detail::value_from<O>(std::span{bytes}.first(size));
+  return value_detail::value_from<Object>(std::span{bytes}.first(size));
 }
 
 /// Returns a string of a device from its bytes, or why it is not one: 0607 0012h if it is longer than in the EDS.
-template <StringObject O, class Device>
-[[nodiscard]] Result<typename O::type> text_from(const Result<std::vector<std::uint8_t>>& bytes) {
+template <StringObject Object, class Device>
+[[nodiscard]] Result<typename Object::type> text_from(const Result<std::vector<std::uint8_t>>& bytes) {
   if (!bytes) return bytes.abort_code();
-  typename O::type text{};
+  typename Object::type text{};
   std::size_t size = bytes->size();
   constexpr bool terminated =
       Device::dictionary.zero_terminated_strings && std::is_convertible_v<decltype(text.view()), std::string_view>;
@@ -83,87 +83,88 @@ class BlockingObjects {
   BlockingObjects(Sdo& sdo, NodeId node) : sdo_{sdo}, node_{node} {}
 
   /// Reads a number: `read<od::x>()` or `read(od::x{})`.
-  template <NumberObject O>
-  [[nodiscard]] Result<typename O::type> read(O = {}) {
-    if constexpr (remote_detail::can_be_read<O, Device>()) {
+  template <NumberObject Object>
+  [[nodiscard]] Result<typename Object::type> read(Object = {}) {
+    if constexpr (remote_detail::can_be_read<Object, Device>()) {
       std::array<std::uint8_t, 8> memory{};
-      return number_from<O>(sdo_.read_number(node_, O::index, O::sub_index, memory));
+      return number_from<Object>(sdo_.read_number(node_, Object::index, Object::sub_index, memory));
     }
     return AbortCode::general;
   }
 
   /// Reads a string. 0607 0012h: it is longer than in the EDS.
-  template <StringObject O>
-  [[nodiscard]] Result<typename O::type> read(O = {}) {
-    if constexpr (remote_detail::can_be_read<O, Device>())
-      return text_from<O, Device>(sdo_.upload(node_, O::index, O::sub_index));
+  template <StringObject Object>
+  [[nodiscard]] Result<typename Object::type> read(Object = {}) {
+    if constexpr (remote_detail::can_be_read<Object, Device>())
+      return text_from<Object, Device>(sdo_.upload(node_, Object::index, Object::sub_index));
     return AbortCode::general;
   }
 
   /// Reads the bytes of a DOMAIN.
-  template <DomainObject O>
-  [[nodiscard]] Result<std::vector<std::uint8_t>> read(O = {}) {
-    if constexpr (remote_detail::can_be_read<O, Device>()) return sdo_.upload(node_, O::index, O::sub_index);
+  template <DomainObject Object>
+  [[nodiscard]] Result<std::vector<std::uint8_t>> read(Object = {}) {
+    if constexpr (remote_detail::can_be_read<Object, Device>())
+      return sdo_.upload(node_, Object::index, Object::sub_index);
     return AbortCode::general;
   }
 
   /// Writes a number, a string or a DOMAIN: `write<od::x>(value)` or `write(od::x{}, value)`. A value outside the
   /// limits is rejected without sending a frame; 0607 0012h: a string is longer than the capacity of the object.
-  template <DictionaryObject O, class V>
-  requires remote_detail::WrittenTo<std::decay_t<const V&>, O, Device>
-  [[nodiscard]] Result<void> write(const V& value) {
-    if constexpr (NumberObject<O>) {
-      if (const AbortCode code = check_value<O>(value); code != ok) return code;
-      return write_number<O>(static_cast<typename O::type>(value));
-    } else if constexpr (std::convertible_to<const V&, std::string_view>) {
+  template <DictionaryObject Object, class ValueType>
+  requires remote_detail::WrittenTo<std::decay_t<const ValueType&>, Object, Device>
+  [[nodiscard]] Result<void> write(const ValueType& value) {
+    if constexpr (NumberObject<Object>) {
+      if (const AbortCode code = check_value<Object>(value); code != ok) return code;
+      return write_number<Object>(static_cast<typename Object::type>(value));
+    } else if constexpr (std::convertible_to<const ValueType&, std::string_view>) {
       const std::string_view text = value;
-      return write_bytes<O>(std::span{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+      return write_bytes<Object>(std::span{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
     } else {
-      return write_bytes<O>(value);
+      return write_bytes<Object>(value);
     }
   }
-  template <DictionaryObject O, class V>
-  requires remote_detail::WrittenTo<std::decay_t<const V&>, O, Device>
-  [[nodiscard]] Result<void> write(O, const V& value) { return write<O>(value); }
+  template <DictionaryObject Object, class ValueType>
+  requires remote_detail::WrittenTo<std::decay_t<const ValueType&>, Object, Device>
+  [[nodiscard]] Result<void> write(Object, const ValueType& value) { return write<Object>(value); }
   /// What does not compile.
-  template <DictionaryObject O, class V>
-  remote_detail::NotWritten write(const V&) {
-    static_cast<void>(remote_detail::can_be_written<O, Device, std::decay_t<const V&>>());
+  template <DictionaryObject Object, class ValueType>
+  remote_detail::NotWritten write(const ValueType&) {
+    static_cast<void>(remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>());
     return {};
   }
-  template <DictionaryObject O, class V>
-  remote_detail::NotWritten write(O, const V&) {
-    static_cast<void>(remote_detail::can_be_written<O, Device, std::decay_t<const V&>>());
+  template <DictionaryObject Object, class ValueType>
+  remote_detail::NotWritten write(Object, const ValueType&) {
+    static_cast<void>(remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>());
     return {};
   }
-  template <DictionaryObject O>
-  requires(StringObject<O> || DomainObject<O>)
+  template <DictionaryObject Object>
+  requires(StringObject<Object> || DomainObject<Object>)
       [[nodiscard]] Result<void> write(std::initializer_list<std::uint8_t> bytes) {
-    return write<O>(std::span{bytes.begin(), bytes.size()});
+    return write<Object>(std::span{bytes.begin(), bytes.size()});
   }
 
   /// Writes a constant, whose limits the compiler checks.
-  template <NumberObject O, auto Value>
+  template <NumberObject Object, auto Value>
   [[nodiscard]] Result<void> write() {
-    if constexpr (remote_detail::can_be_written_with<O, Device, Value>())
-      return write_number<O>(static_cast<typename O::type>(Value));
+    if constexpr (remote_detail::can_be_written_with<Object, Device, Value>())
+      return write_number<Object>(static_cast<typename Object::type>(Value));
     return AbortCode::general;
   }
 
  private:
-  template <class O>
+  template <class Object>
   [[nodiscard]] Result<void> write_bytes(std::span<const std::uint8_t> bytes) {
-    if constexpr (StringObject<O>) {
-      if (bytes.size() > O::type::capacity()) return AbortCode::length_too_high;
+    if constexpr (StringObject<Object>) {
+      if (bytes.size() > Object::type::capacity()) return AbortCode::length_too_high;
     }
-    return sdo_.download(node_, O::index, O::sub_index, bytes);
+    return sdo_.download(node_, Object::index, Object::sub_index, bytes);
   }
-  template <class O>
-  [[nodiscard]] Result<void> write_number(typename O::type value) {
+  template <class Object>
+  [[nodiscard]] Result<void> write_number(typename Object::type value) {
     const std::uint64_t raw = value_detail::to_bits(value);
     std::array<std::uint8_t, sizeof raw> bytes{};
     std::memcpy(bytes.data(), &raw, sizeof raw);
-    return sdo_.download(node_, O::index, O::sub_index, std::span{bytes}.first((O::bits + 7u) / 8u));
+    return sdo_.download(node_, Object::index, Object::sub_index, std::span{bytes}.first((Object::bits + 7u) / 8u));
   }
 
   Sdo& sdo_;
@@ -172,12 +173,12 @@ class BlockingObjects {
 
 /// Transfers by index and sub-index. Exceptions of the bus's `receive` are passed on. A transfer ends even on a bus
 /// that does not accept frames: with 0504 0000h after the timeout.
-template <BlockingBus B>
+template <BlockingBus BusType>
 class BlockingSdo {
  public:
   static constexpr std::size_t longest_upload = 16 * 1024 * 1024;
 
-  explicit BlockingSdo(B& can_bus, SdoClientOptions options = {}) : bus_{can_bus}, options_{options} {}
+  explicit BlockingSdo(BusType& can_bus, SdoClientOptions options = {}) : bus_{can_bus}, options_{options} {}
 
   /// Called with every frame that is received during a transfer: heartbeats, PDOs, EMCYs. A transfer to the same node
   /// that it starts is rejected with 060A 0023h.
@@ -194,7 +195,7 @@ class BlockingSdo {
     };
     const Use use{*this, node};
     if (!use.granted) return AbortCode::no_resource;
-    SdoClient<B>& client = client_of(node);
+    SdoClient<BusType>& client = client_of(node);
     if (!client.upload(index, sub_index, sink_of(take), bus_.now())) return AbortCode::no_resource;
     if (const AbortCode code = run(client); code != ok) return code;
     return value;
@@ -203,7 +204,7 @@ class BlockingSdo {
   Result<void> download(NodeId node, std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
     const Use use{*this, node};
     if (!use.granted) return AbortCode::no_resource;
-    SdoClient<B>& client = client_of(node);
+    SdoClient<BusType>& client = client_of(node);
     if (!client.download(index, sub_index, bytes, bus_.now())) return AbortCode::no_resource;
     return run(client);
   }
@@ -213,7 +214,7 @@ class BlockingSdo {
                                       std::span<std::uint8_t> memory) {
     const Use use{*this, node};
     if (!use.granted) return {AbortCode::no_resource, {}};
-    SdoClient<B>& client = client_of(node);
+    SdoClient<BusType>& client = client_of(node);
     if (!client.upload(index, sub_index, memory, bus_.now())) return {AbortCode::no_resource, {}};
     const AbortCode result = run(client);
     return {result, client.data(), client.size_known()};
@@ -221,7 +222,7 @@ class BlockingSdo {
 
   /// Returns a node with the types of its device. It must not outlive this object.
   template <class Device>
-  [[nodiscard]] BlockingRemoteNode<Device, B> remote(NodeId node) {
+  [[nodiscard]] BlockingRemoteNode<Device, BusType> remote(NodeId node) {
     return {*this, node};
   }
 
@@ -251,7 +252,7 @@ class BlockingSdo {
     }
   }
 
-  [[nodiscard]] B& bus() { return bus_; }
+  [[nodiscard]] BusType& bus() { return bus_; }
   [[nodiscard]] const SdoClientOptions& options() const { return options_; }
 
  private:
@@ -277,8 +278,8 @@ class BlockingSdo {
   /// Returns the client of a node, which is kept because it knows which responses of earlier transfers may still
   /// arrive. Those that have arrived are processed first, so that they are not taken for the response to the
   /// next request.
-  [[nodiscard]] SdoClient<B>& client_of(NodeId node) {
-    SdoClient<B>& client = clients_.try_emplace(node.value(), bus_, node, options_).first->second;
+  [[nodiscard]] SdoClient<BusType>& client_of(NodeId node) {
+    SdoClient<BusType>& client = clients_.try_emplace(node.value(), bus_, node, options_).first->second;
     constexpr unsigned at_most = 1'000;  // the bus may receive frames continuously
     for (unsigned i = 0; i != at_most; ++i) {
       const std::optional<Frame> frame = bus_.receive(Duration{0});
@@ -300,18 +301,18 @@ class BlockingSdo {
     return is_one_of_them;
   }
 
-  B& bus_;
+  BusType& bus_;
   SdoClientOptions options_;
-  std::map<std::uint8_t, SdoClient<B>> clients_;
+  std::map<std::uint8_t, SdoClient<BusType>> clients_;
   std::set<std::uint8_t> in_use_;  ///< node-IDs
   std::deque<Frame> early_;        ///< received before the request was sent; not yet passed to `on_frame`
 };
 
 /// A device on the bus, with its generated types.
-template <class Device, BlockingBus B>
-class BlockingRemoteNode : public BlockingObjects<Device, BlockingSdo<B>> {
+template <class Device, BlockingBus BusType>
+class BlockingRemoteNode : public BlockingObjects<Device, BlockingSdo<BusType>> {
  public:
-  using BlockingObjects<Device, BlockingSdo<B>>::BlockingObjects;
+  using BlockingObjects<Device, BlockingSdo<BusType>>::BlockingObjects;
 };
 
 }  // namespace canopen

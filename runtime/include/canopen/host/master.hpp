@@ -51,7 +51,7 @@ namespace canopen {
 ///
 /// All transfers to a node, of the application and of the boot-up, run one after the other (SdoQueue). The boot-up
 /// message of a slave of the list ends those that were requested before with 0800 0022h.
-template <BlockingBus B>
+template <BlockingBus BusType>
 class Master {
  public:
   static constexpr std::size_t max_slaves = 127;
@@ -59,7 +59,7 @@ class Master {
   static constexpr std::size_t max_nodes_at_once = 16;  ///< few enough for timely responses at 20 kbit/s
   static constexpr std::size_t max_upload = MasterTransfers::max_upload;  ///< bytes; 0504 0005h: a value is longer
 
-  explicit Master(B& can_bus, std::vector<NmtSlave> slaves = {}, NmtStartUp start_up = {},
+  explicit Master(BusType& can_bus, std::vector<NmtSlave> slaves = {}, NmtStartUp start_up = {},
                   SdoClientOptions options = {})
       : bus_{can_bus}, slaves_{std::move(slaves)}, nmt_{can_bus, slaves_, start_up, options, Host{*this}} {}
   Master(const Master&) = delete;
@@ -116,7 +116,7 @@ class Master {
 
   /// Returns a node with the types of its device. It must not outlive the master.
   template <class Device>
-  [[nodiscard]] MasterRemote<Device, B> remote(NodeId node_id) {
+  [[nodiscard]] MasterRemote<Device, BusType> remote(NodeId node_id) {
     return {*this, node_id};
   }
 
@@ -389,9 +389,9 @@ class Master {
     return cob_id;
   }
 
-  B& bus_;
+  BusType& bus_;
   std::vector<NmtSlave> slaves_;
-  NmtMaster<B, max_slaves, Host, max_requests, max_nodes_at_once> nmt_;
+  NmtMaster<BusType, max_slaves, Host, max_requests, max_nodes_at_once> nmt_;
   MasterTransfers transfers_{[this](Transfer& ended) { on_transfer(ended); }};
   std::deque<PdoHandler> pdos_;
   std::map<std::pair<std::uint8_t, std::uint16_t>, std::uint32_t> cob_ids_;

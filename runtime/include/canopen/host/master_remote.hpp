@@ -25,7 +25,7 @@
 
 namespace canopen {
 
-template <BlockingBus B>
+template <BlockingBus BusType>
 class Master;
 
 namespace master_detail {
@@ -43,60 +43,62 @@ inline constexpr std::uint16_t number_in<Layout, PdoList<Pdos...>> =
 }  // namespace master_detail
 
 /// A device on the bus, with its generated types: its objects by SDO, its PDOs by their layouts.
-template <class Device, BlockingBus B>
+template <class Device, BlockingBus BusType>
 class MasterRemote {
  public:
-  MasterRemote(Master<B>& master, NodeId node_id) : master_{master}, node_id_{node_id} {}
+  MasterRemote(Master<BusType>& master, NodeId node_id) : master_{master}, node_id_{node_id} {}
 
   [[nodiscard]] NodeId node_id() const { return node_id_; }
 
   /// Reads an object, and waits for the result while the master goes on: `read(od::x{})` or `read<od::x>()`.
-  template <DictionaryObject O>
-  [[nodiscard]] auto read(O = {}) {
-    if constexpr (remote_detail::can_be_read<O, Device>()) {
-      return objects().template read<O>();
+  template <DictionaryObject Object>
+  [[nodiscard]] auto read(Object = {}) {
+    if constexpr (remote_detail::can_be_read<Object, Device>()) {
+      return objects().template read<Object>();
     } else {
-      return Result<typename O::type>{AbortCode::general};
+      return Result<typename Object::type>{AbortCode::general};
     }
   }
   /// Writes an object. A value outside the limits is rejected without sending a frame.
-  template <DictionaryObject O, class V>
-  Result<void> write(const V& value) {
-    if constexpr (remote_detail::can_be_written<O, Device, std::decay_t<const V&>>())
-      return objects().template write<O>(value);
+  template <DictionaryObject Object, class ValueType>
+  Result<void> write(const ValueType& value) {
+    if constexpr (remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>())
+      return objects().template write<Object>(value);
     return AbortCode::general;
   }
-  template <DictionaryObject O, class V>
-  Result<void> write(O, const V& value) {
-    if constexpr (remote_detail::can_be_written<O, Device, std::decay_t<const V&>>())
-      return objects().template write<O>(value);
+  template <DictionaryObject Object, class ValueType>
+  Result<void> write(Object, const ValueType& value) {
+    if constexpr (remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>())
+      return objects().template write<Object>(value);
     return AbortCode::general;
   }
   /// Writes a constant, whose limits the compiler checks.
-  template <NumberObject O, auto Value>
+  template <NumberObject Object, auto Value>
   Result<void> write() {
-    if constexpr (remote_detail::can_be_written_with<O, Device, Value>()) return objects().template write<O, Value>();
+    if constexpr (remote_detail::can_be_written_with<Object, Device, Value>())
+      return objects().template write<Object, Value>();
     return AbortCode::general;
   }
 
   /// Starts to read an object and returns; `done(result)` is called from `poll` with a Result of its type, for a DOMAIN
   /// of its bytes, exactly once unless this call is rejected: 060A 0023h, too many requests are pending.
-  template <DictionaryObject O, class Done>
-  Result<void> read(O, Done done) {
-    if constexpr (!remote_detail::can_be_read<O, Device>()) {
+  template <DictionaryObject Object, class Done>
+  Result<void> read(Object, Done done) {
+    if constexpr (!remote_detail::can_be_read<Object, Device>()) {
       return AbortCode::general;
-    } else if constexpr (NumberObject<O>) {
+    } else if constexpr (NumberObject<Object>) {
       auto& transfer = master_.transfers_.add(
-          node_id_, O::index, O::sub_index, [done = std::move(done)](MasterTransfers::Transfer& ended) mutable {
+          node_id_, Object::index, Object::sub_index,
+          [done = std::move(done)](MasterTransfers::Transfer& ended) mutable {
             const std::size_t size = ended.result == ok ? ended.size : 0;
-            done(number_from<O>({ended.result, std::span{ended.bytes}.first(size), ended.size_known}));
+            done(number_from<Object>({ended.result, std::span{ended.bytes}.first(size), ended.size_known}));
           });
       return master_.begin(transfer, MasterTransfers::upload(transfer, sizeof(std::uint64_t)));
     } else {
-      return master_.begin_upload(node_id_, O::index, O::sub_index,
+      return master_.begin_upload(node_id_, Object::index, Object::sub_index,
                                   [done = std::move(done)](const Result<std::vector<std::uint8_t>>& bytes) mutable {
-                                    if constexpr (StringObject<O>) {
-                                      done(text_from<O, Device>(bytes));
+                                    if constexpr (StringObject<Object>) {
+                                      done(text_from<Object, Device>(bytes));
                                     } else {
                                       done(bytes);
                                     }
@@ -105,9 +107,10 @@ class MasterRemote {
   }
   /// Starts to write an object and returns; `done(result)` is called from `poll` with a Result<void>, exactly once
   /// unless this call is rejected: 060A 0023h, or a value outside the limits.
-  template <DictionaryObject O, class V, class Done>
-  Result<void> write([[maybe_unused]] O object, [[maybe_unused]] const V& value, [[maybe_unused]] Done done) {
-    if constexpr (remote_detail::can_be_written<O, Device, std::decay_t<const V&>>()) {
+  template <DictionaryObject Object, class ValueType, class Done>
+  Result<void> write([[maybe_unused]] Object object, [[maybe_unused]] const ValueType& value,
+                     [[maybe_unused]] Done done) {
+    if constexpr (remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>()) {
       Begins begins{master_, std::move(done)};
       return BlockingObjects<Device, Begins>{begins, node_id_}.write(object, value);
     }
@@ -117,13 +120,13 @@ class MasterRemote {
   /// Calls the handler from now on with the values of each TPDO with this layout: `handler(values...)`. Its COB-ID is
   /// read from the node, again after each boot-up, and updated when it is written through the master. 0800 0022h: the
   /// PDO is not valid; the handler is discarded.
-  template <class Layout, class F>
-  Result<void> on_pdo(F handler) {
+  template <class Layout, class Function>
+  Result<void> on_pdo(Function handler) {
     return on_pdo_at<Layout>(tpdo_index<Layout>(), std::move(handler));
   }
   /// The same for TPDO `Number`, which `map` has given this layout.
-  template <std::uint16_t Number, class Layout, class F>
-  Result<void> on_pdo(F handler) {
+  template <std::uint16_t Number, class Layout, class Function>
+  Result<void> on_pdo(Function handler) {
     return on_pdo_at<Layout>(Remapping<Device, Number, Layout>::communication, std::move(handler));
   }
 
@@ -173,33 +176,34 @@ class MasterRemote {
 
  private:
   /// The first abort code of the values of a layout.
-  template <class Layout, std::size_t... I, class... Values>
-  [[nodiscard]] static AbortCode checked(std::index_sequence<I...>, const Values&... values) {
+  template <class Layout, std::size_t... Position, class... Values>
+  [[nodiscard]] static AbortCode checked(std::index_sequence<Position...>, const Values&... values) {
     AbortCode code = ok;
-    static_cast<void>(((code = checked_value<typename Layout::template Entry<I>>(values), code == ok) && ...));
+    static_cast<void>(((code = checked_value<typename Layout::template Entry<Position>>(values), code == ok) && ...));
     return code;
   }
-  template <class O, class V>
-  [[nodiscard]] static AbortCode checked_value([[maybe_unused]] const V& value) {
-    if constexpr (NumberObject<O> && std::is_arithmetic_v<typename O::type>) {
-      static_assert(remote_detail::has_the_type_of<O, V>, "send: this value is not of the type of the object");
-      if constexpr (remote_detail::has_the_type_of<O, V>) return check_value<O>(value);
-    } else if constexpr (remote_detail::is_text_for<O, V>) {
-      return O::type::from(value).abort_code();
+  template <class Object, class ValueType>
+  [[nodiscard]] static AbortCode checked_value([[maybe_unused]] const ValueType& value) {
+    if constexpr (NumberObject<Object> && std::is_arithmetic_v<typename Object::type>) {
+      static_assert(remote_detail::has_the_type_of<Object, ValueType>,
+                    "send: this value is not of the type of the object");
+      if constexpr (remote_detail::has_the_type_of<Object, ValueType>) return check_value<Object>(value);
+    } else if constexpr (remote_detail::is_text_for<Object, ValueType>) {
+      return Object::type::from(value).abort_code();
     }
     return ok;
   }
-  template <class O, class V>
-  [[nodiscard]] static typename O::type converted(const V& value) {
-    if constexpr (remote_detail::is_text_for<O, V>) {
-      return O::type::truncated(value);
+  template <class Object, class ValueType>
+  [[nodiscard]] static typename Object::type converted(const ValueType& value) {
+    if constexpr (remote_detail::is_text_for<Object, ValueType>) {
+      return Object::type::truncated(value);
     } else {
-      return static_cast<typename O::type>(value);
+      return static_cast<typename Object::type>(value);
     }
   }
-  template <class Layout, std::size_t... I, class... Values>
-  static void pack(Frame& frame, std::index_sequence<I...>, const Values&... values) {
-    Layout::pack_into(frame, converted<typename Layout::template Entry<I>>(values)...);
+  template <class Layout, std::size_t... Position, class... Values>
+  static void pack(Frame& frame, std::index_sequence<Position...>, const Values&... values) {
+    Layout::pack_into(frame, converted<typename Layout::template Entry<Position>>(values)...);
   }
 
   template <class Layout>
@@ -214,8 +218,8 @@ class MasterRemote {
     frame.id = cob_id & 0x1FFF'FFFF;
     return frame;
   }
-  template <class Layout, class F>
-  Result<void> on_pdo_at(std::uint16_t index, F handler) {
+  template <class Layout, class Function>
+  Result<void> on_pdo_at(std::uint16_t index, Function handler) {
     const Result<std::uint32_t> cob_id = master_.pdo_cob_id(node_id_, index);
     if (!cob_id) return cob_id.abort_code();
     master_.pdos_.push_back(
@@ -225,16 +229,16 @@ class MasterRemote {
   }
   /// Starts a download in place of waiting for it.
   struct Begins {
-    Master<B>& master;
+    Master<BusType>& master;
     std::function<void(Result<void>)> done;
     Result<void> download(NodeId node_id, std::uint16_t index, std::uint8_t sub_index,
                           std::span<const std::uint8_t> bytes) {
       return master.begin_download(node_id, index, sub_index, bytes, std::move(done));
     }
   };
-  [[nodiscard]] BlockingObjects<Device, Master<B>> objects() { return {master_, node_id_}; }
+  [[nodiscard]] BlockingObjects<Device, Master<BusType>> objects() { return {master_, node_id_}; }
 
-  Master<B>& master_;
+  Master<BusType>& master_;
   NodeId node_id_;
 };
 

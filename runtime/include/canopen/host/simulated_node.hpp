@@ -101,8 +101,8 @@ struct DomainMemory<ObjectList<Os...>> {
   std::array<std::array<std::uint8_t, 1024>, sizeof...(Os)> bytes{};
 
   [[nodiscard]] auto parts() {
-    return [this]<std::size_t... I>(std::index_sequence<I...>) {
-      return std::tuple{bound_to<Os>(bytes[I], readable(Os::access) ? 16 : 0)...};
+    return [this]<std::size_t... Position>(std::index_sequence<Position...>) {
+      return std::tuple{bound_to<Os>(bytes[Position], readable(Os::access) ? 16 : 0)...};
     }
     (std::index_sequence_for<Os...>{});
   }

@@ -47,9 +47,9 @@ inline constexpr std::string_view greeting = "edsc-simulation 1";
 }
 
 /// A number of 0..max; nothing for any other text.
-template <class T>
-[[nodiscard]] std::optional<T> number(std::string_view text, int base, T max) {
-  T value = 0;
+template <class Type>
+[[nodiscard]] std::optional<Type> number(std::string_view text, int base, Type max) {
+  Type value = 0;
   const char* const last = text.data() + text.size();
   const auto [end, error] = std::from_chars(text.data(), last, value, base);
   return error == std::errc{} && end == last && value <= max ? std::optional{value} : std::nullopt;

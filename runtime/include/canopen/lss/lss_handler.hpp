@@ -55,9 +55,9 @@ template <class... Handlers>
 struct Find {
   using type = void;
 };
-template <class H, class... Rest>
-struct Find<H, Rest...> {
-  using type = std::conditional_t<is_handler<H>, H, typename Find<Rest...>::type>;
+template <class HandlerType, class... Rest>
+struct Find<HandlerType, Rest...> {
+  using type = std::conditional_t<is_handler<HandlerType>, HandlerType, typename Find<Rest...>::type>;
 };
 
 /// Whether the EDS of a device has LSS.

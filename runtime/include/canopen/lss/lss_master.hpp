@@ -48,10 +48,10 @@ enum class LssOutcome : std::uint8_t {
 
 /// Start a service, pass in frames and time until the master is no longer `busy()`, then check `outcome()`. A service
 /// that is started while busy is not executed and returns false.
-template <Bus B>
+template <Bus BusType>
 class LssMaster {
  public:
-  constexpr explicit LssMaster(B& can_bus, LssTimeouts timeouts = {}) : bus_{can_bus}, timeouts_{timeouts} {}
+  constexpr explicit LssMaster(BusType& can_bus, LssTimeouts timeouts = {}) : bus_{can_bus}, timeouts_{timeouts} {}
 
   /// Switches all slaves to this state. No response.
   [[nodiscard]] bool switch_state_global(LssState state, TimePoint now) {
@@ -392,7 +392,7 @@ class LssMaster {
   static constexpr Duration longest_step = std::chrono::seconds{1};
   static constexpr Duration first_step = from_milliseconds(200);
 
-  B& bus_;
+  BusType& bus_;
   LssTimeouts timeouts_;
   std::array<std::uint32_t, 6> words_{};  ///< of the commands first_..last_; in a Fastscan the address
   std::array<std::uint32_t, 4> from_{};   ///< fastscan: the address with the known numbers

@@ -23,8 +23,8 @@ namespace canopen {
 ///   void reset_communication();             a device without node-ID has received one
 ///   void stop_communication();              leaves the bus
 ///   void start_communication(bit_timing);   returns to the bus
-template <class T>
-concept LssSlaveHooks = requires(T hooks, std::uint8_t sub_index, NodeId node_id, LssBitTiming bit_timing) {
+template <class Type>
+concept LssSlaveHooks = requires(Type hooks, std::uint8_t sub_index, NodeId node_id, LssBitTiming bit_timing) {
   { hooks.identity(sub_index) } -> std::same_as<std::uint32_t>;
   { hooks.accept(node_id) } -> std::same_as<LssError>;
   { hooks.accept(bit_timing) } -> std::same_as<LssError>;
@@ -110,8 +110,8 @@ class LssSlave {
   [[nodiscard]] bool has_reply() const { return reply_ != lss::Command::none; }
 
   /// Sends the response, if any. Returns false if the bus had no room or the node is silent; the response is kept.
-  template <Bus B>
-  bool serve(B& bus) {
+  template <Bus BusType>
+  bool serve(BusType& bus) {
     if (!has_reply()) return true;
     if (silent()) return false;
     if (!bus.send(lss::make_frame(lss::response_id, reply_, reply_word_))) return false;

@@ -29,8 +29,8 @@ class HeartbeatProducer {
   }
 
   /// Sends the boot-up message or a heartbeat if it is due. Returns false if the bus had no room; it remains due.
-  template <Bus B>
-  bool serve(B& bus, NodeId node_id, NmtState state, Duration period, TimePoint now) {
+  template <Bus BusType>
+  bool serve(BusType& bus, NodeId node_id, NmtState state, Duration period, TimePoint now) {
     if (boot_up_due_) {
       state = NmtState::initialisation;
       due_ = now;

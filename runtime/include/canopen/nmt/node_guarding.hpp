@@ -46,8 +46,8 @@ class NodeGuardingSlave {
   }
 
   /// Sends the response if one is due. Returns false if the bus had no room; it remains due.
-  template <Bus B>
-  bool serve(B& bus, NodeId node_id, NmtState state) {
+  template <Bus BusType>
+  bool serve(BusType& bus, NodeId node_id, NmtState state) {
     if (!answer_due_) return true;
     Frame frame{};
     frame.id = function_code::error_control + std::uint32_t{node_id.value()};
@@ -141,8 +141,8 @@ class NodeGuardingMaster {
 
   /// Reports a request without a response, and sends the next one, if it is due. Returns false if the bus had no room;
   /// it remains due.
-  template <Bus B, class Host>
-  bool serve(B& bus, TimePoint now, Host&& host) {
+  template <Bus BusType, class Host>
+  bool serve(BusType& bus, TimePoint now, Host&& host) {
     if (!running_ || now < due_) return true;
     if (awaiting_) miss(host);
     if (!running_) return true;  // the host may have stopped guarding a lost node

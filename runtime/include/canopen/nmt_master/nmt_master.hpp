@@ -57,12 +57,13 @@ namespace canopen {
 ///                                                a fault. A Host may accept a BootStatus instead
 ///   network_started()                            unless 1F80h forbids it, the master's own device may be started now
 ///   boot_time_elapsed()                          a mandatory slave is missing; the master keeps waiting for it
-template <Bus B, std::size_t Count, class Host, std::size_t Requests = 4, std::size_t Clients = (Count < 4 ? Count : 4)>
+template <Bus BusType, std::size_t Count, class Host, std::size_t Requests = 4,
+          std::size_t Clients = (Count < 4 ? Count : 4)>
 class NmtMaster {
  public:
   /// Manages the first `Count` of `slaves`, which must outlive the master. Bit 0 of 1F81h must be set in the slaves
   /// that are to be booted.
-  constexpr NmtMaster(B& can_bus, std::span<const NmtSlave> slaves, NmtStartUp start_up, SdoClientOptions options,
+  constexpr NmtMaster(BusType& can_bus, std::span<const NmtSlave> slaves, NmtStartUp start_up, SdoClientOptions options,
                       Host host)
       : bus_{can_bus},
         slaves_{slaves},
@@ -70,7 +71,7 @@ class NmtMaster {
         host_{std::move(host)},
         sdo_timeout_{options.timeout},
         sdo_{sdo_bus_, options} {}
-  constexpr NmtMaster(B& can_bus, std::span<const NmtSlave> slaves, NmtStartUp start_up, Duration sdo_timeout,
+  constexpr NmtMaster(BusType& can_bus, std::span<const NmtSlave> slaves, NmtStartUp start_up, Duration sdo_timeout,
                       Host host)
       : NmtMaster{can_bus, slaves, start_up, SdoClientOptions{.timeout = sdo_timeout}, std::move(host)} {}
   NmtMaster(const NmtMaster&) = delete;
@@ -468,7 +469,7 @@ class NmtMaster {
     serve_sdo();
   }
 
-  B& bus_;
+  BusType& bus_;
   SlaveTable<Count> slaves_;
   NmtStartUp start_up_;
   [[no_unique_address]] Host host_;
@@ -486,11 +487,11 @@ class NmtMaster {
 
 /// Returns a master of up to `Count` slaves:
 ///     auto master = canopen::make_nmt_master<8>(bus, slaves, start_up, 500ms, host);
-template <std::size_t Count, Bus B, class Host>
-[[nodiscard]] constexpr NmtMaster<B, Count, Host> make_nmt_master(B& bus, std::span<const NmtSlave> slaves,
-                                                                  NmtStartUp start_up, Duration sdo_timeout,
-                                                                  Host host) {
-  return NmtMaster<B, Count, Host>{bus, slaves, start_up, sdo_timeout, std::move(host)};
+template <std::size_t Count, Bus BusType, class Host>
+[[nodiscard]] constexpr NmtMaster<BusType, Count, Host> make_nmt_master(BusType& bus, std::span<const NmtSlave> slaves,
+                                                                        NmtStartUp start_up, Duration sdo_timeout,
+                                                                        Host host) {
+  return NmtMaster<BusType, Count, Host>{bus, slaves, start_up, sdo_timeout, std::move(host)};
 }
 
 }  // namespace canopen

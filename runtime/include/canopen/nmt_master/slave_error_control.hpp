@@ -74,8 +74,8 @@ class SlaveErrorControl {
   }
 
   /// Sends the guarding request to a slave when it is due, and reports missing responses.
-  template <Bus B, class Listener>
-  void serve(B& bus, std::size_t i, TimePoint now, Listener&& listener) {
+  template <Bus BusType, class Listener>
+  void serve(BusType& bus, std::size_t i, TimePoint now, Listener&& listener) {
     (void)guards_[i].serve(bus, now, Watch<Listener>{listener});
   }
 

@@ -186,8 +186,8 @@ class SlaveTable {
   // Commands
 
   /// Sends a command to one node, or to all nodes with node-ID 0. Returns false if the bus had no room; it is not sent.
-  template <Bus B>
-  [[nodiscard]] bool send(B& bus, NmtCommand command, NodeId node_id) {
+  template <Bus BusType>
+  [[nodiscard]] bool send(BusType& bus, NmtCommand command, NodeId node_id) {
     if (!bus.send(nmt_frame(command, node_id))) return false;
     for (std::size_t i = 0; i < list_.size(); ++i) {
       if (node_id.value() != 0 && list_[i].node_id != node_id) continue;
@@ -213,8 +213,8 @@ class SlaveTable {
   }
 
   /// Sends waiting commands; those for which the bus has no room keep waiting.
-  template <Bus B>
-  void send_commands(B& bus) {
+  template <Bus BusType>
+  void send_commands(BusType& bus) {
     if (to_all_) {
       if (!send(bus, *to_all_, NodeId{})) return;
       to_all_.reset();

@@ -19,7 +19,7 @@
 
 namespace canopen {
 
-template <class Device, class B, class... Handlers>
+template <class Device, class BusType, class... Handlers>
 class Node;
 
 /// All data or all remote frames with one CAN-ID.

@@ -39,102 +39,107 @@
 namespace canopen {
 
 /// An application that is not a part of its node; it must outlive the node.
-template <class A>
+template <class ApplicationType>
 struct ApplicationAt {
-  A* application;
+  ApplicationType* application;
 };
-template <class A>
-[[nodiscard]] constexpr ApplicationAt<A> application_at(A& application) {
+template <class ApplicationType>
+[[nodiscard]] constexpr ApplicationAt<ApplicationType> application_at(ApplicationType& application) {
   return {&application};
 }
 
 namespace handler_detail {
 
-template <class H>
+template <class Handler>
 inline constexpr bool is_access_handler = false;
-template <class O, class F>
-inline constexpr bool is_access_handler<WriteHandler<O, F>> = true;
-template <class O, class F>
-inline constexpr bool is_access_handler<WrittenHandler<O, F>> = true;
-template <class O, class F>
-inline constexpr bool is_access_handler<ReadHandler<O, F>> = true;
+template <class Object, class Callable>
+inline constexpr bool is_access_handler<WriteHandler<Object, Callable>> = true;
+template <class Object, class Callable>
+inline constexpr bool is_access_handler<WrittenHandler<Object, Callable>> = true;
+template <class Object, class Callable>
+inline constexpr bool is_access_handler<ReadHandler<Object, Callable>> = true;
 
-template <class H>
+template <class Handler>
 inline constexpr bool is_periodic_handler = false;
-template <class P, class F>
-inline constexpr bool is_periodic_handler<PeriodicHandler<P, F>> = true;
+template <class PeriodType, class Callable>
+inline constexpr bool is_periodic_handler<PeriodicHandler<PeriodType, Callable>> = true;
 
-template <class H>
+template <class Handler>
 inline constexpr bool is_event_handler = false;
-template <class Event, class F>
-inline constexpr bool is_event_handler<EventHandler<Event, F>> = true;
+template <class Event, class Callable>
+inline constexpr bool is_event_handler<EventHandler<Event, Callable>> = true;
 
 /// Whether a type is one of the handlers with a template of their own.
-template <class H>
+template <class Handler>
 inline constexpr bool is_handler =
-    is_access_handler<H> || is_event_handler<H> || is_periodic_handler<H> || domain_detail::is_reader<H> ||
-    domain_detail::is_writer<H> || storage_detail::is_stored_in<H> || lss_detail::is_handler<H> ||
-    mailbox_detail::is_values_from<H> || domain_detail::is_bound_to<H>;
+    is_access_handler<Handler> || is_event_handler<Handler> || is_periodic_handler<Handler> ||
+    domain_detail::is_reader<Handler> || domain_detail::is_writer<Handler> || storage_detail::is_stored_in<Handler> ||
+    lss_detail::is_handler<Handler> || mailbox_detail::is_values_from<Handler> || domain_detail::is_bound_to<Handler>;
 
 /// The class of an application, which a node has as a handler; any other type for a handler.
-template <class H>
+template <class Handler>
 struct ApplicationOf {
-  using type = H;
-  static constexpr H& get(H& application) { return application; }
+  using type = Handler;
+  static constexpr Handler& get(Handler& application) { return application; }
 };
-template <class A>
-struct ApplicationOf<ApplicationAt<A>> {
-  using type = A;
-  static constexpr A& get(const ApplicationAt<A>& at) { return *at.application; }
+template <class ApplicationType>
+struct ApplicationOf<ApplicationAt<ApplicationType>> {
+  using type = ApplicationType;
+  static constexpr ApplicationType& get(const ApplicationAt<ApplicationType>& at) { return *at.application; }
 };
 
 /// Whether a class has any function with one of these names.
-template <class A, class... Functions>
-inline constexpr bool declares_any = (Functions::template is_declared<A> || ...);
+template <class ApplicationType, class... Functions>
+inline constexpr bool declares_any = (Functions::template is_declared<ApplicationType> || ...);
 
-template <class A, bool may_be = std::is_class_v<A> && !std::is_final_v<A> && !is_handler<A>>
+template <class ApplicationType, bool may_be = std::is_class_v<ApplicationType> && !std::is_final_v<ApplicationType> &&
+                                               !is_handler<ApplicationType>>
 inline constexpr bool is_application = false;
-template <class A>
-inline constexpr bool is_application<A, true> =
-    declares_any<A, function::Write, function::Written, function::Read, function::Start, function::Every,
+template <class ApplicationType>
+inline constexpr bool is_application<ApplicationType, true> =
+    declares_any<ApplicationType, function::Write, function::Written, function::Read, function::Start, function::Every,
                  function::OnState, function::OnSync, function::OnTimeOfDay, function::OnHeartbeat,
                  function::OnLifeGuarding, function::OnEmergency, function::OnError, function::OnRpdo,
                  function::OnStoredValue>;
 
 /// The periods of a handler.
-template <class H>
+template <class Handler>
 struct PeriodsOf {
   using type = PeriodList<>;
 };
-template <class P, class F>
-struct PeriodsOf<PeriodicHandler<P, F>> {
-  using type = PeriodList<P>;
+template <class PeriodType, class Callable>
+struct PeriodsOf<PeriodicHandler<PeriodType, Callable>> {
+  using type = PeriodList<PeriodType>;
 };
-template <class H>
-requires is_application<typename ApplicationOf<H>::type>
-struct PeriodsOf<H> {
-  using type = decltype(periods_of_application<typename ApplicationOf<H>::type>());
+template <class Handler>
+requires is_application<typename ApplicationOf<Handler>::type>
+struct PeriodsOf<Handler> {
+  using type = decltype(periods_of_application<typename ApplicationOf<Handler>::type>());
 };
 
 /// Whether a handler is called for an event: an application that has its function, or a callable.
-template <class Event, class H>
+template <class Event, class Handler>
 inline constexpr bool has_event_function = false;
-template <class Event, class F>
-inline constexpr bool has_event_function<Event, EventHandler<Event, F>> = true;
-template <class Event, class H>
-requires is_application<typename ApplicationOf<H>::type>
-inline constexpr bool has_event_function<Event, H> = Event::template is_declared<typename ApplicationOf<H>::type>;
+template <class Event, class Callable>
+inline constexpr bool has_event_function<Event, EventHandler<Event, Callable>> = true;
+template <class Event, class Handler>
+requires is_application<typename ApplicationOf<Handler>::type>
+inline constexpr bool has_event_function<Event, Handler> =
+    Event::template is_declared<typename ApplicationOf<Handler>::type>;
 
 /// Whether an application has a function for these arguments, with or without the node after them.
-template <class Function, class A, class Node, class... Values>
-inline constexpr bool has_function = requires(A& application, Node& node, Values... values) {
+template <class Function, class ApplicationType, class Node, class... Values>
+inline constexpr bool has_function = requires(ApplicationType& application, Node& node, Values... values) {
   Function::call(application, values...);
 }
-|| requires(A& application, Node& node, Values... values) { Function::call(application, values..., node); };
+|| requires(ApplicationType& application, Node& node, Values... values) {
+  Function::call(application, values..., node);
+};
 
 /// Calls it.
-template <class Function, class A, class Node, class... Values>
-constexpr decltype(auto) call_function(A& application, [[maybe_unused]] Node& node, const Values&... values) {
+template <class Function, class ApplicationType, class Node, class... Values>
+constexpr decltype(auto) call_function(ApplicationType& application, [[maybe_unused]] Node& node,
+                                       const Values&... values) {
   if constexpr (requires { Function::call(application, values...); }) {
     return Function::call(application, values...);
   } else {
@@ -142,87 +147,90 @@ constexpr decltype(auto) call_function(A& application, [[maybe_unused]] Node& no
   }
 }
 
-/// Converts to `T` alone: a parameter of another type, to which `T` would be converted, does not accept it.
-template <class T>
+/// Converts to `Type` alone: a parameter of another type, to which `Type` would be converted, does not accept it.
+template <class Type>
 struct Exactly {
-  template <std::same_as<T> U>
-  operator U() const;  // NOLINT(google-explicit-constructor): stands for a value
+  template <std::same_as<Type> OtherType>
+  operator OtherType() const;  // NOLINT(google-explicit-constructor): stands for a value
 };
 
 /// Selects the objects with a function of the application.
-template <class Function, class A, class Node>
+template <class Function, class ApplicationType, class Node>
 struct WithFunction {
-  template <class O>
-  static constexpr bool selects = has_function<Function, A, Node, O, Exactly<typename O::type>>;
+  template <class Object>
+  static constexpr bool selects = has_function<Function, ApplicationType, Node, Object, Exactly<typename Object::type>>;
 };
 /// Whether `read` returns a value of an object, nothing or an abort code. A template of an array's elements also fits
 /// sub-index 0, which has another type.
-template <class A, class Node, class O, bool exists = has_function<function::Read, A, Node, O>>
+template <class ApplicationType, class Node, class Object,
+          bool exists = has_function<function::Read, ApplicationType, Node, Object>>
 inline constexpr bool supplies = false;
-template <class A, class Node, class O>
-inline constexpr bool supplies<A, Node, O, true> = [] {
-  using Answer = decltype(call_function<function::Read>(std::declval<A&>(), std::declval<Node&>(), std::declval<O>()));
-  return std::is_void_v<Answer> || std::is_same_v<Answer, AbortCode> || std::is_same_v<Answer, typename O::type> ||
-         std::is_same_v<Answer, Result<typename O::type>>;
+template <class ApplicationType, class Node, class Object>
+inline constexpr bool supplies<ApplicationType, Node, Object, true> = [] {
+  using Answer = decltype(call_function<function::Read>(std::declval<ApplicationType&>(), std::declval<Node&>(),
+                                                        std::declval<Object>()));
+  return std::is_void_v<Answer> || std::is_same_v<Answer, AbortCode> || std::is_same_v<Answer, typename Object::type> ||
+         std::is_same_v<Answer, Result<typename Object::type>>;
 }();
 
-template <class A, class Node>
-struct WithFunction<function::Read, A, Node> {
-  template <class O>
-  static constexpr bool selects = supplies<A, Node, O>;
+template <class ApplicationType, class Node>
+struct WithFunction<function::Read, ApplicationType, Node> {
+  template <class Object>
+  static constexpr bool selects = supplies<ApplicationType, Node, Object>;
 };
 
 /// The objects of a device for which an application has a function.
-template <class Device, class Node, class A, class Function, bool declared = Function::template is_declared<A>>
+template <class Device, class Node, class ApplicationType, class Function,
+          bool declared = Function::template is_declared<ApplicationType>>
 struct ObjectsWith {
   using type = ObjectList<>;
 };
-template <class Device, class Node, class A, class Function>
-struct ObjectsWith<Device, Node, A, Function, true> {
-  using type = SelectObjects<WithFunction<Function, A, Node>, typename Device::Objects>;
+template <class Device, class Node, class ApplicationType, class Function>
+struct ObjectsWith<Device, Node, ApplicationType, Function, true> {
+  using type = SelectObjects<WithFunction<Function, ApplicationType, Node>, typename Device::Objects>;
 };
 
-template <class Event, class A, class Node, class Arguments = typename Event::Arguments>
+template <class Event, class ApplicationType, class Node, class Arguments = typename Event::Arguments>
 inline constexpr bool has_event = false;
-template <class Event, class A, class Node, class... Arguments>
-inline constexpr bool has_event<Event, A, Node, function::ArgumentList<Arguments...>> =
-    has_function<Event, A, Node, Exactly<Arguments>...>;
+template <class Event, class ApplicationType, class Node, class... Arguments>
+inline constexpr bool has_event<Event, ApplicationType, Node, function::ArgumentList<Arguments...>> =
+    has_function<Event, ApplicationType, Node, Exactly<Arguments>...>;
 
-template <class Device, class Node, class H>
-requires is_application<typename ApplicationOf<H>::type>
-struct Handled<Device, Node, H> {
-  using Application = typename ApplicationOf<H>::type;
+template <class Device, class Node, class Handler>
+requires is_application<typename ApplicationOf<Handler>::type>
+struct Handled<Device, Node, Handler> {
+  using Application = typename ApplicationOf<Handler>::type;
   using BeforeWrite = typename ObjectsWith<Device, Node, Application, function::Write>::type;
   using AfterWrite = typename ObjectsWith<Device, Node, Application, function::Written>::type;
   using Read = typename ObjectsWith<Device, Node, Application, function::Read>::type;
   template <class Event>
   static constexpr bool has_event_function = has_event<Event, Application, Node>;
 
-  template <DictionaryObject O>
-  static constexpr AbortCode before_write(H& handler, Node& node, const typename O::type& value) {
+  template <DictionaryObject Object>
+  static constexpr AbortCode before_write(Handler& handler, Node& node, const typename Object::type& value) {
     return code_of([&]() -> decltype(auto) {
-      return call_function<function::Write>(ApplicationOf<H>::get(handler), node, O{}, value);
+      return call_function<function::Write>(ApplicationOf<Handler>::get(handler), node, Object{}, value);
     });
   }
-  template <DictionaryObject O>
-  static constexpr void after_write(H& handler, Node& node, const typename O::type& value) {
-    call_function<function::Written>(ApplicationOf<H>::get(handler), node, O{}, value);
+  template <DictionaryObject Object>
+  static constexpr void after_write(Handler& handler, Node& node, const typename Object::type& value) {
+    call_function<function::Written>(ApplicationOf<Handler>::get(handler), node, Object{}, value);
   }
-  template <DictionaryObject O>
-  static constexpr AbortCode read(H& handler, Node& node) {
-    return supply<O>(node, [&]() -> decltype(auto) {
-      return call_function<function::Read>(ApplicationOf<H>::get(handler), node, O{});
+  template <DictionaryObject Object>
+  static constexpr AbortCode read(Handler& handler, Node& node) {
+    return supply<Object>(node, [&]() -> decltype(auto) {
+      return call_function<function::Read>(ApplicationOf<Handler>::get(handler), node, Object{});
     });
   }
   template <class Event, class... Arguments>
-  static constexpr void notify([[maybe_unused]] H& handler, [[maybe_unused]] Node& node,
+  static constexpr void notify([[maybe_unused]] Handler& handler, [[maybe_unused]] Node& node,
                                [[maybe_unused]] const Arguments&... arguments) {
     if constexpr (has_function<Event, Application, Node, Exactly<Arguments>...>)
-      call_function<Event>(ApplicationOf<H>::get(handler), node, arguments...);
+      call_function<Event>(ApplicationOf<Handler>::get(handler), node, arguments...);
   }
-  template <class P>
-  static constexpr void every(H& handler, Node& node) {
-    call_function<function::Every>(ApplicationOf<H>::get(handler), node, P{});
+  template <class PeriodType>
+  static constexpr void every(Handler& handler, Node& node) {
+    call_function<function::Every>(ApplicationOf<Handler>::get(handler), node, PeriodType{});
   }
 };
 

@@ -25,33 +25,33 @@ namespace canopen::handler_detail {
 
 /// Converts to each type: fits each parameter.
 struct AnyValue {
-  template <class T>
-  operator T() const;  // NOLINT(google-explicit-constructor): stands for a value
+  template <class Type>
+  operator Type() const;  // NOLINT(google-explicit-constructor): stands for a value
 };
 
 /// An object that no dictionary has: only a function for all objects accepts it.
 struct NoObject {};
 
-template <class T, class Objects>
+template <class Type, class Objects>
 inline constexpr bool is_in = false;
-template <class T, class... Rows>
-inline constexpr bool is_in<T, ObjectRows<Rows...>> = std::disjunction_v<std::is_same<T, Rows>...>;
+template <class Type, class... Rows>
+inline constexpr bool is_in<Type, ObjectRows<Rows...>> = std::disjunction_v<std::is_same<Type, Rows>...>;
 
-template <class T, class Row>
+template <class Type, class Row>
 inline constexpr bool is_element = false;
-template <template <std::uint8_t> class Array, std::uint8_t I, std::uint8_t Highest>
-inline constexpr bool is_element<Array<I>, ArrayObjects<Array, Highest>> = I <= Highest;
-template <class T, class Objects>
+template <template <std::uint8_t> class Array, std::uint8_t Position, std::uint8_t Highest>
+inline constexpr bool is_element<Array<Position>, ArrayObjects<Array, Highest>> = Position <= Highest;
+template <class Type, class Objects>
 inline constexpr bool is_element_in = false;
-template <class T, class... Rows>
-inline constexpr bool is_element_in<T, ObjectRows<Rows...>> =
-    std::disjunction_v<std::bool_constant<is_element<T, Rows>>...>;
+template <class Type, class... Rows>
+inline constexpr bool is_element_in<Type, ObjectRows<Rows...>> =
+    std::disjunction_v<std::bool_constant<is_element<Type, Rows>>...>;
 
 /// Converts to the generated type of each object that is not one of `Device`.
 template <class Device>
 struct ObjectOfAnother {
-  template <DictionaryObject T>
-  requires(!is_in<T, typename Device::Objects> && !is_element_in<T, typename Device::Objects>) operator T()
+  template <DictionaryObject Type>
+  requires(!is_in<Type, typename Device::Objects> && !is_element_in<Type, typename Device::Objects>) operator Type()
       const;  // NOLINT(google-explicit-constructor): stands for an object
 };
 
@@ -64,25 +64,25 @@ struct FunctionOfAnotherDevice {
 };
 
 /// The type of the first parameter of the function; void if it is overloaded or a template.
-template <class Function, class A>
+template <class Function, class ApplicationType>
 struct FirstParameter {
   using type = void;
 };
-template <class Function, class A>
-requires requires { Function::template address<A>; }
-struct FirstParameter<Function, A> {
+template <class Function, class ApplicationType>
+requires requires { Function::template address<ApplicationType>; }
+struct FirstParameter<Function, ApplicationType> {
   template <class Result, class First, class... Others>
-  static std::type_identity<std::remove_cvref_t<First>> first(Result (A::*)(First, Others...));
+  static std::type_identity<std::remove_cvref_t<First>> first(Result (ApplicationType::*)(First, Others...));
   template <class Result, class First, class... Others>
-  static std::type_identity<std::remove_cvref_t<First>> first(Result (A::*)(First, Others...) const);
+  static std::type_identity<std::remove_cvref_t<First>> first(Result (ApplicationType::*)(First, Others...) const);
   static std::type_identity<void> first(...);
-  using type = typename decltype(first(Function::template address<A>))::type;
+  using type = typename decltype(first(Function::template address<ApplicationType>))::type;
 };
 
-template <class T, class List>
+template <class Type, class List>
 inline constexpr bool is_listed = false;
-template <class T, class... Os>
-inline constexpr bool is_listed<T, ObjectList<Os...>> = (std::is_same_v<T, Os> || ...);
+template <class Type, class... Os>
+inline constexpr bool is_listed<Type, ObjectList<Os...>> = (std::is_same_v<Type, Os> || ...);
 
 /// A function with an object that the node does not call for it.
 template <class Application, class Function, class Object>
@@ -98,27 +98,29 @@ struct UncalledFunction {
 /// Converts to each object of `Device` that is not one of `Called`.
 template <class Device, class Called>
 struct UncalledObject {
-  template <DictionaryObject T>
-  requires((is_in<T, typename Device::Objects> || is_element_in<T, typename Device::Objects>)&&!is_listed<T, Called>)
-  operator T() const;  // NOLINT(google-explicit-constructor): stands for an object
+  template <DictionaryObject Type>
+  requires((is_in<Type, typename Device::Objects> ||
+            is_element_in<Type, typename Device::Objects>)&&!is_listed<Type, Called>)
+  operator Type() const;  // NOLINT(google-explicit-constructor): stands for an object
 };
 
 /// The same for up to three further arguments of any type.
-template <class Function, class A, class Object>
-inline constexpr bool none_fits_anything = none_fits<Function, A, Object>&&
-    none_fits<Function, A, Object, AnyReference>&& none_fits<Function, A, Object, AnyReference, AnyReference>&&
-        none_fits<Function, A, Object, AnyReference, AnyReference, AnyReference>;
+template <class Function, class ApplicationType, class Object>
+inline constexpr bool none_fits_anything =
+    none_fits<Function, ApplicationType, Object>&& none_fits<Function, ApplicationType, Object, AnyReference>&&
+        none_fits<Function, ApplicationType, Object, AnyReference, AnyReference>&&
+            none_fits<Function, ApplicationType, Object, AnyReference, AnyReference, AnyReference>;
 
 /// Selects the objects that a function accepts with a value of any type.
-template <class Function, class A, class Node>
+template <class Function, class ApplicationType, class Node>
 struct WithAnyFunction {
-  template <class O>
-  static constexpr bool selects = has_function<Function, A, Node, O, AnyValue>;
+  template <class ObjectType>
+  static constexpr bool selects = has_function<Function, ApplicationType, Node, ObjectType, AnyValue>;
 };
-template <class A, class Node>
-struct WithAnyFunction<function::Read, A, Node> {
-  template <class O>
-  static constexpr bool selects = has_function<function::Read, A, Node, O>;
+template <class ApplicationType, class Node>
+struct WithAnyFunction<function::Read, ApplicationType, Node> {
+  template <class ObjectType>
+  static constexpr bool selects = has_function<function::Read, ApplicationType, Node, ObjectType>;
 };
 
 /// Whether a list has an object with this index.
@@ -159,11 +161,13 @@ struct ApplicationFunctions {
 };
 
 /// Whether the result of `write` or `written` is one that the node can use.
-template <class Function, class A, class Node, class O>
+template <class Function, class ApplicationType, class Node, class ObjectType>
 [[nodiscard]] constexpr bool check_answer() {
-  if constexpr (!std::is_same_v<Function, function::Read> && has_function<Function, A, Node, O, typename O::type>) {
-    using Answer = decltype(call_function<Function>(std::declval<A&>(), std::declval<Node&>(), std::declval<O>(),
-                                                    std::declval<typename O::type>()));
+  if constexpr (!std::is_same_v<Function, function::Read> &&
+                has_function<Function, ApplicationType, Node, ObjectType, typename ObjectType::type>) {
+    using Answer =
+        decltype(call_function<Function>(std::declval<ApplicationType&>(), std::declval<Node&>(),
+                                         std::declval<ObjectType>(), std::declval<typename ObjectType::type>()));
     return std::is_void_v<Answer> || (std::is_same_v<Function, function::Write> &&
                                       (std::is_same_v<Answer, AbortCode> || std::is_same_v<Answer, Result<void>>));
   } else {
@@ -172,57 +176,62 @@ template <class Function, class A, class Node, class O>
 }
 
 /// Selects the objects that a function accepts with other arguments than those of the node.
-template <class Function, class A, class Called>
+template <class Function, class ApplicationType, class Called>
 struct WithOtherArguments {
-  template <class O>
-  static constexpr bool selects = !is_listed<O, Called> && !none_fits_anything<Function, A, O>;
+  template <class ObjectType>
+  static constexpr bool selects =
+      !is_listed<ObjectType, Called> && !none_fits_anything<Function, ApplicationType, ObjectType>;
 };
 
 template <class Application, class Function>
 [[nodiscard]] constexpr Verdict<Passed> check_uncalled(ObjectList<> /*none*/) {
   return {};
 }
-template <class Application, class Function, class O, class... Os>
-[[nodiscard]] constexpr Verdict<UncalledFunction<Application, Function, O>> check_uncalled(ObjectList<O, Os...>) {
+template <class Application, class Function, class ObjectType, class... Os>
+[[nodiscard]] constexpr Verdict<UncalledFunction<Application, Function, ObjectType>> check_uncalled(
+    ObjectList<ObjectType, Os...>) {
   return {};
 }
 
 /// A function for an object that can be called with any value.
-template <class Function, class A, class Node, class Exact, class O>
+template <class Function, class ApplicationType, class Node, class Exact, class ObjectType>
 [[nodiscard]] constexpr auto check_object() {
-  constexpr bool fits = has_index<O::index, Exact>;
+  constexpr bool fits = has_index<ObjectType::index, Exact>;
   constexpr bool reads = std::is_same_v<Function, function::Read>;
-  constexpr bool reachable = !fits || is_reachable<Function, O::index, Exact>;
-  constexpr bool answer_fits = reads ? fits : !fits || check_answer<Function, A, Node, O>();
+  constexpr bool reachable = !fits || is_reachable<Function, ObjectType::index, Exact>;
+  constexpr bool answer_fits = reads ? fits : !fits || check_answer<Function, ApplicationType, Node, ObjectType>();
   constexpr bool passes = (fits || reads) && reachable && answer_fits;
-  return VerdictOf<passes, ApplicationFunction<A, Function, O, fits || reads, reachable, answer_fits>>{};
+  return VerdictOf<passes,
+                   ApplicationFunction<ApplicationType, Function, ObjectType, fits || reads, reachable, answer_fits>>{};
 }
-template <class Function, class A, class Node, class Exact, class... Os>
+template <class Function, class ApplicationType, class Node, class Exact, class... Os>
 [[nodiscard]] constexpr auto check_each_object(ObjectList<Os...> /*objects*/) {
-  return canopen::first_failure(check_object<Function, A, Node, Exact, Os>()...);
+  return canopen::first_failure(check_object<Function, ApplicationType, Node, Exact, Os>()...);
 }
 
-template <class Device, class Node, class A, class Function>
+template <class Device, class Node, class ApplicationType, class Function>
 [[nodiscard]] constexpr auto check_objects() {
-  if constexpr (!Function::template is_declared<A>) {
+  if constexpr (!Function::template is_declared<ApplicationType>) {
     return Verdict<Passed>{};
   } else {
     using Objects = typename Device::Objects;
-    using Any = SelectObjects<WithAnyFunction<Function, A, Node>, Objects>;
-    using Exact = SelectObjects<WithFunction<Function, A, Node>, Objects>;
-    constexpr bool is_for_all =
-        has_function<Function, A, Node, NoObject, AnyValue> || has_function<Function, A, Node, NoObject>;
-    using None = VerdictOf<Any::size != 0, ApplicationFunctions<Device, A, Function, Any::size == 0>>;
+    using Any = SelectObjects<WithAnyFunction<Function, ApplicationType, Node>, Objects>;
+    using Exact = SelectObjects<WithFunction<Function, ApplicationType, Node>, Objects>;
+    constexpr bool is_for_all = has_function<Function, ApplicationType, Node, NoObject, AnyValue> ||
+                                has_function<Function, ApplicationType, Node, NoObject>;
+    using None = VerdictOf<Any::size != 0, ApplicationFunctions<Device, ApplicationType, Function, Any::size == 0>>;
     if constexpr (is_for_all) {
       return None{};
-    } else if constexpr (!none_fits<Function, A, ObjectOfAnother<Device>> ||
-                         !none_fits<Function, A, ObjectOfAnother<Device>, AnyValue> ||
-                         !none_fits<Function, A, ObjectOfAnother<Device>, AnyValue, AnyValue>) {
-      return Verdict<FunctionOfAnotherDevice<Device, A, Function, typename FirstParameter<Function, A>::type>>{};
-    } else if constexpr (!none_fits_anything<Function, A, UncalledObject<Device, Any>>) {
-      return check_uncalled<A, Function>(SelectObjects<WithOtherArguments<Function, A, Any>, Objects>{});
+    } else if constexpr (!none_fits<Function, ApplicationType, ObjectOfAnother<Device>> ||
+                         !none_fits<Function, ApplicationType, ObjectOfAnother<Device>, AnyValue> ||
+                         !none_fits<Function, ApplicationType, ObjectOfAnother<Device>, AnyValue, AnyValue>) {
+      return Verdict<FunctionOfAnotherDevice<Device, ApplicationType, Function,
+                                             typename FirstParameter<Function, ApplicationType>::type>>{};
+    } else if constexpr (!none_fits_anything<Function, ApplicationType, UncalledObject<Device, Any>>) {
+      return check_uncalled<ApplicationType, Function>(
+          SelectObjects<WithOtherArguments<Function, ApplicationType, Any>, Objects>{});
     } else {
-      return canopen::first_failure(None{}, check_each_object<Function, A, Node, Exact>(Any{}));
+      return canopen::first_failure(None{}, check_each_object<Function, ApplicationType, Node, Exact>(Any{}));
     }
   }
 }
@@ -242,73 +251,78 @@ struct EventObject {
   static constexpr std::uint8_t sub_index = 0;
 };
 
-/// Converts to references to each type but `T`.
-template <class T>
+/// Converts to references to each type but `Type`.
+template <class Type>
 struct OtherThan {
-  template <class U>
-  requires(!std::same_as<std::remove_cv_t<U>, T>) operator U&() const;  // NOLINT(google-explicit-constructor): a value
+  template <class OtherType>
+  requires(!std::same_as<std::remove_cv_t<OtherType>, Type>) operator OtherType&()
+      const;  // NOLINT(google-explicit-constructor): a value
 };
 
-/// `T` once for each element of a pack of numbers or types.
-template <class T, std::size_t>
-using Repeated = T;
+/// `Type` once for each element of a pack of numbers or types.
+template <class Type, std::size_t>
+using Repeated = Type;
 
 /// Whether no function of an event accepts this number of arguments of any type.
-template <class Event, class A, std::size_t... I>
-[[nodiscard]] constexpr bool none_with(std::index_sequence<I...>) {
-  return none_fits<Event, A, Repeated<AnyReference, I>...>;
+template <class Event, class ApplicationType, std::size_t... Position>
+[[nodiscard]] constexpr bool none_with(std::index_sequence<Position...>) {
+  return none_fits<Event, ApplicationType, Repeated<AnyReference, Position>...>;
 }
 
 /// Whether no function of an event accepts another type than that of the argument `At`.
-template <class Event, class A, class... Arguments, std::size_t At, std::size_t... I>
+template <class Event, class ApplicationType, class... Arguments, std::size_t At, std::size_t... Position>
 [[nodiscard]] constexpr bool none_with_another(function::ArgumentList<Arguments...>,
-                                               std::integral_constant<std::size_t, At>, std::index_sequence<I...>) {
-  return none_fits<Event, A, std::conditional_t<I == At, OtherThan<Arguments>, AnyReference>...> &&
-         none_fits<Event, A, std::conditional_t<I == At, OtherThan<Arguments>, AnyReference>..., AnyReference>;
+                                               std::integral_constant<std::size_t, At>,
+                                               std::index_sequence<Position...>) {
+  return none_fits<Event, ApplicationType, std::conditional_t<Position == At, OtherThan<Arguments>, AnyReference>...> &&
+         none_fits<Event, ApplicationType, std::conditional_t<Position == At, OtherThan<Arguments>, AnyReference>...,
+                   AnyReference>;
 }
 
 /// Whether an application has no overload of the function of an event that is never called: with other parameters, or
 /// both with the node and without it. A template that accepts every type is the only function.
-template <class Event, class A, class Node, class... Arguments>
+template <class Event, class ApplicationType, class Node, class... Arguments>
 [[nodiscard]] constexpr bool is_only(function::ArgumentList<Arguments...> arguments) {
   using Order = std::index_sequence_for<Arguments...>;
   constexpr std::size_t count = sizeof...(Arguments);
   if constexpr (count == 0) {
-    constexpr bool without_node = requires(A & application) { Event::call(application); };
-    constexpr bool with_any = !none_fits<Event, A, AnyReference>;
-    return !(with_any && without_node) && none_with<Event, A>(std::make_index_sequence<2>{});
-  } else if constexpr (!none_fits<Event, A, Repeated<NoObject, sizeof(Arguments)>...> ||
-                       !none_fits<Event, A, Repeated<NoObject, sizeof(Arguments)>..., NoObject>) {
+    constexpr bool without_node = requires(ApplicationType & application) { Event::call(application); };
+    constexpr bool with_any = !none_fits<Event, ApplicationType, AnyReference>;
+    return !(with_any && without_node) && none_with<Event, ApplicationType>(std::make_index_sequence<2>{});
+  } else if constexpr (!none_fits<Event, ApplicationType, Repeated<NoObject, sizeof(Arguments)>...> ||
+                       !none_fits<Event, ApplicationType, Repeated<NoObject, sizeof(Arguments)>..., NoObject>) {
     return true;
   } else {
-    constexpr bool with_node = requires(A & application, Node & node) {
+    constexpr bool with_node = requires(ApplicationType & application, Node & node) {
       Event::call(application, std::declval<Exactly<Arguments>&>()..., node);
     };
-    constexpr bool without_node = requires(A & application) {
+    constexpr bool without_node = requires(ApplicationType & application) {
       Event::call(application, std::declval<Exactly<Arguments>&>()...);
     };
-    return !(with_node && without_node) && none_with<Event, A>(std::make_index_sequence<count - 1>{}) &&
-           none_with<Event, A>(std::make_index_sequence<count + 2>{})&& [&]<std::size_t... At>(
+    return !(with_node && without_node) && none_with<Event, ApplicationType>(std::make_index_sequence<count - 1>{}) &&
+           none_with<Event, ApplicationType>(std::make_index_sequence<count + 2>{})&& [&]<std::size_t... At>(
                std::index_sequence<At...>) {
-      return (none_with_another<Event, A>(arguments, std::integral_constant<std::size_t, At>{}, Order{}) && ...);
+      return (
+          none_with_another<Event, ApplicationType>(arguments, std::integral_constant<std::size_t, At>{}, Order{}) &&
+          ...);
     }
     (Order{});
   }
 }
-template <class Event, class A, class Node>
-inline constexpr bool is_only_function = is_only<Event, A, Node>(typename Event::Arguments{});
+template <class Event, class ApplicationType, class Node>
+inline constexpr bool is_only_function = is_only<Event, ApplicationType, Node>(typename Event::Arguments{});
 
-template <class Device, class Node, class A, class Event>
+template <class Device, class Node, class ApplicationType, class Event>
 [[nodiscard]] constexpr auto check_event() {
-  if constexpr (!Event::template is_declared<A>) {
+  if constexpr (!Event::template is_declared<ApplicationType>) {
     return Verdict<Passed>{};
   } else {
-    constexpr bool fits = has_event<Event, A, Node>;
-    constexpr bool single = is_only_function<Event, A, Node>;
+    constexpr bool fits = has_event<Event, ApplicationType, Node>;
+    constexpr bool single = is_only_function<Event, ApplicationType, Node>;
     constexpr bool exists = Event::object == 0 || Device::dictionary.has(Event::object, 0);
     constexpr bool passes = fits && single && exists;
     using Label = pdo_detail::LabelOf<EventObject<Event::object>>;
-    return VerdictOf<passes, ApplicationEvent<A, Event, Label, fits, single, exists>>{};
+    return VerdictOf<passes, ApplicationEvent<ApplicationType, Event, Label, fits, single, exists>>{};
   }
 }
 
@@ -330,43 +344,43 @@ struct PeriodicFunction {
   static_assert(!Fits || !Single || ReturnsNothing, "application: every returns nothing");
 };
 
-template <class A, class Node, class P>
+template <class ApplicationType, class Node, class PeriodType>
 [[nodiscard]] constexpr auto check_period() {
-  constexpr bool without_node = !none_fits<function::Every, A, P>;
-  constexpr bool with_any = !none_fits<function::Every, A, P, AnyReference>;
-  constexpr bool fits = has_function<function::Every, A, Node, P>;
+  constexpr bool without_node = !none_fits<function::Every, ApplicationType, PeriodType>;
+  constexpr bool with_any = !none_fits<function::Every, ApplicationType, PeriodType, AnyReference>;
+  constexpr bool fits = has_function<function::Every, ApplicationType, Node, PeriodType>;
   constexpr bool returns_nothing = [] {
     if constexpr (fits) {
-      return std::is_void_v<decltype(call_function<function::Every>(std::declval<A&>(), std::declval<Node&>(),
-                                                                    std::declval<P>()))>;
+      return std::is_void_v<decltype(call_function<function::Every>(
+          std::declval<ApplicationType&>(), std::declval<Node&>(), std::declval<PeriodType>()))>;
     } else {
       return false;
     }
   }();
   constexpr bool single = !(with_any && without_node);
   constexpr bool passes = fits && single && returns_nothing;
-  return VerdictOf<passes, PeriodicFunction<A, P, fits, single, returns_nothing>>{};
+  return VerdictOf<passes, PeriodicFunction<ApplicationType, PeriodType, fits, single, returns_nothing>>{};
 }
 
-template <class A, class Node>
+template <class ApplicationType, class Node>
 [[nodiscard]] constexpr auto check_periods() {
   using function::Every;
-  if constexpr (!Every::template is_declared<A>) {
+  if constexpr (!Every::template is_declared<ApplicationType>) {
     return Verdict<Passed>{};
   } else {
-    constexpr bool without_period = requires(A & application) { Every::call(application); };
+    constexpr bool without_period = requires(ApplicationType & application) { Every::call(application); };
     // A template of periods, which the search does not find, accepts each period.
     using Unlikely = Microseconds<1'799'999'983>;
-    constexpr bool for_all =
-        takes_first<Every, A, Unlikely> && !takes_first<Every, A, PeriodIn<1'799'999'983, 1'799'999'983>>;
-    constexpr bool others = without_period || for_all || takes_first<Every, A, NoPeriod> ||
-                            !none_fits<Every, A, AnyReference, AnyReference, AnyReference>;
-    constexpr bool have_periods = takes_first<Every, A, AnyPeriod> && !others;
-    constexpr auto check_each = []<class... P>(PeriodList<P...>) {
-      return canopen::first_failure(check_period<A, Node, P>()...);
+    constexpr bool for_all = takes_first<Every, ApplicationType, Unlikely> &&
+                             !takes_first<Every, ApplicationType, PeriodIn<1'799'999'983, 1'799'999'983>>;
+    constexpr bool others = without_period || for_all || takes_first<Every, ApplicationType, NoPeriod> ||
+                            !none_fits<Every, ApplicationType, AnyReference, AnyReference, AnyReference>;
+    constexpr bool have_periods = takes_first<Every, ApplicationType, AnyPeriod> && !others;
+    constexpr auto check_each = []<class... PeriodType>(PeriodList<PeriodType...>) {
+      return canopen::first_failure(check_period<ApplicationType, Node, PeriodType>()...);
     };
-    return canopen::first_failure(VerdictOf<have_periods, PeriodicFunctions<A, have_periods>>{},
-                                  check_each(periods_of_application<A>()));
+    return canopen::first_failure(VerdictOf<have_periods, PeriodicFunctions<ApplicationType, have_periods>>{},
+                                  check_each(periods_of_application<ApplicationType>()));
   }
 }
 
@@ -390,54 +404,60 @@ struct MisspeltPeriodicFunction {
       "auto& node), with its period");
 };
 
-template <class Function, class A, class... Values>
-inline constexpr bool is_callable_with = requires(A& application, Values... values) {
+template <class Function, class ApplicationType, class... Values>
+inline constexpr bool is_callable_with = requires(ApplicationType& application, Values... values) {
   Function::call(application, values...);
 };
 
-template <class A, class Name>
+template <class ApplicationType, class Name>
 [[nodiscard]] constexpr bool is_periodic() {
   constexpr bool has_period =
-      (is_callable_with<Name, A, AnyPeriod> && !is_callable_with<Name, A, NoPeriod>) ||
-      (is_callable_with<Name, A, AnyPeriod, AnyReference> && !is_callable_with<Name, A, NoPeriod, AnyReference>);
-  return has_period || (std::is_same_v<Name, function::Tick> && is_callable_with<Name, A, AnyReference, TimePoint>);
+      (is_callable_with<Name, ApplicationType, AnyPeriod> && !is_callable_with<Name, ApplicationType, NoPeriod>) ||
+      (is_callable_with<Name, ApplicationType, AnyPeriod, AnyReference> &&
+       !is_callable_with<Name, ApplicationType, NoPeriod, AnyReference>);
+  return has_period ||
+         (std::is_same_v<Name, function::Tick> && is_callable_with<Name, ApplicationType, AnyReference, TimePoint>);
 }
 
-template <class A, class... Names>
+template <class ApplicationType, class... Names>
 [[nodiscard]] constexpr auto check_periodic_names() {
-  return canopen::first_failure(VerdictOf<!is_periodic<A, Names>(), MisspeltPeriodicFunction<A, Names, true>>{}...);
+  return canopen::first_failure(
+      VerdictOf<!is_periodic<ApplicationType, Names>(), MisspeltPeriodicFunction<ApplicationType, Names, true>>{}...);
 }
 
 /// Checks that a class does not have the function `tick(node, TimePoint)`, which no node calls.
-template <class A>
+template <class ApplicationType>
 [[nodiscard]] constexpr auto check_tick() {
-  if constexpr (std::is_class_v<A> && !std::is_final_v<A>) {
-    return check_periodic_names<A, function::Tick>();
+  if constexpr (std::is_class_v<ApplicationType> && !std::is_final_v<ApplicationType>) {
+    return check_periodic_names<ApplicationType, function::Tick>();
   } else {
     return Verdict<Passed>{};
   }
 }
 
-template <class A, class... Names>
+template <class ApplicationType, class... Names>
 [[nodiscard]] constexpr auto check_names() {
-  return canopen::first_failure(VerdictOf<!Names::template is_declared<A>, MisspeltFunction<A, Names>>{}...);
+  return canopen::first_failure(
+      VerdictOf<!Names::template is_declared<ApplicationType>, MisspeltFunction<ApplicationType, Names>>{}...);
 }
 
-template <class Device, class Node, class A>
+template <class Device, class Node, class ApplicationType>
 [[nodiscard]] constexpr auto check_application() {
   using namespace function;
   return canopen::first_failure(
-      check_names<A, Writen, OnWrite, OnWritten, OnRead, OnNmtState, OnEmcy, OnPdo, OnChange, OnChanged, OnUpdate,
-                  OnReceive, OnReceived, OnStateChange, OnNmt, OnHeartBeat, OnNodeGuarding, OnErrors, Wrote, Wirte,
-                  OnStart, OnEvery, OnTick, OnTimer>(),
-      check_periodic_names<A, Tick, Evry, Each, Periodic, OnTime>(), check_periods<A, Node>(),
-      check_event<Device, Node, A, Start>(), check_objects<Device, Node, A, Write>(),
-      check_objects<Device, Node, A, Written>(), check_objects<Device, Node, A, Read>(),
-      check_event<Device, Node, A, OnState>(), check_event<Device, Node, A, OnSync>(),
-      check_event<Device, Node, A, OnTimeOfDay>(), check_event<Device, Node, A, OnHeartbeat>(),
-      check_event<Device, Node, A, OnLifeGuarding>(), check_event<Device, Node, A, OnEmergency>(),
-      check_event<Device, Node, A, OnError>(), check_event<Device, Node, A, OnRpdo>(),
-      check_event<Device, Node, A, OnStoredValue>());
+      check_names<ApplicationType, Writen, OnWrite, OnWritten, OnRead, OnNmtState, OnEmcy, OnPdo, OnChange, OnChanged,
+                  OnUpdate, OnReceive, OnReceived, OnStateChange, OnNmt, OnHeartBeat, OnNodeGuarding, OnErrors, Wrote,
+                  Wirte, OnStart, OnEvery, OnTick, OnTimer>(),
+      check_periodic_names<ApplicationType, Tick, Evry, Each, Periodic, OnTime>(),
+      check_periods<ApplicationType, Node>(), check_event<Device, Node, ApplicationType, Start>(),
+      check_objects<Device, Node, ApplicationType, Write>(), check_objects<Device, Node, ApplicationType, Written>(),
+      check_objects<Device, Node, ApplicationType, Read>(), check_event<Device, Node, ApplicationType, OnState>(),
+      check_event<Device, Node, ApplicationType, OnSync>(), check_event<Device, Node, ApplicationType, OnTimeOfDay>(),
+      check_event<Device, Node, ApplicationType, OnHeartbeat>(),
+      check_event<Device, Node, ApplicationType, OnLifeGuarding>(),
+      check_event<Device, Node, ApplicationType, OnEmergency>(), check_event<Device, Node, ApplicationType, OnError>(),
+      check_event<Device, Node, ApplicationType, OnRpdo>(),
+      check_event<Device, Node, ApplicationType, OnStoredValue>());
 }
 
 }  // namespace canopen::handler_detail

@@ -35,7 +35,7 @@
 
 namespace canopen {
 
-template <class Device, class B, class... Parts>
+template <class Device, class BusType, class... Parts>
 class Node;
 
 /// A device, its application classes and handlers, and `without<...>`. The parts are default-constructible, or their
@@ -101,8 +101,8 @@ template <class Part, class... Parts>
 inline constexpr bool is_omitted_by<Part, Omits<Parts...>> = is_among<Part, Parts...>;
 
 struct IsDomain {
-  template <class O>
-  static constexpr bool selects = std::is_same_v<typename O::type, Domain>;
+  template <class Object>
+  static constexpr bool selects = std::is_same_v<typename Object::type, Domain>;
 };
 
 /// Whether a dictionary has a DOMAIN: most do not, and its objects need not be searched.
@@ -119,27 +119,27 @@ inline constexpr bool has_domain = [] {
 }();
 
 /// Whether a DOMAIN has its bytes from the generated device.
-template <class Device, class O>
-inline constexpr bool is_generated = O::index == 0x1021 && requires {
+template <class Device, class Object>
+inline constexpr bool is_generated = Object::index == 0x1021 && requires {
   Device::stored_eds;
 };
 
-template <class O, class Handler>
+template <class Object, class Handler>
 inline constexpr bool is_of_object = false;
-template <class O, class Handler>
+template <class Object, class Handler>
 requires requires { typename Handler::object; }
-inline constexpr bool is_of_object<O, Handler> =
-    O::index == Handler::object::index && O::sub_index == Handler::object::sub_index;
+inline constexpr bool is_of_object<Object, Handler> =
+    Object::index == Handler::object::index && Object::sub_index == Handler::object::sub_index;
 
 /// Whether handlers provide the bytes of a DOMAIN that is read, and take those of one that is written.
-template <class O, class... Handlers>
+template <class Object, class... Handlers>
 inline constexpr bool is_domain_kept =
-    (!readable(O::access) ||
-     ((is_of_object<O, Handlers> && (domain_detail::is_bound_to<Handlers> || domain_detail::is_reader<Handlers>)) ||
-      ...)) &&
-    (!writable(O::access) ||
-     ((is_of_object<O, Handlers> && (domain_detail::is_bound_to<Handlers> || domain_detail::is_writer<Handlers>)) ||
-      ...));
+    (!readable(Object::access) || ((is_of_object<Object, Handlers> &&
+                                    (domain_detail::is_bound_to<Handlers> || domain_detail::is_reader<Handlers>)) ||
+                                   ...)) &&
+    (!writable(Object::access) || ((is_of_object<Object, Handlers> &&
+                                    (domain_detail::is_bound_to<Handlers> || domain_detail::is_writer<Handlers>)) ||
+                                   ...));
 
 template <class Device, class Part>
 [[nodiscard]] constexpr bool is_promised() {
@@ -173,8 +173,8 @@ inline constexpr bool is_missing = is_promised<Device, Part>() && !is_kept<Part,
 /// The DOMAINs among these parts.
 template <class Device, class... Handlers>
 struct IsMissingDomain {
-  template <class O>
-  static constexpr bool selects = IsDomain::selects<O>&& is_missing<Device, O, Handlers...>;
+  template <class Object>
+  static constexpr bool selects = IsDomain::selects<Object>&& is_missing<Device, Object, Handlers...>;
 };
 template <bool HasAny, class Device, class... Handlers>
 struct FindMissingDomains {
@@ -252,38 +252,38 @@ using OmitsMissing = decltype(omits(If<is_missing<Device, part::lss, Handlers...
 template <class Device>
 struct Extended {
   using DeviceType = Device;
-  template <class B, class Added, class... Parts>
+  template <class BusType, class Added, class... Parts>
   struct NodeWith;
-  template <class B, class... Added, class... Parts>
-  struct NodeWith<B, Types<Added...>, Parts...> {
-    using type = Node<Device, B, Added..., Parts...>;
+  template <class BusType, class... Added, class... Parts>
+  struct NodeWith<BusType, Types<Added...>, Parts...> {
+    using type = Node<Device, BusType, Added..., Parts...>;
   };
 };
 template <class Device, class... Composed>
 struct Extended<Composition<Device, Composed...>> {
   using DeviceType = Device;
-  template <class B, class Added, class... Ports>
+  template <class BusType, class Added, class... Ports>
   struct NodeWith;
-  template <class B, class... Added, class... Ports>
-  struct NodeWith<B, Types<Added...>, Ports...> {
-    using type = Node<Composition<Device, Composed..., Added...>, B, Ports...>;
+  template <class BusType, class... Added, class... Ports>
+  struct NodeWith<BusType, Types<Added...>, Ports...> {
+    using type = Node<Composition<Device, Composed..., Added...>, BusType, Ports...>;
   };
 };
 template <class Device>
 using DeviceOf = typename Extended<Device>::DeviceType;
-template <class Device, class B, class Added, class... Parts>
-using NodeWith = typename Extended<Device>::template NodeWith<B, Added, Parts...>::type;
+template <class Device, class BusType, class Added, class... Parts>
+using NodeWith = typename Extended<Device>::template NodeWith<BusType, Added, Parts...>::type;
 
 /// The node of a device with these parts; of a composition, those that it lists are not added to it.
-template <class Device, class B, class... Given>
+template <class Device, class BusType, class... Given>
 struct NodeFor {
-  using type = Node<Device, B, Given...>;
+  using type = Node<Device, BusType, Given...>;
 };
-template <class Device, class B, class... Ports>
-Node<Device, B, Ports...>* node_with(Types<Ports...>);
-template <class Device, class... Composed, class B, class... Given>
-struct NodeFor<Composition<Device, Composed...>, B, Given...> {
-  using type = std::remove_pointer_t<decltype(node_with<Composition<Device, Composed...>, B>(
+template <class Device, class BusType, class... Ports>
+Node<Device, BusType, Ports...>* node_with(Types<Ports...>);
+template <class Device, class... Composed, class BusType, class... Given>
+struct NodeFor<Composition<Device, Composed...>, BusType, Given...> {
+  using type = std::remove_pointer_t<decltype(node_with<Composition<Device, Composed...>, BusType>(
       (Types<>{} + ... + If<!is_among<Given, Composed...>, Given>{})))>;
 };
 

@@ -20,8 +20,8 @@ struct ArgumentList {};
 
 /// Converts to references to each type: stands for the node.
 struct AnyNode {
-  template <class T>
-  operator T&() const;  // NOLINT(google-explicit-constructor)
+  template <class Type>
+  operator Type&() const;  // NOLINT(google-explicit-constructor)
 };
 
 /// What a call returns if no function of the application fits.
@@ -41,20 +41,20 @@ struct NoneFits {};
     static constexpr std::uint16_t object = needed_object;                                          \
     using Arguments = ArgumentList<__VA_ARGS__>;                                                    \
     struct Name { void function_name(); };                                                          \
-    template <class A> struct Both : A, Name {};                                                    \
-    template <class A> static constexpr bool is_other =                                             \
-        requires { typename A::function_name; } ||                                                  \
-        requires { requires !std::is_function_v<std::remove_reference_t<decltype(A::function_name)>>; };\
-    template <class A> static constexpr bool is_declared =                                          \
-        !requires { &Both<A>::function_name; } && !is_other<A>;                                     \
-    template <class A> requires requires { &A::function_name; }                                     \
-    static constexpr auto address = &A::function_name;                                              \
-    template <class A> struct OrNone : A {                                                          \
-      using A::function_name;                                                                       \
+    template <class Application> struct Both : Application, Name {};                                                    \
+    template <class Application> static constexpr bool is_other =                                             \
+        requires { typename Application::function_name; } ||                                                  \
+        requires { requires !std::is_function_v<std::remove_reference_t<decltype(Application::function_name)>>; };\
+    template <class Application> static constexpr bool is_declared =                                          \
+        !requires { &Both<Application>::function_name; } && !is_other<Application>;                                     \
+    template <class Application> requires requires { &Application::function_name; }                                     \
+    static constexpr auto address = &Application::function_name;                                              \
+    template <class Application> struct OrNone : Application {                                                          \
+      using Application::function_name;                                                                       \
       static NoneFits function_name(...);                                                           \
     };                                                                                              \
-    template <class A, class... Values>                                                             \
-    static constexpr auto call(A& application, Values&&... values)                                  \
+    template <class Application, class... Values>                                                             \
+    static constexpr auto call(Application& application, Values&&... values)                                  \
         -> decltype(application.function_name(std::forward<Values>(values)...)) {                   \
       return application.function_name(std::forward<Values>(values)...);                            \
     }                                                                                               \
@@ -74,9 +74,9 @@ CANOPEN_FUNCTION(Read, read, 0, );
 CANOPEN_FUNCTION(StartOfAnyAccess, start, 0, );
 struct Start : StartOfAnyAccess {
   /// A private function of this common name is left alone.
-  template <class A> static constexpr bool is_declared = StartOfAnyAccess::is_declared<A> &&
-      (requires { &A::start; } || requires(A& application) { application.start(); } ||
-       requires(A& application, AnyNode node) { application.start(node); });
+  template <class Application> static constexpr bool is_declared = StartOfAnyAccess::is_declared<Application> &&
+      (requires { &Application::start; } || requires(Application& application) { application.start(); } ||
+       requires(Application& application, AnyNode node) { application.start(node); });
 };
 /// `every(Milliseconds<10>)`: a function with a period, in each NMT state. Returns nothing.
 CANOPEN_FUNCTION(Every, every, 0, );

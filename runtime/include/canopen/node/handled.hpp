@@ -13,10 +13,10 @@
 
 namespace canopen::handler_detail {
 
-template <class T>
+template <class Type>
 inline constexpr bool is_result = false;
-template <class T>
-inline constexpr bool is_result<Result<T>> = true;
+template <class Type>
+inline constexpr bool is_result<Result<Type>> = true;
 
 /// Calls a write handler and returns its answer as an abort code.
 template <class Ask>
@@ -34,7 +34,7 @@ template <class Ask>
 }
 
 /// Calls a read handler and sets the value that it returns.
-template <DictionaryObject O, class Node, class Ask>
+template <DictionaryObject Object, class Node, class Ask>
 [[nodiscard]] constexpr AbortCode supply(Node& node, Ask&& ask) {
   using Answer = decltype(ask());
   if constexpr (std::is_void_v<Answer>) {
@@ -44,9 +44,9 @@ template <DictionaryObject O, class Node, class Ask>
     return ask();
   } else if constexpr (is_result<Answer>) {
     const Answer answer = ask();
-    return answer ? node.template set<O>(*answer) : answer.abort_code();
+    return answer ? node.template set<Object>(*answer) : answer.abort_code();
   } else {
-    return node.template set<O>(ask());
+    return node.template set<Object>(ask());
   }
 }
 
@@ -59,69 +59,71 @@ struct HandlesNothing {
   template <class Event>
   static constexpr bool has_event_function = false;
 
-  template <DictionaryObject O, class H, class Node>
-  static constexpr AbortCode before_write(H&, Node&, const typename O::type&) {
+  template <DictionaryObject Object, class Handler, class Node>
+  static constexpr AbortCode before_write(Handler&, Node&, const typename Object::type&) {
     return ok;
   }
-  template <DictionaryObject O, class H, class Node>
-  static constexpr void after_write(H&, Node&, const typename O::type&) {}
-  template <DictionaryObject O, class H, class Node>
-  static constexpr AbortCode read(H&, Node&) {
+  template <DictionaryObject Object, class Handler, class Node>
+  static constexpr void after_write(Handler&, Node&, const typename Object::type&) {}
+  template <DictionaryObject Object, class Handler, class Node>
+  static constexpr AbortCode read(Handler&, Node&) {
     return ok;
   }
   /// Calls the function of an event, if the handler has it.
-  template <class Event, class H, class Node, class... Arguments>
-  static constexpr void notify(H&, Node&, const Arguments&...) {}
+  template <class Event, class Handler, class Node, class... Arguments>
+  static constexpr void notify(Handler&, Node&, const Arguments&...) {}
   /// Calls the function of one of its periods.
-  template <class P, class H, class Node>
-  static constexpr void every(H&, Node&) {}
+  template <class PeriodType, class Handler, class Node>
+  static constexpr void every(Handler&, Node&) {}
 };
 
 /// `Node` may be incomplete.
-template <class Device, class Node, class H>
+template <class Device, class Node, class Handler>
 struct Handled : HandlesNothing {};
 
-template <class Device, class Node, class O, class F>
-struct Handled<Device, Node, WriteHandler<O, F>> : HandlesNothing {
-  using BeforeWrite = ObjectList<O>;
+template <class Device, class Node, class Object, class Function>
+struct Handled<Device, Node, WriteHandler<Object, Function>> : HandlesNothing {
+  using BeforeWrite = ObjectList<Object>;
   template <DictionaryObject>
-  static constexpr AbortCode before_write(WriteHandler<O, F>& handler, Node& node, const typename O::type& value) {
+  static constexpr AbortCode before_write(WriteHandler<Object, Function>& handler, Node& node,
+                                          const typename Object::type& value) {
     return code_of([&]() -> decltype(auto) { return call(handler.call, node, value); });
   }
 };
 
-template <class Device, class Node, class O, class F>
-struct Handled<Device, Node, WrittenHandler<O, F>> : HandlesNothing {
-  using AfterWrite = ObjectList<O>;
+template <class Device, class Node, class Object, class Function>
+struct Handled<Device, Node, WrittenHandler<Object, Function>> : HandlesNothing {
+  using AfterWrite = ObjectList<Object>;
   template <DictionaryObject>
-  static constexpr void after_write(WrittenHandler<O, F>& handler, Node& node, const typename O::type& value) {
+  static constexpr void after_write(WrittenHandler<Object, Function>& handler, Node& node,
+                                    const typename Object::type& value) {
     call(handler.call, node, value);
   }
 };
 
-template <class Device, class Node, class O, class F>
-struct Handled<Device, Node, ReadHandler<O, F>> : HandlesNothing {
-  using Read = ObjectList<O>;
+template <class Device, class Node, class Object, class Function>
+struct Handled<Device, Node, ReadHandler<Object, Function>> : HandlesNothing {
+  using Read = ObjectList<Object>;
   template <DictionaryObject>
-  static constexpr AbortCode read(ReadHandler<O, F>& handler, Node& node) {
-    return supply<O>(node, [&]() -> decltype(auto) { return call(handler.call, node); });
+  static constexpr AbortCode read(ReadHandler<Object, Function>& handler, Node& node) {
+    return supply<Object>(node, [&]() -> decltype(auto) { return call(handler.call, node); });
   }
 };
 
-template <class Device, class Node, class Event, class F>
-struct Handled<Device, Node, EventHandler<Event, F>> : HandlesNothing {
+template <class Device, class Node, class Event, class Function>
+struct Handled<Device, Node, EventHandler<Event, Function>> : HandlesNothing {
   template <class Asked>
   static constexpr bool has_event_function = std::is_same_v<Asked, Event>;
   template <class Notified, class... Arguments>
-  static constexpr void notify(EventHandler<Event, F>& handler, Node& node, const Arguments&... arguments) {
+  static constexpr void notify(EventHandler<Event, Function>& handler, Node& node, const Arguments&... arguments) {
     if constexpr (std::is_same_v<Notified, Event>) call(handler.call, node, arguments...);
   }
 };
 
-template <class Device, class Node, class P, class F>
-struct Handled<Device, Node, PeriodicHandler<P, F>> : HandlesNothing {
+template <class Device, class Node, class PeriodType, class Function>
+struct Handled<Device, Node, PeriodicHandler<PeriodType, Function>> : HandlesNothing {
   template <class>
-  static constexpr void every(PeriodicHandler<P, F>& handler, Node& node) {
+  static constexpr void every(PeriodicHandler<PeriodType, Function>& handler, Node& node) {
     call(handler.call, node);
   }
 };

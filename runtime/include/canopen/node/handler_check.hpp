@@ -28,13 +28,13 @@ namespace canopen {
 
 namespace handler_detail {
 
-template <class H, bool IsFinal>
+template <class HandlerType, bool IsFinal>
 struct KnownHandler {
   static constexpr bool is_good = true;
-  static_assert(is_handler<H> || !IsFinal,
+  static_assert(is_handler<HandlerType> || !IsFinal,
                 "application: the class is final; without `final` it can be one: a derived class finds its functions");
   static_assert(
-      is_handler<H> || IsFinal,
+      is_handler<HandlerType> || IsFinal,
       "not a handler: pass on_write(object, ...), on_read(object, ...), on_state(...) or another on_...(), or "
       "an application, a class with functions of canopen/node/functions.hpp; a node-ID is NodeId{n}");
 };
@@ -42,24 +42,25 @@ struct KnownHandler {
 /// The event that a handler is called for.
 enum class Called : std::uint8_t { by_service, on_upload, on_download, after_download };
 
-template <class H>
+template <class HandlerType>
 inline constexpr Called called = Called::by_service;
-template <class O, class F>
-inline constexpr Called called<ReadHandler<O, F>> = Called::on_upload;
-template <class O, class F>
-inline constexpr Called called<DomainReadHandler<O, F>> = Called::on_upload;
-template <class O, class F>
-inline constexpr Called called<WriteHandler<O, F>> = Called::on_download;
-template <class O, class F>
-inline constexpr Called called<WrittenHandler<O, F>> = Called::after_download;
-template <class O, class F>
-inline constexpr Called called<DomainWriteHandler<O, F>> = Called::on_download;
+template <class ObjectType, class Function>
+inline constexpr Called called<ReadHandler<ObjectType, Function>> = Called::on_upload;
+template <class ObjectType, class Function>
+inline constexpr Called called<DomainReadHandler<ObjectType, Function>> = Called::on_upload;
+template <class ObjectType, class Function>
+inline constexpr Called called<WriteHandler<ObjectType, Function>> = Called::on_download;
+template <class ObjectType, class Function>
+inline constexpr Called called<WrittenHandler<ObjectType, Function>> = Called::after_download;
+template <class ObjectType, class Function>
+inline constexpr Called called<DomainWriteHandler<ObjectType, Function>> = Called::on_download;
 
 /// Whether two handlers are called for the same event of the same object.
-template <class H, class Other>
+template <class HandlerType, class Other>
 [[nodiscard]] constexpr bool is_same_call() {
-  if constexpr (called<H> == called<Other> && called<H> != Called::by_service) {
-    return H::object::index == Other::object::index && H::object::sub_index == Other::object::sub_index;
+  if constexpr (called<HandlerType> == called<Other> && called<HandlerType> != Called::by_service) {
+    return HandlerType::object::index == Other::object::index &&
+           HandlerType::object::sub_index == Other::object::sub_index;
   } else {
     return false;
   }
@@ -78,48 +79,49 @@ struct ObjectHandler {
   static_assert(Count == 1, "handler: the object has two of them; join them to one");
 };
 
-template <class Device, class H, class... Handlers>
+template <class Device, class HandlerType, class... Handlers>
 [[nodiscard]] constexpr auto check_object_handler() {
-  using Object = typename H::object;
+  using Object = typename HandlerType::object;
   constexpr entry::Word word = Device::dictionary.find(Object::index, Object::sub_index);
   constexpr bool exists = word > Dictionary::no_sub_index;
   constexpr bool is_foreign = exists && is_of_another_device<Object, Device>;
-  constexpr bool reachable = (word & (called<H> == Called::on_upload ? entry::readable : entry::writable)) != 0;
-  constexpr std::size_t count = (std::size_t{is_same_call<H, Handlers>()} + ...);
+  constexpr bool reachable =
+      (word & (called<HandlerType> == Called::on_upload ? entry::readable : entry::writable)) != 0;
+  constexpr std::size_t count = (std::size_t{is_same_call<HandlerType, Handlers>()} + ...);
   constexpr bool passes = exists && !is_foreign && reachable && count == 1;
-  return VerdictOf<
-      passes, ObjectHandler<Object, pdo_detail::LabelOf<Object>, called<H>, exists, is_foreign, reachable, count>>{};
+  return VerdictOf<passes, ObjectHandler<Object, pdo_detail::LabelOf<Object>, called<HandlerType>, exists, is_foreign,
+                                         reachable, count>>{};
 }
 
 /// The objects without which a service never calls its handler. Handlers of error control are accepted by each device:
 /// code that several devices share passes those of heartbeat and of guarding, of which a device may have one.
-template <class H, class Event>
+template <class HandlerType, class Event>
 inline constexpr bool is_of = false;
-template <class Event, class F>
-inline constexpr bool is_of<EventHandler<Event, F>, Event> = true;
+template <class Event, class Function>
+inline constexpr bool is_of<EventHandler<Event, Function>, Event> = true;
 
-template <class H, bool HasObject>
+template <class HandlerType, bool HasObject>
 struct ServiceHandler {
   static constexpr bool is_good = true;
-  static_assert(!is_of<H, function::OnSync> || HasObject,
+  static_assert(!is_of<HandlerType, function::OnSync> || HasObject,
                 "on_sync: this device does not have 1005h, so that the handler can never be called");
-  static_assert(!is_of<H, function::OnTimeOfDay> || HasObject,
+  static_assert(!is_of<HandlerType, function::OnTimeOfDay> || HasObject,
                 "on_time_of_day: this device does not have 1012h, so that the handler can never be called");
-  static_assert(!is_of<H, function::OnEmergency> || HasObject,
+  static_assert(!is_of<HandlerType, function::OnEmergency> || HasObject,
                 "on_emergency: this device does not have 1028h, so that the handler can never be called");
 };
 
-template <class Device, class H>
+template <class Device, class HandlerType>
 [[nodiscard]] constexpr auto check_service_handler() {
-  constexpr auto index = is_of<H, function::OnSync>        ? std::uint16_t{0x1005}
-                         : is_of<H, function::OnTimeOfDay> ? std::uint16_t{0x1012}
-                         : is_of<H, function::OnEmergency> ? std::uint16_t{0x1028}
-                                                           : std::uint16_t{0};
+  constexpr auto index = is_of<HandlerType, function::OnSync>        ? std::uint16_t{0x1005}
+                         : is_of<HandlerType, function::OnTimeOfDay> ? std::uint16_t{0x1012}
+                         : is_of<HandlerType, function::OnEmergency> ? std::uint16_t{0x1028}
+                                                                     : std::uint16_t{0};
   constexpr bool has_object = index == 0 || Device::dictionary.has(index, 0);
-  constexpr bool is_final = std::is_final_v<typename ApplicationOf<H>::type>;
-  return canopen::first_failure(check_tick<typename ApplicationOf<H>::type>(),
-                                VerdictOf<is_handler<H>, KnownHandler<H, is_final>>{},
-                                VerdictOf<has_object, ServiceHandler<H, has_object>>{});
+  constexpr bool is_final = std::is_final_v<typename ApplicationOf<HandlerType>::type>;
+  return canopen::first_failure(check_tick<typename ApplicationOf<HandlerType>::type>(),
+                                VerdictOf<is_handler<HandlerType>, KnownHandler<HandlerType, is_final>>{},
+                                VerdictOf<has_object, ServiceHandler<HandlerType, has_object>>{});
 }
 
 /// An object of a mailbox.
@@ -131,8 +133,8 @@ struct MailboxObject {
                 "values_from: the mailbox has an object of another device; this one has another at its index");
 };
 
-template <class Device, class H>
-[[nodiscard]] constexpr Verdict<Passed> check_mailbox(std::type_identity<H> /*handler*/) {
+template <class Device, class HandlerType>
+[[nodiscard]] constexpr Verdict<Passed> check_mailbox(std::type_identity<HandlerType> /*handler*/) {
   return {};
 }
 template <class Device, class Object>
@@ -147,18 +149,18 @@ template <class Device, class... Objects>
   return canopen::first_failure(check_mailbox_object<Device, Objects>()...);
 }
 
-template <class Device, class Node, class H, class... Handlers>
+template <class Device, class Node, class HandlerType, class... Handlers>
 [[nodiscard]] constexpr auto check_handler() {
-  using Application = typename ApplicationOf<H>::type;
-  if constexpr (composition_detail::is_omits<H> || composition_detail::is_without<H>) {
+  using Application = typename ApplicationOf<HandlerType>::type;
+  if constexpr (composition_detail::is_omits<HandlerType> || composition_detail::is_without<HandlerType>) {
     return Verdict<Passed>{};  // node/composition.hpp
   } else if constexpr (is_application<Application>) {
     return check_application<Device, Node, Application>();
-  } else if constexpr (called<H> != Called::by_service) {
-    return check_object_handler<Device, H, Handlers...>();
+  } else if constexpr (called<HandlerType> != Called::by_service) {
+    return check_object_handler<Device, HandlerType, Handlers...>();
   } else {
-    return canopen::first_failure(handler_detail::check_mailbox<Device>(std::type_identity<H>{}),
-                                  check_service_handler<Device, H>());
+    return canopen::first_failure(handler_detail::check_mailbox<Device>(std::type_identity<HandlerType>{}),
+                                  check_service_handler<Device, HandlerType>());
   }
 }
 
@@ -191,88 +193,92 @@ template <class Result, class Class, class... Parameters>
 LastOf<Parameters...> last_of(Result (Class::*)(Parameters...) const);
 template <class Result, class... Parameters>
 LastOf<Parameters...> last_of(Result (*)(Parameters...));
-template <class F>
+template <class Function>
 struct LastParameter {
   using type = void;
 };
-template <class F>
-requires requires { last_of(&F::operator()); }
-struct LastParameter<F> : decltype(last_of(&F::operator())) {};
-template <class F>
-requires requires(F function) { last_of(function); }
-struct LastParameter<F> : decltype(last_of(std::declval<F>())) {};
+template <class Function>
+requires requires { last_of(&Function::operator()); }
+struct LastParameter<Function> : decltype(last_of(&Function::operator())) {};
+template <class Function>
+requires requires(Function function) { last_of(function); }
+struct LastParameter<Function> : decltype(last_of(std::declval<Function>())) {};
 
 /// Whether a handler accepts all values of an object: a parameter of a narrower type does not.
-template <class O, class F>
+template <class ObjectType, class Function>
 [[nodiscard]] constexpr bool takes_all_values() {
-  using Parameter = std::remove_cvref_t<typename LastParameter<F>::type>;
-  if constexpr (std::is_arithmetic_v<Parameter> && std::is_arithmetic_v<typename O::type>) {
-    return FitsInto<typename O::type, Parameter>;
+  using Parameter = std::remove_cvref_t<typename LastParameter<Function>::type>;
+  if constexpr (std::is_arithmetic_v<Parameter> && std::is_arithmetic_v<typename ObjectType::type>) {
+    return FitsInto<typename ObjectType::type, Parameter>;
   } else {
     return true;
   }
 }
 
-template <class H>
+template <class HandlerType>
 inline constexpr bool takes_all_of = true;
-template <class O, class F>
-inline constexpr bool takes_all_of<WriteHandler<O, F>> = takes_all_values<O, F>();
-template <class O, class F>
-inline constexpr bool takes_all_of<WrittenHandler<O, F>> = takes_all_values<O, F>();
+template <class ObjectType, class Function>
+inline constexpr bool takes_all_of<WriteHandler<ObjectType, Function>> = takes_all_values<ObjectType, Function>();
+template <class ObjectType, class Function>
+inline constexpr bool takes_all_of<WrittenHandler<ObjectType, Function>> = takes_all_values<ObjectType, Function>();
 
-template <class T>
+template <class Type>
 struct ValueIn {
-  using type = T;
+  using type = Type;
 };
-template <class T>
-struct ValueIn<Result<T>> {
-  using type = T;
+template <class Type>
+struct ValueIn<Result<Type>> {
+  using type = Type;
 };
 
 /// Whether a read handler returns a value that fits into its object.
-template <class O, class Answer>
+template <class ObjectType, class Answer>
 [[nodiscard]] constexpr bool fits_into_object() {
   using Value = typename ValueIn<std::remove_cvref_t<Answer>>::type;
   if constexpr (std::is_void_v<Answer> || std::is_same_v<Value, AbortCode>) {
     return true;
-  } else if constexpr (std::is_arithmetic_v<typename O::type>) {
-    return FitsInto<Value, typename O::type>;
+  } else if constexpr (std::is_arithmetic_v<typename ObjectType::type>) {
+    return FitsInto<Value, typename ObjectType::type>;
   } else {
-    return std::is_convertible_v<Value, typename O::type> || TextFor<Value, O>;
+    return std::is_convertible_v<Value, typename ObjectType::type> || TextFor<Value, ObjectType>;
   }
 }
-template <class Node, class H>
+template <class Node, class HandlerType>
 inline constexpr bool supplies_value = true;
-template <class Node, class O, class F>
-inline constexpr bool supplies_value<Node, ReadHandler<O, F>> = [] {
-  if constexpr (std::is_invocable_v<F&>) return fits_into_object<O, std::invoke_result_t<F&>>();
-  if constexpr (!std::is_invocable_v<F&> && std::is_invocable_v<F&, Node&>)
-    return fits_into_object<O, std::invoke_result_t<F&, Node&>>();
+template <class Node, class ObjectType, class Function>
+inline constexpr bool supplies_value<Node, ReadHandler<ObjectType, Function>> = [] {
+  if constexpr (std::is_invocable_v<Function&>) return fits_into_object<ObjectType, std::invoke_result_t<Function&>>();
+  if constexpr (!std::is_invocable_v<Function&> && std::is_invocable_v<Function&, Node&>)
+    return fits_into_object<ObjectType, std::invoke_result_t<Function&, Node&>>();
   return true;
 }();
 
-template <class Node, class H>
+template <class Node, class HandlerType>
 inline constexpr bool parameters_fit = true;
-template <class Node, class O, class F>
-inline constexpr bool parameters_fit<Node, WriteHandler<O, F>> = takes<F, Node, typename O::type>;
-template <class Node, class O, class F>
-inline constexpr bool parameters_fit<Node, WrittenHandler<O, F>> = takes<F, Node, typename O::type>;
-template <class Node, class O, class F>
-inline constexpr bool parameters_fit<Node, ReadHandler<O, F>> = takes<F, Node>;
-template <class Node, class P, class F>
-inline constexpr bool parameters_fit<Node, PeriodicHandler<P, F>> = takes<F, Node>;
-template <class F, class Node, class List>
+template <class Node, class ObjectType, class Function>
+inline constexpr bool parameters_fit<Node, WriteHandler<ObjectType, Function>> =
+    takes<Function, Node, typename ObjectType::type>;
+template <class Node, class ObjectType, class Function>
+inline constexpr bool parameters_fit<Node, WrittenHandler<ObjectType, Function>> =
+    takes<Function, Node, typename ObjectType::type>;
+template <class Node, class ObjectType, class Function>
+inline constexpr bool parameters_fit<Node, ReadHandler<ObjectType, Function>> = takes<Function, Node>;
+template <class Node, class PeriodType, class Function>
+inline constexpr bool parameters_fit<Node, PeriodicHandler<PeriodType, Function>> = takes<Function, Node>;
+template <class Function, class Node, class List>
 inline constexpr bool takes_all = false;
-template <class F, class Node, class... Arguments>
-inline constexpr bool takes_all<F, Node, function::ArgumentList<Arguments...>> = takes<F, Node, Arguments...>;
-template <class Node, class Event, class F>
-inline constexpr bool parameters_fit<Node, EventHandler<Event, F>> = takes_all<F, Node, typename Event::Arguments>;
+template <class Function, class Node, class... Arguments>
+inline constexpr bool takes_all<Function, Node, function::ArgumentList<Arguments...>> =
+    takes<Function, Node, Arguments...>;
+template <class Node, class Event, class Function>
+inline constexpr bool parameters_fit<Node, EventHandler<Event, Function>> =
+    takes_all<Function, Node, typename Event::Arguments>;
 
-template <class Node, class H>
+template <class Node, class HandlerType>
 inline constexpr bool result_fits = true;
-template <class Node, class P, class F>
-requires(takes<F, Node>) inline constexpr bool result_fits<Node, PeriodicHandler<P, F>> =
-    std::is_void_v<decltype(call(std::declval<F&>(), std::declval<Node&>()))>;
+template <class Node, class PeriodType, class Function>
+requires(takes<Function, Node>) inline constexpr bool result_fits<Node, PeriodicHandler<PeriodType, Function>> =
+    std::is_void_v<decltype(call(std::declval<Function&>(), std::declval<Node&>()))>;
 
 /// Checks the parameters and the result of a handler.
 template <class Node, class Handler>

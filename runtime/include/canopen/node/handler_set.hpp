@@ -21,11 +21,11 @@ namespace canopen {
 
 namespace handler_detail {
 
-template <class O, class List>
+template <class Object, class List>
 inline constexpr bool has_object = false;
-template <class O, class... Os>
-inline constexpr bool has_object<O, ObjectList<Os...>> = ((O::index == Os::index && O::sub_index == Os::sub_index) ||
-                                                          ...);
+template <class Object, class... Os>
+inline constexpr bool has_object<Object, ObjectList<Os...>> =
+    ((Object::index == Os::index && Object::sub_index == Os::sub_index) || ...);
 
 template <class... Os>
 [[nodiscard]] constexpr bool has_key([[maybe_unused]] std::uint32_t key, ObjectList<Os...>) {
@@ -37,8 +37,8 @@ template <class... Os>
 /// `Node` may be incomplete.
 template <class Device, class Node, class... Handlers>
 class HandlerSet {
-  template <class H>
-  using Handled = handler_detail::Handled<Device, Node, H>;
+  template <class Handler>
+  using Handled = handler_detail::Handled<Device, Node, Handler>;
 
  public:
   /// With references to the values of some parts, in any order; the others are default-constructed (node/parts.hpp).
@@ -48,11 +48,12 @@ class HandlerSet {
     static_assert(part_detail::CheckedParts<std::tuple<Handlers...>, Given...>::is_good);
   }
 
-  /// Whether the value of `O` is checked before it is written, or used after it.
-  template <DictionaryObject O>
-  static constexpr bool handles_write = (handler_detail::has_object<O, typename Handled<Handlers>::BeforeWrite> || ...);
-  template <DictionaryObject O>
-  static constexpr bool handles_written = (handler_detail::has_object<O, typename Handled<Handlers>::AfterWrite> ||
+  /// Whether the value of `Object` is checked before it is written, or used after it.
+  template <DictionaryObject Object>
+  static constexpr bool handles_write = (handler_detail::has_object<Object, typename Handled<Handlers>::BeforeWrite> ||
+                                         ...);
+  template <DictionaryObject Object>
+  static constexpr bool handles_written = (handler_detail::has_object<Object, typename Handled<Handlers>::AfterWrite> ||
                                            ...);
 
   /// Whether any handler is called after an object has been written, or before it is read.
@@ -71,13 +72,13 @@ class HandlerSet {
     return handles(key) || (handler_detail::has_key(key, typename Handled<Handlers>::AfterWrite{}) || ...);
   }
 
-  /// Calls the write handlers of `O`; returns the first abort code.
-  template <DictionaryObject O>
-  AbortCode before_write([[maybe_unused]] Node& node, [[maybe_unused]] const typename O::type& value) {
+  /// Calls the write handlers of `Object`; returns the first abort code.
+  template <DictionaryObject Object>
+  AbortCode before_write([[maybe_unused]] Node& node, [[maybe_unused]] const typename Object::type& value) {
     AbortCode code = ok;
-    for_each([&]<class H>([[maybe_unused]] H& handler) {
-      if constexpr (handler_detail::has_object<O, typename Handled<H>::BeforeWrite>) {
-        if (code == ok) code = Handled<H>::template before_write<O>(handler, node, value);
+    for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
+      if constexpr (handler_detail::has_object<Object, typename Handled<Handler>::BeforeWrite>) {
+        if (code == ok) code = Handled<Handler>::template before_write<Object>(handler, node, value);
       }
     });
     return code;
@@ -86,31 +87,32 @@ class HandlerSet {
   /// Calls the write handlers of the object with this key; returns the first abort code.
   AbortCode before_write(Node& node, std::uint32_t key, std::span<std::uint8_t> bytes) {
     AbortCode code = ok;
-    for_each([&]<class H>([[maybe_unused]] H& handler) {
-      Handled<H>::BeforeWrite::for_each([&]<class O>() {
-        if (code == ok && key == object_key(O::index, O::sub_index))
-          code = Handled<H>::template before_write<O>(handler, node, value_detail::value_from<O>(bytes));
+    for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
+      Handled<Handler>::BeforeWrite::for_each([&]<class Object>() {
+        if (code == ok && key == object_key(Object::index, Object::sub_index))
+          code =
+              Handled<Handler>::template before_write<Object>(handler, node, value_detail::value_from<Object>(bytes));
       });
     });
     return code;
   }
 
-  /// Calls the handlers of `O` after it has been written.
-  template <DictionaryObject O>
-  void after_write([[maybe_unused]] Node& node, [[maybe_unused]] const typename O::type& value) {
-    for_each([&]<class H>([[maybe_unused]] H& handler) {
-      if constexpr (handler_detail::has_object<O, typename Handled<H>::AfterWrite>)
-        Handled<H>::template after_write<O>(handler, node, value);
+  /// Calls the handlers of `Object` after it has been written.
+  template <DictionaryObject Object>
+  void after_write([[maybe_unused]] Node& node, [[maybe_unused]] const typename Object::type& value) {
+    for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
+      if constexpr (handler_detail::has_object<Object, typename Handled<Handler>::AfterWrite>)
+        Handled<Handler>::template after_write<Object>(handler, node, value);
     });
   }
 
   /// The same for the object with this key; `store` has its value.
   template <class Store>
   void after_write(Node& node, std::uint32_t key, const Store& store) {
-    for_each([&]<class H>([[maybe_unused]] H& handler) {
-      Handled<H>::AfterWrite::for_each([&]<class O>() {
-        if (key == object_key(O::index, O::sub_index))
-          Handled<H>::template after_write<O>(handler, node, store.template get<O>());
+    for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
+      Handled<Handler>::AfterWrite::for_each([&]<class Object>() {
+        if (key == object_key(Object::index, Object::sub_index))
+          Handled<Handler>::template after_write<Object>(handler, node, store.template get<Object>());
       });
     });
   }
@@ -118,9 +120,10 @@ class HandlerSet {
   /// Calls the read handlers of the object with this key; returns the first abort code.
   AbortCode before_read(Node& node, std::uint32_t key) {
     AbortCode code = ok;
-    for_each([&]<class H>([[maybe_unused]] H& handler) {
-      Handled<H>::Read::for_each([&]<class O>() {
-        if (code == ok && key == object_key(O::index, O::sub_index)) code = Handled<H>::template read<O>(handler, node);
+    for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
+      Handled<Handler>::Read::for_each([&]<class Object>() {
+        if (code == ok && key == object_key(Object::index, Object::sub_index))
+          code = Handled<Handler>::template read<Object>(handler, node);
       });
     });
     return code;
@@ -133,10 +136,10 @@ class HandlerSet {
   /// Calls `visit(period, call)` for each periodic function; `call()` calls it.
   template <class Visit>
   void for_each_period([[maybe_unused]] Node& node, [[maybe_unused]] Visit&& visit) {
-    for_each([&]<class H>([[maybe_unused]] H& handler) {
-      [&]<class... P>(handler_detail::PeriodList<P...>) {
-        (visit(P::duration, [&] { Handled<H>::template every<P>(handler, node); }), ...);
-      }(typename handler_detail::PeriodsOf<H>::type{});
+    for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
+      [&]<class... PeriodType>(handler_detail::PeriodList<PeriodType...>) {
+        (visit(PeriodType::duration, [&] { Handled<Handler>::template every<PeriodType>(handler, node); }), ...);
+      }(typename handler_detail::PeriodsOf<Handler>::type{});
     });
   }
 
@@ -156,22 +159,23 @@ class HandlerSet {
   /// Calls all functions of an event, a row of node/functions.hpp.
   template <class Event, class... Arguments>
   void notify(Node& node, const Arguments&... arguments) {
-    for_each([&]<class H>(H& handler) { Handled<H>::template notify<Event>(handler, node, arguments...); });
+    for_each([&]<class Handler>(Handler& handler) {
+      Handled<Handler>::template notify<Event>(handler, node, arguments...);
+    });
   }
   /// The same while `holds()` is true: a function may end what it learns of.
   template <class Event, class Holds, class... Arguments>
   void notify_while(Node& node, const Holds& holds, const Arguments&... arguments) {
-    for_each([&]<class H>(H& handler) {
-      if (holds()) Handled<H>::template notify<Event>(handler, node, arguments...);
+    for_each([&]<class Handler>(Handler& handler) {
+      if (holds()) Handled<Handler>::template notify<Event>(handler, node, arguments...);
     });
   }
 
  private:
-  template <class... Given, std::size_t... I>
-  constexpr HandlerSet([[maybe_unused]] std::tuple<Given...>& parts, std::index_sequence<I...>)
-      : handlers_(
-            part_detail::PartValue<Handlers, part_detail::place_of<I, std::tuple<Handlers...>, Given...>, Given...>{
-                parts}...) {}
+  template <class... Given, std::size_t... Position>
+  constexpr HandlerSet([[maybe_unused]] std::tuple<Given...>& parts, std::index_sequence<Position...>)
+      : handlers_(part_detail::PartValue<Handlers, part_detail::place_of<Position, std::tuple<Handlers...>, Given...>,
+                                         Given...>{parts}...) {}
 
   template <class Visit>
   constexpr void for_each([[maybe_unused]] Visit&& visit) {

@@ -29,13 +29,13 @@ namespace canopen {
 /// this class, unless the lock may be taken twice. A context that makes the node due, as `set` does, wakes the loop
 /// afterwards. With an InterruptLock no interrupt is served during `on_frame` and `on_time`; a Mailbox does not have
 /// this delay. The node and the lock must outlive this object.
-template <class Node, Lock L = NoLock>
-class Locked : public ObjectSetters<Locked<Node, L>> {
+template <class Node, Lock LockType = NoLock>
+class Locked : public ObjectSetters<Locked<Node, LockType>> {
  public:
   using DeviceType = typename Node::DeviceType;
 
-  constexpr explicit Locked(Node& node) requires(std::is_same_v<L, NoLock>) : node_{node} {}
-  constexpr Locked(Node& node, L& lock) : node_{node}, lock_{lock} {}
+  constexpr explicit Locked(Node& node) requires(std::is_same_v<LockType, NoLock>) : node_{node} {}
+  constexpr Locked(Node& node, LockType& lock) : node_{node}, lock_{lock} {}
 
   /// Calls `use(node)` and returns its result.
   template <class Use>
@@ -73,9 +73,9 @@ class Locked : public ObjectSetters<Locked<Node, L>> {
   void request(NmtCommand command, TimePoint now) {
     with([&](Node& node) { node.request(command, now); });
   }
-  template <DictionaryObject O>
-  [[nodiscard]] typename O::type get(O = {}) {
-    return with([](Node& node) { return node.template get<O>(); });
+  template <DictionaryObject Object>
+  [[nodiscard]] typename Object::type get(Object = {}) {
+    return with([](Node& node) { return node.template get<Object>(); });
   }
   using ObjectSetters<Locked>::set;
   template <std::uint16_t Number, class Layout>
@@ -92,12 +92,12 @@ class Locked : public ObjectSetters<Locked<Node, L>> {
  private:
   friend ObjectSetters<Locked>;
 
-  template <DictionaryObject O>
-  [[nodiscard]] AbortCode assign(const typename O::type& value) {
-    return with([&](Node& node) { return node.template set<O>(value); });
+  template <DictionaryObject Object>
+  [[nodiscard]] AbortCode assign(const typename Object::type& value) {
+    return with([&](Node& node) { return node.template set<Object>(value); });
   }
 
-  using LockMember = std::conditional_t<std::is_empty_v<L>, L, L&>;
+  using LockMember = std::conditional_t<std::is_empty_v<LockType>, LockType, LockType&>;
 
   struct Guard {
     explicit constexpr Guard(LockMember& held) : lock{held} { lock.lock(); }
@@ -113,7 +113,7 @@ class Locked : public ObjectSetters<Locked<Node, L>> {
 
 template <class Node>
 Locked(Node&) -> Locked<Node, NoLock>;
-template <class Node, Lock L>
-Locked(Node&, L&) -> Locked<Node, L>;
+template <class Node, Lock LockType>
+Locked(Node&, LockType&) -> Locked<Node, LockType>;
 
 }  // namespace canopen

@@ -34,46 +34,48 @@ class Mailbox {
  public:
   /// Replaces the posted value. A value has the type of its object or a narrower one, or is a constant, whose limits
   /// the compiler checks; anything else does not compile.
-  template <DictionaryObject O>
-  requires(!can_be_refused<O>) void post(O, std::type_identity_t<ParameterFor<O>> value) {
-    slot<O>().publish(value_for_detail::value_in(value));
+  template <DictionaryObject Object>
+  requires(!can_be_refused<Object>) void post(Object, std::type_identity_t<ParameterFor<Object>> value) {
+    slot<Object>().publish(value_for_detail::value_in(value));
   }
-  template <DictionaryObject O>
-  requires(!can_be_refused<O>) void post(std::type_identity_t<ParameterFor<O>> value) { post(O{}, value); }
+  template <DictionaryObject Object>
+  requires(!can_be_refused<Object>) void post(std::type_identity_t<ParameterFor<Object>> value) {
+    post(Object{}, value);
+  }
 
   /// The same for an object with limits. value_too_high, value_too_low: outside the limits of the EDS; invalid_value: a
   /// REAL is NaN. The value posted before remains.
-  template <LimitedObject O, FitsInto<typename O::type> V>
-  [[nodiscard]] AbortCode post(O, V value) {
-    const AbortCode code = check_limits<O>(value);
-    if (code == ok) slot<O>().publish(value);
+  template <LimitedObject Object, FitsInto<typename Object::type> Value>
+  [[nodiscard]] AbortCode post(Object, Value value) {
+    const AbortCode code = check_limits<Object>(value);
+    if (code == ok) slot<Object>().publish(value);
     return code;
   }
-  template <LimitedObject O, FitsInto<typename O::type> V>
-  [[nodiscard]] AbortCode post(V value) {
-    return post(O{}, value);
+  template <LimitedObject Object, FitsInto<typename Object::type> Value>
+  [[nodiscard]] AbortCode post(Value value) {
+    return post(Object{}, value);
   }
   /// A constant is not refused.
-  template <LimitedObject O>
-  void post(O, std::type_identity_t<ConstantFor<O>> value) {
-    slot<O>().publish(value.value());
+  template <LimitedObject Object>
+  void post(Object, std::type_identity_t<ConstantFor<Object>> value) {
+    slot<Object>().publish(value.value());
   }
-  template <LimitedObject O>
-  AbortCode post(std::type_identity_t<ConstantFor<O>> value) {
-    slot<O>().publish(value.value());
+  template <LimitedObject Object>
+  AbortCode post(std::type_identity_t<ConstantFor<Object>> value) {
+    slot<Object>().publish(value.value());
     return ok;
   }
 
   /// A text of a length that is known at run time only. length_too_high: it is longer than the string of the object.
-  template <StringObject O, TextFor<O> V>
-  [[nodiscard]] AbortCode post(O, const V& text) {
-    const auto string = O::type::from(text);
-    if (string) slot<O>().publish(*string);
+  template <StringObject Object, TextFor<Object> Value>
+  [[nodiscard]] AbortCode post(Object, const Value& text) {
+    const auto string = Object::type::from(text);
+    if (string) slot<Object>().publish(*string);
     return string.abort_code();
   }
-  template <StringObject O, TextFor<O> V>
-  [[nodiscard]] AbortCode post(const V& text) {
-    return post(O{}, text);
+  template <StringObject Object, TextFor<Object> Value>
+  [[nodiscard]] AbortCode post(const Value& text) {
+    return post(Object{}, text);
   }
 
   // ---- the context of the node ----
@@ -92,25 +94,27 @@ class Mailbox {
   static constexpr bool fits = (Device::dictionary.has(Objects::index, Objects::sub_index) && ...);
 
  private:
-  template <DictionaryObject O>
-  struct Slot : SharedValue<typename O::type> {};
+  template <DictionaryObject Object>
+  struct Slot : SharedValue<typename Object::type> {};
   struct Slots : Slot<Objects>... {};
 
-  template <DictionaryObject O>
-  [[nodiscard]] Slot<O>& slot() {
-    static_assert((std::is_same_v<O, Objects> || ...), "this object is not in the list of the mailbox");
+  template <DictionaryObject Object>
+  [[nodiscard]] Slot<Object>& slot() {
+    static_assert((std::is_same_v<Object, Objects> || ...), "this object is not in the list of the mailbox");
     return slots_;
   }
-  template <DictionaryObject O>
-  [[nodiscard]] const Slot<O>& slot() const {
+  template <DictionaryObject Object>
+  [[nodiscard]] const Slot<Object>& slot() const {
     return slots_;
   }
 
-  template <DictionaryObject O, class Node>
+  template <DictionaryObject Object, class Node>
   void take_over_one(Node& node) {
     using Device = typename Node::DeviceType;
-    if constexpr (is_in_dictionary<O, Device> && !is_of_another_device<O, Device>) {  // see node/handler_check.hpp
-      if (const auto value = slot<O>().take()) static_cast<void>(node.template set<O>(*value));  // limits: see post
+    if constexpr (is_in_dictionary<Object, Device> &&
+                  !is_of_another_device<Object, Device>) {  // see node/handler_check.hpp
+      if (const auto value = slot<Object>().take())
+        static_cast<void>(node.template set<Object>(*value));  // limits: see post
     }
   }
 
@@ -118,9 +122,9 @@ class Mailbox {
 };
 
 /// A mailbox of a node, passed with its handlers.
-template <class M>
+template <class MailboxType>
 struct ValuesFrom {
-  M* mailbox;
+  MailboxType* mailbox;
 };
 
 /// Gives a node the values of a mailbox, which must outlive it. A node may have several mailboxes, and a mailbox has
@@ -134,8 +138,8 @@ namespace mailbox_detail {
 
 template <class Handler>
 inline constexpr bool is_values_from = false;
-template <class M>
-inline constexpr bool is_values_from<ValuesFrom<M>> = true;
+template <class MailboxType>
+inline constexpr bool is_values_from<ValuesFrom<MailboxType>> = true;
 
 }  // namespace mailbox_detail
 

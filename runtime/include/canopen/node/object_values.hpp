@@ -29,17 +29,17 @@ namespace canopen {
 namespace object_values_detail {
 
 /// An object whose value is a number or a BOOLEAN.
-template <class O>
-concept Arithmetic = NumberObject<O> && std::is_arithmetic_v<typename O::type>;
+template <class Object>
+concept Arithmetic = NumberObject<Object> && std::is_arithmetic_v<typename Object::type>;
 
 }  // namespace object_values_detail
 
 /// Base of a node: what it does with objects by their tags. Without a tag, the object is a template argument:
 /// `node.get<od::pressure>()`.
-template <class N>
-class ObjectValues : public ObjectSetters<N> {
+template <class NodeType>
+class ObjectValues : public ObjectSetters<NodeType> {
  public:
-  using ObjectSetters<N>::set;
+  using ObjectSetters<NodeType>::set;
 
   /// Returns an element of an array of numbers by its run-time sub-index: `get(od::outputs{}, i)`. no_sub_index: it
   /// does not exist.
@@ -75,7 +75,7 @@ class ObjectValues : public ObjectSetters<N> {
   /// An object that the device cannot map in this direction does not compile.
   template <std::uint16_t Number, class Layout>
   [[nodiscard]] AbortCode map() {
-    using Device = typename N::DeviceType;
+    using Device = typename NodeType::DeviceType;
     return Remapping<Device, Number, Layout>::map(
         [this](std::uint16_t index, std::uint8_t sub_index, std::uint32_t value, std::size_t size) {
           const std::span bytes{reinterpret_cast<std::uint8_t*>(&value), size};
@@ -85,49 +85,50 @@ class ObjectValues : public ObjectSetters<N> {
   }
 
   /// Sends the value of an object as a DAM-MPDO, like Node::send_mpdo.
-  template <DictionaryObject O>
+  template <DictionaryObject Object>
   [[nodiscard]] bool send_mpdo(const MpdoDestination& to) {
-    static_assert(O::bits >= 1 && O::bits <= 32, "a multiplex PDO carries a value of 32 bits at most");
-    constexpr std::uint32_t mask = 0xFFFF'FFFF >> (32 - O::bits);
-    return node().send_mpdo(to, static_cast<std::uint32_t>(value_detail::to_bits(node().template get<O>())) & mask);
+    static_assert(Object::bits >= 1 && Object::bits <= 32, "a multiplex PDO carries a value of 32 bits at most");
+    constexpr std::uint32_t mask = 0xFFFF'FFFF >> (32 - Object::bits);
+    return node().send_mpdo(to,
+                            static_cast<std::uint32_t>(value_detail::to_bits(node().template get<Object>())) & mask);
   }
 
   /// Binds a DOMAIN to memory: a download may fill all of it, an upload sends the first `size` bytes.
-  template <DictionaryObject O>
+  template <DictionaryObject Object>
   void bind(std::span<std::uint8_t> memory, std::size_t size) {
-    static_assert(std::is_same_v<typename O::type, Domain>, "only a DOMAIN is bound to memory");
-    node().template bind_domain<O>(
+    static_assert(std::is_same_v<typename Object::type, Domain>, "only a DOMAIN is bound to memory");
+    node().template bind_domain<Object>(
         {memory.data(), static_cast<std::uint32_t>(size), static_cast<std::uint32_t>(memory.size())});
   }
-  template <DictionaryObject O>
-  void bind(O, std::span<std::uint8_t> memory, std::size_t size) {
-    bind<O>(memory, size);
+  template <DictionaryObject Object>
+  void bind(Object, std::span<std::uint8_t> memory, std::size_t size) {
+    bind<Object>(memory, size);
   }
 
   /// The same, with the whole memory as the value.
-  template <DictionaryObject O>
+  template <DictionaryObject Object>
   void bind(std::span<std::uint8_t> memory) {
-    bind<O>(memory, memory.size());
+    bind<Object>(memory, memory.size());
   }
-  template <DictionaryObject O>
-  void bind(O, std::span<std::uint8_t> memory) {
-    bind<O>(memory, memory.size());
+  template <DictionaryObject Object>
+  void bind(Object, std::span<std::uint8_t> memory) {
+    bind<Object>(memory, memory.size());
   }
 
   /// Binds a read-only DOMAIN to its bytes, which may be in flash.
-  template <DictionaryObject O>
+  template <DictionaryObject Object>
   void bind_constant(std::span<const std::uint8_t> bytes) {
-    static_assert(!writable(O::access), "this DOMAIN may be written over the bus");
-    node().template bind_domain<O>(
+    static_assert(!writable(Object::access), "this DOMAIN may be written over the bus");
+    node().template bind_domain<Object>(
         {const_cast<std::uint8_t*>(bytes.data()), static_cast<std::uint32_t>(bytes.size()), 0});
   }
-  template <DictionaryObject O>
-  void bind_constant(O, std::span<const std::uint8_t> bytes) {
-    bind_constant<O>(bytes);
+  template <DictionaryObject Object>
+  void bind_constant(Object, std::span<const std::uint8_t> bytes) {
+    bind_constant<Object>(bytes);
   }
 
  private:
-  [[nodiscard]] N& node() { return static_cast<N&>(*this); }
+  [[nodiscard]] NodeType& node() { return static_cast<NodeType&>(*this); }
 };
 
 }  // namespace canopen

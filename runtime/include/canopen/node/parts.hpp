@@ -81,10 +81,10 @@ template <class Parts, class... Given>
 using CheckedParts = typename decltype(part_detail::check_given<Given...>(std::type_identity<Parts>{}))::type;
 
 /// The position of the value for a part, the I-th of `Parts`; the number of values if it is not given.
-template <std::size_t I, class Parts, class... Given>
+template <std::size_t Position, class Parts, class... Given>
 inline constexpr std::size_t place_of = [] {
-  if (is_complete<Parts, Given...>) return I;
-  constexpr bool same[] = {std::is_same_v<std::tuple_element_t<I, Parts>, std::remove_cvref_t<Given>>..., true};
+  if (is_complete<Parts, Given...>) return Position;
+  constexpr bool same[] = {std::is_same_v<std::tuple_element_t<Position, Parts>, std::remove_cvref_t<Given>>..., true};
   std::size_t place = 0;
   while (!same[place]) ++place;
   return place;

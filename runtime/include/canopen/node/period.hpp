@@ -41,15 +41,15 @@ using Seconds = Microseconds<period_detail::scaled(count, 1'000'000)>;
 namespace period_detail {
 
 /// The microseconds of a period; 0: another type.
-template <class T>
+template <class Type>
 inline constexpr std::uint64_t length_of = 0;
 template <std::uint64_t count>
 inline constexpr std::uint64_t length_of<Microseconds<count>> = count;
 
 }  // namespace period_detail
 
-template <class T>
-concept Period = period_detail::length_of<T>
+template <class Type>
+concept Period = period_detail::length_of<Type>
 != 0;
 
 }  // namespace canopen

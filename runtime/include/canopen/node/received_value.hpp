@@ -56,16 +56,17 @@ inline void take_received(Host& host, std::uint16_t index, std::uint8_t sub_inde
 }
 
 /// The same for an object that is known at compile time.
-template <DictionaryObject O, class Host>
-inline void take_received(Host& host, const typename O::type& value) {
-  if (check_limits<O>(value) != ok) return;
-  if constexpr (Host::Handlers::template handles_write<O>) {
-    const auto ask = [&] { return host.handlers().template before_write<O>(host.node(), value); };
-    if (host.handler_calls().ask(object_key(O::index, O::sub_index), ask) != ok) return;
-    if (host.handler_calls().set_by_handler()) return notify_written(host, O::index, O::sub_index);
+template <DictionaryObject Object, class Host>
+inline void take_received(Host& host, const typename Object::type& value) {
+  if (check_limits<Object>(value) != ok) return;
+  if constexpr (Host::Handlers::template handles_write<Object>) {
+    const auto ask = [&] { return host.handlers().template before_write<Object>(host.node(), value); };
+    if (host.handler_calls().ask(object_key(Object::index, Object::sub_index), ask) != ok) return;
+    if (host.handler_calls().set_by_handler()) return notify_written(host, Object::index, Object::sub_index);
   }
-  if (host.store().template set<O>(value)) host.template on_new_value<O>();
-  if constexpr (Host::Handlers::template handles_written<O>) notify_written(host, O::index, O::sub_index);
+  if (host.store().template set<Object>(value)) host.template on_new_value<Object>();
+  if constexpr (Host::Handlers::template handles_written<Object>)
+    notify_written(host, Object::index, Object::sub_index);
 }
 
 }  // namespace canopen

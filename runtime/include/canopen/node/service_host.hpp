@@ -14,15 +14,15 @@
 
 namespace canopen {
 
-/// Base of a node, by which its services refer to it. `N` is the Node.
-template <class N, class D, class HandlerTypes>
+/// Base of a node, by which its services refer to it. `NodeType` is the Node.
+template <class NodeType, class DeviceOfNode, class HandlerTypes>
 class ServiceHost {
  public:
-  using Device = D;
+  using Device = DeviceOfNode;
   using Handlers = HandlerTypes;
 
-  [[nodiscard]] N& node() { return static_cast<N&>(*this); }
-  [[nodiscard]] const N& node() const { return static_cast<const N&>(*this); }
+  [[nodiscard]] NodeType& node() { return static_cast<NodeType&>(*this); }
+  [[nodiscard]] const NodeType& node() const { return static_cast<const NodeType&>(*this); }
 
   [[nodiscard]] TimePoint now() const { return node().now_; }
   [[nodiscard]] NmtState state() const { return node().state_; }
@@ -72,9 +72,9 @@ class ServiceHost {
   void after_write(std::uint16_t index, std::uint8_t sub_index, bool new_value) {
     node().after_write(index, sub_index, new_value);
   }
-  template <DictionaryObject O>
+  template <DictionaryObject Object>
   void on_new_value() {
-    node().template on_new_value<O>();
+    node().template on_new_value<Object>();
   }
 
   // Handlers of the application

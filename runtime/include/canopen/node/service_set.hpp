@@ -113,7 +113,7 @@ struct ServiceDefaults {
   static void after_operational_write(Host&, [[maybe_unused]] std::uint16_t index,
                                       [[maybe_unused]] std::uint8_t sub_index, [[maybe_unused]] bool new_value) {}
   /// An object that is known at compile time has a new value, in Operational. Returns whether something is to be sent.
-  template <DictionaryObject O, class Host>
+  template <DictionaryObject Object, class Host>
   static bool on_new_value(Host&) {
     return false;  // nothing is to be sent
   }
@@ -144,8 +144,8 @@ using Present = std::conditional_t<Service::exists, Service, Absent<Service>>;
 /// The services of one node. Each function calls that of all services.
 template <class... Services>
 class ServiceSet : private service_detail::Present<Services>... {
-  template <class S>
-  using Present = service_detail::Present<S>;
+  template <class ServiceType>
+  using Present = service_detail::Present<ServiceType>;
 
  public:
   /// Whether a service works without node-ID.
@@ -153,12 +153,12 @@ class ServiceSet : private service_detail::Present<Services>... {
   static constexpr bool sends_without_node_id = (Present<Services>::sends_without_node_id || ...);
 
   /// Returns a service that the device has.
-  template <class S>
-  [[nodiscard]] S& get() {
+  template <class ServiceType>
+  [[nodiscard]] ServiceType& get() {
     return *this;
   }
-  template <class S>
-  [[nodiscard]] const S& get() const {
+  template <class ServiceType>
+  [[nodiscard]] const ServiceType& get() const {
     return *this;
   }
 
@@ -255,9 +255,9 @@ class ServiceSet : private service_detail::Present<Services>... {
   void after_operational_write(Host& host, std::uint16_t index, std::uint8_t sub_index, bool new_value) {
     (present<Services>().after_operational_write(host, index, sub_index, new_value), ...);
   }
-  template <DictionaryObject O, class Host>
+  template <DictionaryObject Object, class Host>
   [[nodiscard]] bool on_new_value(Host& host) {
-    return (static_cast<unsigned>(present<Services>().template on_new_value<O>(host)) | ...) != 0;
+    return (static_cast<unsigned>(present<Services>().template on_new_value<Object>(host)) | ...) != 0;
   }
   template <class Host>
   [[nodiscard]] AbortCode before_read(Host& host, std::uint16_t index, std::uint8_t sub_index) {
@@ -274,54 +274,56 @@ class ServiceSet : private service_detail::Present<Services>... {
   }
 
  private:
-  template <class S>
-  static constexpr bool is_configured = !Present<S>::has_fixed_can_id && !Present<S>::runs_without_node_id;
+  template <class ServiceType>
+  static constexpr bool is_configured =
+      !Present<ServiceType>::has_fixed_can_id && !Present<ServiceType>::runs_without_node_id;
 
-  template <class S>
-  [[nodiscard]] Present<S>& present() {
+  template <class ServiceType>
+  [[nodiscard]] Present<ServiceType>& present() {
     return *this;
   }
-  template <class S>
-  [[nodiscard]] const Present<S>& present() const {
+  template <class ServiceType>
+  [[nodiscard]] const Present<ServiceType>& present() const {
     return *this;
   }
 
-  template <class S, bool Called, class Host>
+  template <class ServiceType, bool Called, class Host>
   [[nodiscard]] bool on_frame_if([[maybe_unused]] Host& host, [[maybe_unused]] const Frame& frame,
                                  [[maybe_unused]] std::uint32_t cob_id) {
     if constexpr (Called) {
-      return present<S>().on_frame(host, frame, cob_id);
+      return present<ServiceType>().on_frame(host, frame, cob_id);
     } else {
       return false;
     }
   }
 
-  template <class S, bool Called, class Host>
+  template <class ServiceType, bool Called, class Host>
   void on_time_if([[maybe_unused]] Host& host) {
-    if constexpr (Called) present<S>().on_time(host);
+    if constexpr (Called) present<ServiceType>().on_time(host);
   }
 
-  template <class S, class Host>
+  template <class ServiceType, class Host>
   void consider(std::optional<TimePoint>& next, Host& host, bool all) const {
-    if (!all && !Present<S>::runs_without_node_id) return;
-    const std::optional<TimePoint> other = present<S>().deadline(host);
+    if (!all && !Present<ServiceType>::runs_without_node_id) return;
+    const std::optional<TimePoint> other = present<ServiceType>().deadline(host);
     if (other) next = next ? earlier_deadline(*next, *other, host.now()) : *other;
   }
 
   /// Not a fold: with one return for each service, an image is smaller.
-  template <class S, class... Rest, class Host>
+  template <class ServiceType, class... Rest, class Host>
   [[nodiscard]] AbortCode check_first(Host& host, std::uint16_t index, std::uint8_t sub_index,
                                       std::span<std::uint8_t> bytes) {
-    if (Present<S>::checks(index, sub_index)) return present<S>().check_write(host, index, sub_index, bytes);
+    if (Present<ServiceType>::checks(index, sub_index))
+      return present<ServiceType>().check_write(host, index, sub_index, bytes);
     if constexpr (sizeof...(Rest) != 0) return check_first<Rest...>(host, index, sub_index, bytes);
     return ok;
   }
 
-  template <class S, class Host>
+  template <class ServiceType, class Host>
   [[nodiscard]] bool command_if(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes,
                                 AbortCode& code) {
-    if (!Present<S>::has_command(index)) return false;
-    code = present<S>().command(host, index, sub_index, bytes);
+    if (!Present<ServiceType>::has_command(index)) return false;
+    code = present<ServiceType>().command(host, index, sub_index, bytes);
     return true;
   }
 };

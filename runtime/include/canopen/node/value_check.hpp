@@ -22,20 +22,20 @@ namespace canopen {
 
 /// Whether `set` of the application can reject a value of the object's type: the object has limits, uses fewer bits
 /// than its type, or is a parameter of a service.
-template <DictionaryObject O>
+template <DictionaryObject Object>
 inline constexpr bool can_be_refused = [] {
-  using T = typename O::type;
-  if (!std::is_arithmetic_v<T>) return false;
-  if (std::is_integral_v<T> && is_communication_index(O::index)) return true;
-  return !std::is_same_v<T, bool> && (
-                                         requires { O::low_limit; } || requires { O::high_limit; } ||
-                                         requires { O::accepted; } || O::bits < sizeof(T) * 8);
+  using Type = typename Object::type;
+  if (!std::is_arithmetic_v<Type>) return false;
+  if (std::is_integral_v<Type> && is_communication_index(Object::index)) return true;
+  return !std::is_same_v<Type, bool> && (
+                                            requires { Object::low_limit; } || requires { Object::high_limit; } ||
+                                            requires { Object::accepted; } || Object::bits < sizeof(Type) * 8);
 }();
 
 /// Returns value_too_high or value_too_low for a value outside the limits of its object, invalid_value for NaN.
-template <DictionaryObject O>
-[[nodiscard]] constexpr AbortCode check_limits([[maybe_unused]] const typename O::type& value) {
-  if constexpr (NumberObject<O>) return check_value<O>(value);
+template <DictionaryObject Object>
+[[nodiscard]] constexpr AbortCode check_limits([[maybe_unused]] const typename Object::type& value) {
+  if constexpr (NumberObject<Object>) return check_value<Object>(value);
   return ok;
 }
 

@@ -59,12 +59,12 @@ template <class Device>
 
 /// Whether an object that is known at compile time accepts a value between its limits. Its type has the member
 /// `accepted`, an array of ranges, unless it accepts all of them.
-template <class O>
-[[nodiscard]] constexpr bool accepts([[maybe_unused]] typename O::type value) {
-  if constexpr (requires { O::accepted; }) {
+template <class Object>
+[[nodiscard]] constexpr bool accepts([[maybe_unused]] typename Object::type value) {
+  if constexpr (requires { Object::accepted; }) {
     constexpr AcceptedBits accepted = [] {
       AcceptedBits all;
-      for (const ValueRange& range : O::accepted) all.add(range);
+      for (const ValueRange& range : Object::accepted) all.add(range);
       return all;
     }();
     return accepted.has(value);

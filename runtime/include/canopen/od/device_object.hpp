@@ -53,18 +53,18 @@ template <class Rows>
   return found != Rows::rows.end() && found->key == key && found->name != name;
 }
 
-template <class O>
+template <class Object>
 concept Named = requires {
-  std::string_view{O::name};
+  std::string_view{Object::name};
 };
 
-template <class O, class Device>
+template <class Object, class Device>
 [[nodiscard]] constexpr bool is_foreign() {
-  if constexpr (Named<O> && requires { typename Device::Objects; }) {
+  if constexpr (Named<Object> && requires { typename Device::Objects; }) {
     using Rows = NamedRows<typename Device::Objects>;
     if constexpr (Rows::count != 0 && Rows::count <= max_rows) {
-      return has_other_name<Rows>(key_of(O::index, O::sub_index), O::name) ||
-             (O::sub_index != 0 && has_other_name<Rows>(key_of(O::index, whole_array), O::name));
+      return has_other_name<Rows>(key_of(Object::index, Object::sub_index), Object::name) ||
+             (Object::sub_index != 0 && has_other_name<Rows>(key_of(Object::index, whole_array), Object::name));
     }
   }
   return false;
@@ -73,12 +73,12 @@ template <class O, class Device>
 }  // namespace device_object_detail
 
 /// Whether a device has an entry with the index and sub-index of an object.
-template <class O, class Device>
-inline constexpr bool is_in_dictionary = Device::dictionary.has(O::index, O::sub_index);
+template <class Object, class Device>
+inline constexpr bool is_in_dictionary = Device::dictionary.has(Object::index, Object::sub_index);
 
 /// Whether an object is one of another device, whose EDS has another name at this index. Objects without a name, which
 /// are not generated, are those of every device.
-template <class O, class Device>
-inline constexpr bool is_of_another_device = device_object_detail::is_foreign<O, Device>();
+template <class Object, class Device>
+inline constexpr bool is_of_another_device = device_object_detail::is_foreign<Object, Device>();
 
 }  // namespace canopen

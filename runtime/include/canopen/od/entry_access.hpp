@@ -249,15 +249,15 @@ class EntryAccess {
   }
 
   /// Loads a value that is stored as its C++ type, at an address aligned for it.
-  template <class T>
-  [[nodiscard]] static T load(const std::uint8_t* where) {
-    T value;
-    std::memcpy(&value, std::assume_aligned<alignof(T)>(where), sizeof value);
+  template <class Type>
+  [[nodiscard]] static Type load(const std::uint8_t* where) {
+    Type value;
+    std::memcpy(&value, std::assume_aligned<alignof(Type)>(where), sizeof value);
     return value;
   }
-  template <class T>
-  static void store(std::uint8_t* where, const T& value) {
-    std::memcpy(std::assume_aligned<alignof(T)>(where), &value, sizeof value);
+  template <class Type>
+  static void store(std::uint8_t* where, const Type& value) {
+    std::memcpy(std::assume_aligned<alignof(Type)>(where), &value, sizeof value);
   }
 
   /// Stores a number in a wider type, sign-extended if it is signed.

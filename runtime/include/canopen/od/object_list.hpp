@@ -45,23 +45,24 @@ struct Selected {
 };
 template <class Predicate, template <std::uint8_t> class Array, std::uint8_t Highest>
 struct Selected<Predicate, ArrayObjects<Array, Highest>> {
-  static constexpr auto values = []<std::size_t... I>(std::index_sequence<I...>) {
-    return std::array<bool, sizeof...(I)>{Predicate::template selects<Array<static_cast<std::uint8_t>(I)>>...};
+  static constexpr auto values = []<std::size_t... Position>(std::index_sequence<Position...>) {
+    return std::array<bool, sizeof...(Position)>{
+        Predicate::template selects<Array<static_cast<std::uint8_t>(Position)>>...};
   }
   (std::make_index_sequence<Highest + std::size_t{1}>{});
-  template <std::size_t I>
-  using at = Array<static_cast<std::uint8_t>(I)>;
+  template <std::size_t Position>
+  using at = Array<static_cast<std::uint8_t>(Position)>;
 };
 
-template <std::size_t I, class Row>
+template <std::size_t Position, class Row>
 struct Numbered {};
 template <class Numbers, class... Rows>
 struct NumberedRows;
-template <std::size_t... I, class... Rows>
-struct NumberedRows<std::index_sequence<I...>, Rows...> : Numbered<I, Rows>... {};
+template <std::size_t... Position, class... Rows>
+struct NumberedRows<std::index_sequence<Position...>, Rows...> : Numbered<Position, Rows>... {};
 
-template <std::size_t I, class Row>
-Row* find_row(const Numbered<I, Row>*);
+template <std::size_t Position, class Row>
+Row* find_row(const Numbered<Position, Row>*);
 
 struct Place {
   std::size_t row;
@@ -90,13 +91,14 @@ struct Select {
     return found;
   }();
 
-  template <std::size_t I>
-  using RowAt = std::remove_pointer_t<decltype(find_row<I>(
+  template <std::size_t Position>
+  using RowAt = std::remove_pointer_t<decltype(find_row<Position>(
       static_cast<const NumberedRows<std::index_sequence_for<Rows...>, Rows...>*>(nullptr)))>;
 
-  template <std::size_t... I>
-  static ObjectList<typename Selected<Predicate, RowAt<places[I].row>>::template at<places[I].position>...> list(
-      std::index_sequence<I...>);
+  template <std::size_t... Position>
+  static ObjectList<
+      typename Selected<Predicate, RowAt<places[Position].row>>::template at<places[Position].position>...>
+      list(std::index_sequence<Position...>);
   using type = decltype(list(std::make_index_sequence<count>{}));
 };
 

@@ -25,37 +25,38 @@ class ObjectStore {
   constexpr ObjectStore() = default;
 
   /// Returns the value of an object, whatever its access type.
-  template <DictionaryObject O>
-  [[nodiscard]] typename O::type get() const {
-    constexpr entry::Word word = word_of<O>();
-    using T = typename O::type;
+  template <DictionaryObject ObjectType>
+  [[nodiscard]] typename ObjectType::type get() const {
+    constexpr entry::Word word = word_of<ObjectType>();
+    using Type = typename ObjectType::type;
     if constexpr (entry::place_of(word) == entry::Place::ram) {
-      return load<T, entry::offset_of(word)>(reinterpret_cast<const std::uint8_t*>(&values_));
+      return load<Type, entry::offset_of(word)>(reinterpret_cast<const std::uint8_t*>(&values_));
     } else if constexpr (entry::place_of(word) == entry::Place::rom) {
-      return load<T, entry::offset_of(word)>(static_cast<const std::uint8_t*>(Device::dictionary.constants));
+      return load<Type, entry::offset_of(word)>(static_cast<const std::uint8_t*>(Device::dictionary.constants));
     } else if constexpr (entry::place_of(word) == entry::Place::immediate_plus_node_id) {
-      return static_cast<T>(entry::offset_of(word) + node_id_.value());
+      return static_cast<Type>(entry::offset_of(word) + node_id_.value());
     } else if constexpr (entry::class_of(word) == entry::Class::signed_integer) {
-      return static_cast<T>(static_cast<std::int16_t>(entry::offset_of(word)));
+      return static_cast<Type>(static_cast<std::int16_t>(entry::offset_of(word)));
     } else {
-      return static_cast<T>(entry::offset_of(word));
+      return static_cast<Type>(entry::offset_of(word));
     }
   }
 
   /// Sets an object in RAM. Returns whether its value has changed.
-  template <DictionaryObject O>
-  bool set(const typename O::type& value) {
-    constexpr entry::Word word = word_of<O>();
+  template <DictionaryObject ObjectType>
+  bool set(const typename ObjectType::type& value) {
+    constexpr entry::Word word = word_of<ObjectType>();
     static_assert(entry::place_of(word) == entry::Place::ram, "a constant of the EDS cannot be set");
     const bool changed = !holds(ram() + entry::offset_of(word), value);
-    std::memcpy(std::assume_aligned<alignof(typename O::type)>(ram() + entry::offset_of(word)), &value, sizeof value);
+    std::memcpy(std::assume_aligned<alignof(typename ObjectType::type)>(ram() + entry::offset_of(word)), &value,
+                sizeof value);
     return changed;
   }
 
   /// Whether an object can be set: constants cannot.
-  template <DictionaryObject O>
+  template <DictionaryObject ObjectType>
   [[nodiscard]] static constexpr bool settable() {
-    return entry::place_of(word_of<O>()) == entry::Place::ram;
+    return entry::place_of(word_of<ObjectType>()) == entry::Place::ram;
   }
 
   /// Returns the unsigned value of an entry that must exist, for services that know the object but not its type.
@@ -96,25 +97,25 @@ class ObjectStore {
   [[nodiscard]] const typename Device::Values& values() const { return values_; }
 
  private:
-  template <DictionaryObject O>
+  template <DictionaryObject ObjectType>
   [[nodiscard]] static constexpr entry::Word word_of() {
-    constexpr entry::Word word = Device::dictionary.find(O::index, O::sub_index);
+    constexpr entry::Word word = Device::dictionary.find(ObjectType::index, ObjectType::sub_index);
     static_assert(word > Dictionary::no_sub_index, "this device has no such object");
     return word;
   }
 
-  template <class T, std::uint16_t Offset>
-  [[nodiscard]] static T load(const std::uint8_t* base) {
-    T value;
-    std::memcpy(&value, std::assume_aligned<alignof(T)>(base + Offset), sizeof value);
+  template <class Type, std::uint16_t Offset>
+  [[nodiscard]] static Type load(const std::uint8_t* base) {
+    Type value;
+    std::memcpy(&value, std::assume_aligned<alignof(Type)>(base + Offset), sizeof value);
     return value;
   }
 
   /// Whether the memory of an object has this value. Padding is not compared, nor bytes of a string after its end.
-  template <class T>
-  [[nodiscard]] static bool holds(const std::uint8_t* own, const T& value) {
-    if constexpr (std::is_class_v<T> && !std::is_same_v<T, Domain>) {
-      T present;
+  template <class Type>
+  [[nodiscard]] static bool holds(const std::uint8_t* own, const Type& value) {
+    if constexpr (std::is_class_v<Type> && !std::is_same_v<Type, Domain>) {
+      Type present;
       std::memcpy(&present, own, sizeof present);
       if constexpr (requires { value.bytes; }) {
         return present.size == value.size && std::memcmp(present.bytes.data(), value.bytes.data(), value.size) == 0;

@@ -12,8 +12,8 @@
 namespace canopen {
 
 /// What a node task needs of an operating system: `FreeRtos`, `Zephyr`, or a class of the application.
-template <class T>
-concept TaskSystem = requires(T& system, Duration span) {
+template <class Type>
+concept TaskSystem = requires(Type& system, Duration span) {
   { system.now() } -> std::same_as<TimePoint>;
   system.wait(span);  ///< until `wake`, also one before the call, or until the time has passed
   system.wake();      ///< from any task
@@ -21,8 +21,8 @@ concept TaskSystem = requires(T& system, Duration span) {
 };
 
 /// Received frames, such as InterruptPort.
-template <class T>
-concept FrameSource = requires(T& port) {
+template <class Type>
+concept FrameSource = requires(Type& port) {
   { port.receive() } -> std::same_as<std::optional<Frame>>;
 };
 

@@ -122,8 +122,8 @@ class MpdoService {
   }
 
   /// Sends pending MPDOs. Returns false if the bus had no room; they remain pending.
-  template <Bus B>
-  bool serve([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] NodeId own, [[maybe_unused]] B& bus,
+  template <Bus BusType>
+  bool serve([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] NodeId own, [[maybe_unused]] BusType& bus,
              [[maybe_unused]] TimePoint now) {
     // Inhibit times end here even if no MPDO is waiting.
     if constexpr (sends_destination) {
@@ -241,9 +241,9 @@ class MpdoService {
 
   // Producers
 
-  template <Bus B>
+  template <Bus BusType>
   [[nodiscard]] static bool send(EntryAccess<Device> entries, const typename Tpdos::Parameters& tpdo,
-                                 const Mpdo::Data& data, B& bus) {
+                                 const Mpdo::Data& data, BusType& bus) {
     const CobId cob_id{entries.number(tpdo.cob_id)};
     Frame frame{};
     frame.id = cob_id.can_id();
@@ -253,8 +253,8 @@ class MpdoService {
     return bus.send(frame);
   }
 
-  template <Bus B>
-  bool serve_destination(EntryAccess<Device> entries, B& bus, TimePoint now) {
+  template <Bus BusType>
+  bool serve_destination(EntryAccess<Device> entries, BusType& bus, TimePoint now) {
     const auto* const tpdo = Tpdos::find(entries, destination_multiplexed);
     if (tpdo == nullptr) destination_.waiting = 0;
     while (destination_.waiting != 0 && destination_.inhibit.over(now)) {
@@ -266,8 +266,8 @@ class MpdoService {
     return true;
   }
 
-  template <Bus B>
-  bool serve_source(EntryAccess<Device> entries, NodeId own, B& bus, TimePoint now) {
+  template <Bus BusType>
+  bool serve_source(EntryAccess<Device> entries, NodeId own, BusType& bus, TimePoint now) {
     const auto* const tpdo = Tpdos::find(entries, source_multiplexed);
     if (tpdo == nullptr) source_.pending = {};
     while (any_pending() && source_.inhibit.over(now)) {

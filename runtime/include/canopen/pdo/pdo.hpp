@@ -30,45 +30,46 @@ struct Dummy {
 };
 
 /// An entry that occupies more bits in a PDO than its type has: a BOOLEAN in a whole byte, as many devices send it.
-template <class O, std::uint16_t Bits>
-struct Padded : O {
-  static_assert(Bits >= O::bits);
+template <class Object, std::uint16_t Bits>
+struct Padded : Object {
+  static_assert(Bits >= Object::bits);
   static constexpr std::uint16_t bits = Bits;
 };
 
 /// A string with a fixed number of bytes in a PDO: text is padded with 00h and ends at the first one, octet strings
 /// always have this length.
-template <class O, std::uint16_t Bytes>
-struct FixedString : O {
+template <class Object, std::uint16_t Bytes>
+struct FixedString : Object {
   static constexpr std::uint16_t bits = Bytes * 8;
-  static_assert(value_detail::StringValue<typename O::type>, "only a string has a length to be fixed");
-  static_assert(Bytes <= O::type::capacity(), "the entry is longer than the string can be");
+  static_assert(value_detail::StringValue<typename Object::type>, "only a string has a length to be fixed");
+  static_assert(Bytes <= Object::type::capacity(), "the entry is longer than the string can be");
 };
 
-template <class O>
-inline constexpr bool is_dummy = O::index < 0x0020;
+template <class Object>
+inline constexpr bool is_dummy = Object::index < 0x0020;
 
 /// An object whose length does not depend on its value: not a string or DOMAIN.
-template <class O>
-concept FixedLength = DictionaryObject<O> &&(O::bits > 0);
+template <class Object>
+concept FixedLength = DictionaryObject<Object> &&(Object::bits > 0);
 
 /// An object that can be mapped into a TPDO: the EDS has PDOMapping=1 and access ro, rw, rwr or const.
-template <class O>
-concept TpdoMappable = DictionaryObject<O> && allows(O::mappable, Mappable::tpdo);
+template <class Object>
+concept TpdoMappable = DictionaryObject<Object> && allows(Object::mappable, Mappable::tpdo);
 
 /// An object that can be mapped into an RPDO: the EDS has PDOMapping=1 and access rw, rww or wo.
-template <class O>
-concept RpdoMappable = DictionaryObject<O> && allows(O::mappable, Mappable::rpdo);
+template <class Object>
+concept RpdoMappable = DictionaryObject<Object> && allows(Object::mappable, Mappable::rpdo);
 
 namespace pdo_detail {
 
 inline constexpr unsigned frame_data_align = 4;
 static_assert(offsetof(Frame, data) % frame_data_align == 0 && alignof(Frame) % frame_data_align == 0);
 
-template <class A, class B>
-inline constexpr bool same_object = A::index == B::index&& A::sub_index == B::sub_index;
+template <class OneObject, class OtherObject>
+inline constexpr bool same_object =
+    OneObject::index == OtherObject::index&& OneObject::sub_index == OtherObject::sub_index;
 
-template <class Layout, class Label, class O, bool Found>
+template <class Layout, class Label, class Object, bool Found>
 struct MappedObject {
   static constexpr bool is_good = true;
   static_assert(Found, "this PDO does not map the object");
@@ -76,40 +77,41 @@ struct MappedObject {
 
 // Checks one entry at a time, so that the compiler's message names the wrong one.
 
-template <class Number, class Label, class O, bool HasLength, bool Fits>
+template <class Number, class Label, class Object, bool HasLength, bool Fits>
 struct PdoEntry {
   static constexpr bool is_good = true;
   static_assert(HasLength, "a PDO carries no value without a fixed length: no DOMAIN, and strings as FixedString only");
   static_assert(Fits, "the objects of this PDO are longer than its 64 bits together (CiA 301, 7.5.2.36)");
 };
 
-template <class Number, class Label, class O>
+template <class Number, class Label, class Object>
 struct TpdoEntry {
-  static constexpr bool passes = TpdoMappable<O>;
+  static constexpr bool passes = TpdoMappable<Object>;
   static constexpr bool is_good = true;
-  static_assert(O::mappable != Mappable::no, "a TPDO may not carry this object: PDOMapping=0");
-  static_assert(O::mappable == Mappable::no || passes, "a TPDO may not carry this object: its access is wo or rww");
+  static_assert(Object::mappable != Mappable::no, "a TPDO may not carry this object: PDOMapping=0");
+  static_assert(Object::mappable == Mappable::no || passes,
+                "a TPDO may not carry this object: its access is wo or rww");
 };
 
-template <class Number, class Label, class O>
+template <class Number, class Label, class Object>
 struct RpdoEntry {
-  static constexpr bool passes = RpdoMappable<O>;
+  static constexpr bool passes = RpdoMappable<Object>;
   static constexpr bool is_good = true;
-  static_assert(O::mappable != Mappable::no, "an RPDO may not carry this object: PDOMapping=0");
-  static_assert(O::mappable == Mappable::no || passes,
+  static_assert(Object::mappable != Mappable::no, "an RPDO may not carry this object: PDOMapping=0");
+  static_assert(Object::mappable == Mappable::no || passes,
                 "an RPDO may not carry this object: its access is ro, rwr or const");
 };
 
 /// Whether each object can be mapped into a PDO of this direction.
-template <class... Objects, std::size_t... I>
-[[nodiscard]] constexpr auto check_tpdo(std::index_sequence<I...> /*entries*/) {
+template <class... Objects, std::size_t... Position>
+[[nodiscard]] constexpr auto check_tpdo(std::index_sequence<Position...> /*entries*/) {
   return canopen::first_failure(
-      VerdictOf<TpdoMappable<Objects>, TpdoEntry<EntryNumber<I + 1>, LabelOf<Objects>, Objects>>{}...);
+      VerdictOf<TpdoMappable<Objects>, TpdoEntry<EntryNumber<Position + 1>, LabelOf<Objects>, Objects>>{}...);
 }
-template <class... Objects, std::size_t... I>
-[[nodiscard]] constexpr auto check_rpdo(std::index_sequence<I...> /*entries*/) {
+template <class... Objects, std::size_t... Position>
+[[nodiscard]] constexpr auto check_rpdo(std::index_sequence<Position...> /*entries*/) {
   return canopen::first_failure(
-      VerdictOf<RpdoMappable<Objects>, RpdoEntry<EntryNumber<I + 1>, LabelOf<Objects>, Objects>>{}...);
+      VerdictOf<RpdoMappable<Objects>, RpdoEntry<EntryNumber<Position + 1>, LabelOf<Objects>, Objects>>{}...);
 }
 
 /// First bit of each entry, and the end of the last one.
@@ -121,13 +123,19 @@ inline constexpr std::array<unsigned, sizeof...(Objects) + 1> offsets_of = [] {
   return at;
 }();
 
-/// Whether each object has a fixed length and ends within the frame.
-template <class... Objects, std::size_t... I>
-[[nodiscard]] constexpr auto check_room(std::index_sequence<I...> /*entries*/) {
-  constexpr auto& begin = offsets_of<Objects...>;
-  return canopen::first_failure(VerdictOf < (Objects::bits > 0) && (begin[I] > 64 || begin[I + 1] <= 64),
-                                PdoEntry < EntryNumber<I + 1>, LabelOf<Objects>, Objects, (Objects::bits > 0),
-                                (begin[I] > 64 || begin[I + 1] <= 64) >> {}...);
+/// Whether an object has a fixed length and ends within the frame. Only the first object that does not end within it is
+/// reported; more than 64 objects are reported by the layout.
+template <class Number, class Object, unsigned Begin, bool IsReported>
+[[nodiscard]] constexpr auto check_entry_room() {
+  constexpr bool has_length = Object::bits > 0;
+  constexpr bool fits = Begin > 64 || Begin + Object::bits <= 64;
+  constexpr bool passes = !IsReported || (has_length && fits);
+  return VerdictOf<passes, PdoEntry<Number, LabelOf<Object>, Object, has_length, fits>>{};
+}
+template <class... Objects, std::size_t... Position>
+[[nodiscard]] constexpr auto check_room(std::index_sequence<Position...> /*entries*/) {
+  return canopen::first_failure(check_entry_room<EntryNumber<Position + 1>, Objects, offsets_of<Objects...>[Position],
+                                                 sizeof...(Objects) <= 64>()...);
 }
 
 }  // namespace pdo_detail
@@ -151,20 +159,20 @@ struct PdoLayout {
   /// First bit of each entry, and the end of the last one.
   static constexpr std::array<unsigned, entries + 1> offsets = pdo_detail::offsets_of<Objects...>;
 
-  /// The object of entry `I`.
-  template <std::size_t I>
-  using Entry = std::tuple_element_t<I, std::tuple<Objects...>>;
+  /// The object of entry `Position`.
+  template <std::size_t Position>
+  using Entry = std::tuple_element_t<Position, std::tuple<Objects...>>;
 
   /// Whether an object is mapped.
-  template <class O>
-  static constexpr bool maps = (pdo_detail::same_object<O, Objects> || ...);
+  template <class Object>
+  static constexpr bool maps = (pdo_detail::same_object<Object, Objects> || ...);
 
   /// Position of the entry that maps an object, from 0; the first one if there are several.
-  template <class O>
+  template <class Object>
   static constexpr std::size_t position_of = [] {
     std::size_t position = 0;
-    static_cast<void>(((pdo_detail::same_object<O, Objects> || (++position, false)) || ...));
-    return maps<O> ? position : 0;
+    static_cast<void>(((pdo_detail::same_object<Object, Objects> || (++position, false)) || ...));
+    return maps<Object> ? position : 0;
   }();
 
   /// Returns the data bytes for these values. A value has the type of its object or a narrower one, or is a constant,
@@ -203,72 +211,74 @@ struct PdoLayout {
     return unpack_aligned<pdo_detail::frame_data_align>(frame.data, std::index_sequence_for<Objects...>{});
   }
 
-  /// Returns the value of entry `I` of these data bytes.
-  template <std::size_t I>
-  [[nodiscard]] static constexpr typename Entry<I>::type get(const Data& data) {
-    return get_aligned<I, 1>(data);
+  /// Returns the value of entry `Position` of these data bytes.
+  template <std::size_t Position>
+  [[nodiscard]] static constexpr typename Entry<Position>::type get(const Data& data) {
+    return get_aligned<Position, 1>(data);
   }
-  template <std::size_t I>
-  [[nodiscard]] static constexpr typename Entry<I>::type get(const Frame& frame) {
-    return get_from_words<I>(frame.data);
+  template <std::size_t Position>
+  [[nodiscard]] static constexpr typename Entry<Position>::type get(const Frame& frame) {
+    return get_from_words<Position>(frame.data);
   }
 
   /// The same for data at an address that is a multiple of four.
-  template <std::size_t I>
-  [[nodiscard]] static constexpr typename Entry<I>::type get_from_words(const Data& data) {
-    return get_aligned<I, pdo_detail::frame_data_align>(data);
+  template <std::size_t Position>
+  [[nodiscard]] static constexpr typename Entry<Position>::type get_from_words(const Data& data) {
+    return get_aligned<Position, pdo_detail::frame_data_align>(data);
   }
 
   /// Returns the value of an object in these data bytes.
-  template <DictionaryObject O>
-  [[nodiscard]] static constexpr typename O::type get(const Data& data) {
-    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<O>, O, maps<O>>::is_good);
-    return get_aligned<position_of<O>, 1>(data);
+  template <DictionaryObject Object>
+  [[nodiscard]] static constexpr typename Object::type get(const Data& data) {
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, Object, maps<Object>>::is_good);
+    return get_aligned<position_of<Object>, 1>(data);
   }
-  template <DictionaryObject O>
-  [[nodiscard]] static constexpr typename O::type get(const Frame& frame) {
-    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<O>, O, maps<O>>::is_good);
-    return get_aligned<position_of<O>, pdo_detail::frame_data_align>(frame.data);
+  template <DictionaryObject Object>
+  [[nodiscard]] static constexpr typename Object::type get(const Frame& frame) {
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, Object, maps<Object>>::is_good);
+    return get_aligned<position_of<Object>, pdo_detail::frame_data_align>(frame.data);
   }
 
-  /// Sets the value of entry `I`. All other bits keep their value.
-  template <std::size_t I>
-  static constexpr void set(Data& data, ParameterFor<Entry<I>> value) {
-    pdo_detail::replace<offsets[I], Entry<I>::bits>(data, value_for_detail::value_in(value));
+  /// Sets the value of entry `Position`. All other bits keep their value.
+  template <std::size_t Position>
+  static constexpr void set(Data& data, ParameterFor<Entry<Position>> value) {
+    pdo_detail::replace<offsets[Position], Entry<Position>::bits>(data, value_for_detail::value_in(value));
   }
-  template <std::size_t I>
-  static constexpr void set(Frame& frame, ParameterFor<Entry<I>> value) {
-    pdo_detail::replace<offsets[I], Entry<I>::bits, pdo_detail::frame_data_align>(frame.data,
-                                                                                  value_for_detail::value_in(value));
+  template <std::size_t Position>
+  static constexpr void set(Frame& frame, ParameterFor<Entry<Position>> value) {
+    pdo_detail::replace<offsets[Position], Entry<Position>::bits, pdo_detail::frame_data_align>(
+        frame.data, value_for_detail::value_in(value));
   }
 
   /// Sets the value of an object. All other bits keep their value.
-  template <DictionaryObject O>
-  static constexpr void set(Data& data, ParameterFor<O> value) {
-    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<O>, O, maps<O>>::is_good);
-    set<position_of<O>>(data, value_for_detail::value_in(value));
+  template <DictionaryObject Object>
+  static constexpr void set(Data& data, ParameterFor<Object> value) {
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, Object, maps<Object>>::is_good);
+    set<position_of<Object>>(data, value_for_detail::value_in(value));
   }
-  template <DictionaryObject O>
-  static constexpr void set(Frame& frame, ParameterFor<O> value) {
-    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<O>, O, maps<O>>::is_good);
-    set<position_of<O>>(frame, value_for_detail::value_in(value));
-  }
-
-  /// Sets the value of entry `I`, whose bits must be zero.
-  template <std::size_t I>
-  static constexpr void put(Data& data, ParameterFor<Entry<I>> value) {
-    pdo_detail::put<offsets[I], Entry<I>::bits>(data, value_for_detail::value_in(value));
-  }
-  template <std::size_t I>
-  static constexpr void put(Frame& frame, ParameterFor<Entry<I>> value) {
-    pdo_detail::put<offsets[I], Entry<I>::bits, pdo_detail::frame_data_align>(frame.data,
-                                                                              value_for_detail::value_in(value));
+  template <DictionaryObject Object>
+  static constexpr void set(Frame& frame, ParameterFor<Object> value) {
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, Object, maps<Object>>::is_good);
+    set<position_of<Object>>(frame, value_for_detail::value_in(value));
   }
 
-  /// Calls `visit.template operator()<O, I>()` for each entry in order.
+  /// Sets the value of entry `Position`, whose bits must be zero.
+  template <std::size_t Position>
+  static constexpr void put(Data& data, ParameterFor<Entry<Position>> value) {
+    pdo_detail::put<offsets[Position], Entry<Position>::bits>(data, value_for_detail::value_in(value));
+  }
+  template <std::size_t Position>
+  static constexpr void put(Frame& frame, ParameterFor<Entry<Position>> value) {
+    pdo_detail::put<offsets[Position], Entry<Position>::bits, pdo_detail::frame_data_align>(
+        frame.data, value_for_detail::value_in(value));
+  }
+
+  /// Calls `visit.template operator()<Object, Position>()` for each entry in order.
   template <class Visit>
   static constexpr void for_each(Visit&& visit) {
-    [&]<std::size_t... I>(std::index_sequence<I...>) { (visit.template operator()<Objects, I>(), ...); }
+    [&]<std::size_t... Position>(std::index_sequence<Position...>) {
+      (visit.template operator()<Objects, Position>(), ...);
+    }
     (std::index_sequence_for<Objects...>{});
   }
 
@@ -276,30 +286,33 @@ struct PdoLayout {
   template <unsigned Align>
   static constexpr void pack_aligned([[maybe_unused]] Data& data, const typename Objects::type&... values) {
     constexpr pdo_detail::Chunks chunks = pdo_detail::chunks_of(offsets);
-    [&]<std::size_t... C>(std::index_sequence<C...>) {
-      (store_chunk<Align, chunks.rows[C].first, chunks.rows[C].bits>(data, std::index_sequence_for<Objects...>{},
-                                                                     values...),
+    [&]<std::size_t... Part>(std::index_sequence<Part...>) {
+      (store_chunk<Align, chunks.rows[Part].first, chunks.rows[Part].bits>(data, std::index_sequence_for<Objects...>{},
+                                                                           values...),
        ...);
     }
     (std::make_index_sequence<chunks.count>{});
   }
 
-  template <unsigned Align, unsigned First, unsigned Bits, std::size_t... I>
-  static constexpr void store_chunk(Data& data, std::index_sequence<I...>, const typename Objects::type&... values) {
+  template <unsigned Align, unsigned First, unsigned Bits, std::size_t... Position>
+  static constexpr void store_chunk(Data& data, std::index_sequence<Position...>,
+                                    const typename Objects::type&... values) {
     pdo_detail::store_bytes<Bits / 8, pdo_detail::alignment_at(Align, First / 8)>(
-        data.data() + First / 8, static_cast<pdo_detail::ChunkWord<Bits>>(
-                                     (pdo_detail::ChunkWord<Bits>{0} | ... |
-                                      pdo_detail::part_of_chunk<offsets[I], Objects::bits, First, Bits>(values))));
+        data.data() + First / 8,
+        static_cast<pdo_detail::ChunkWord<Bits>>(
+            (pdo_detail::ChunkWord<Bits>{0} | ... |
+             pdo_detail::part_of_chunk<offsets[Position], Objects::bits, First, Bits>(values))));
   }
 
-  template <std::size_t I, unsigned Align>
-  [[nodiscard]] static constexpr typename Entry<I>::type get_aligned(const Data& data) {
-    return pdo_detail::value_at<typename Entry<I>::type, offsets[I], Entry<I>::bits, Align>(data);
+  template <std::size_t Position, unsigned Align>
+  [[nodiscard]] static constexpr typename Entry<Position>::type get_aligned(const Data& data) {
+    return pdo_detail::value_at<typename Entry<Position>::type, offsets[Position], Entry<Position>::bits, Align>(data);
   }
 
-  template <unsigned Align, std::size_t... I>
-  [[nodiscard]] static constexpr Values unpack_aligned([[maybe_unused]] const Data& data, std::index_sequence<I...>) {
-    return Values{pdo_detail::value_at<typename Objects::type, offsets[I], Objects::bits, Align, true>(data)...};
+  template <unsigned Align, std::size_t... Position>
+  [[nodiscard]] static constexpr Values unpack_aligned([[maybe_unused]] const Data& data,
+                                                       std::index_sequence<Position...>) {
+    return Values{pdo_detail::value_at<typename Objects::type, offsets[Position], Objects::bits, Align, true>(data)...};
   }
 };
 

@@ -23,13 +23,13 @@ namespace pdo_detail {
 
 /// Whether the length of a mapping entry fits the object in the dictionary: a BOOLEAN may occupy a byte, a string up to
 /// its capacity.
-template <class O>
+template <class Object>
 [[nodiscard]] constexpr bool length_fits(entry::Word word) {
-  if (entry::is_boolean(word)) return O::bits == 1 || O::bits == 8;
-  if constexpr (StringValue<typename O::type>) {
-    return entry::is_string(word) && O::bits % 8 == 0 && O::bits <= 8 * O::type::capacity();
+  if (entry::is_boolean(word)) return Object::bits == 1 || Object::bits == 8;
+  if constexpr (StringValue<typename Object::type>) {
+    return entry::is_string(word) && Object::bits % 8 == 0 && Object::bits <= 8 * Object::type::capacity();
   } else {
-    return O::bits == 8 * entry::wire_bytes(word);
+    return Object::bits == 8 * entry::wire_bytes(word);
   }
 }
 
@@ -52,29 +52,30 @@ enum class EntryFault : std::uint8_t {
 };
 
 /// A layout with a direction has checked it, and each layout its length.
-template <const Dictionary& D, class Pdo, class Layout, class O, unsigned Granularity>
+template <const Dictionary& DeviceDictionary, class Pdo, class Layout, class Object, unsigned Granularity>
 [[nodiscard]] constexpr EntryFault fault_of() {
-  constexpr entry::Word word = D.find(O::index, O::sub_index);
+  constexpr entry::Word word = DeviceDictionary.find(Object::index, Object::sub_index);
   constexpr bool is_directed = requires { Layout::has_direction; };
-  if constexpr (is_dummy<O>) {
+  if constexpr (is_dummy<Object>) {
     if (!Pdo::receive) return EntryFault::dummy_in_a_tpdo;
-    if (O::index <= 0x0008 && O::bits != dummy_bits[O::index > 0x0008 ? 0 : O::index])
+    if (Object::index <= 0x0008 && Object::bits != dummy_bits[Object::index > 0x0008 ? 0 : Object::index])
       return EntryFault::dummy_of_another_length;
   } else {
     if (word == Dictionary::no_object) return EntryFault::no_object;
     if (word == Dictionary::no_sub_index) return EntryFault::no_sub_index;
     const bool maps_nothing = (word & (entry::tpdo | entry::rpdo)) == 0;
     const bool maps_here = (word & (Pdo::receive ? entry::rpdo : entry::tpdo)) != 0;
-    if (maps_nothing) return is_directed && O::mappable == Mappable::no ? EntryFault::none : EntryFault::not_mappable;
+    if (maps_nothing)
+      return is_directed && Object::mappable == Mappable::no ? EntryFault::none : EntryFault::not_mappable;
     if (!maps_here) return Pdo::receive ? EntryFault::not_in_an_rpdo : EntryFault::not_in_a_tpdo;
     if (entry::is_domain(word)) return EntryFault::no_fixed_length;
-    if (O::bits == 0) return EntryFault::none;
-    if (!length_fits<O>(word)) return EntryFault::other_length;
+    if (Object::bits == 0) return EntryFault::none;
+    if (!length_fits<Object>(word)) return EntryFault::other_length;
   }
-  return O::bits % Granularity != 0 ? EntryFault::granularity : EntryFault::none;
+  return Object::bits % Granularity != 0 ? EntryFault::granularity : EntryFault::none;
 }
 
-template <const Dictionary& D, class Pdo, class Number, class Label, class O, EntryFault Fault>
+template <const Dictionary& DeviceDictionary, class Pdo, class Number, class Label, class Object, EntryFault Fault>
 struct CheckedEntry {
   static constexpr bool is_good = true;
   static_assert(Fault != EntryFault::no_object, "PDO mapping: the device has no such object");
@@ -106,38 +107,39 @@ struct CheckedCobId {
   static_assert(Legal, "PDO: its COB-ID is restricted, or has more than 11 bits, for some node-ID (CiA 301, 7.3.5)");
 };
 
-template <const Dictionary& D, class Pdo, class Number, class Layout, class O, unsigned Granularity>
+template <const Dictionary& DeviceDictionary, class Pdo, class Number, class Layout, class Object, unsigned Granularity>
 [[nodiscard]] constexpr auto check_entry() {
-  constexpr EntryFault fault = fault_of<D, Pdo, Layout, O, Granularity>();
-  return VerdictOf<fault == EntryFault::none, CheckedEntry<D, Pdo, Number, LabelOf<O>, O, fault>>{};
+  constexpr EntryFault fault = fault_of<DeviceDictionary, Pdo, Layout, Object, Granularity>();
+  return VerdictOf<fault == EntryFault::none,
+                   CheckedEntry<DeviceDictionary, Pdo, Number, LabelOf<Object>, Object, fault>>{};
 }
-template <const Dictionary& D, class Pdo, class Layout, unsigned Granularity, std::size_t... I>
-[[nodiscard]] constexpr auto check_entries(std::index_sequence<I...> /*entries*/) {
-  return canopen::first_failure(
-      check_entry<D, Pdo, EntryNumber<I + 1>, Layout, typename Layout::template Entry<I>, Granularity>()...);
+template <const Dictionary& DeviceDictionary, class Pdo, class Layout, unsigned Granularity, std::size_t... Position>
+[[nodiscard]] constexpr auto check_entries(std::index_sequence<Position...> /*entries*/) {
+  return canopen::first_failure(check_entry<DeviceDictionary, Pdo, EntryNumber<Position + 1>, Layout,
+                                            typename Layout::template Entry<Position>, Granularity>()...);
 }
 
-template <const Dictionary& D, class Pdo, class Layout, PdoParameters P, unsigned Granularity>
+template <const Dictionary& DeviceDictionary, class Pdo, class Layout, PdoParameters Communication,
+          unsigned Granularity>
 struct CheckedPdo {
   using Label = Pdo;
   static constexpr bool holds = true;
   static constexpr std::uint16_t index = (Pdo::receive ? 0x1400 : 0x1800) + Pdo::number - 1;
-  static constexpr PdoCobId cob_id{Pdo::receive, P.cob_id, P.plus_node_id};
+  static constexpr PdoCobId cob_id{Pdo::receive, Communication.cob_id, Communication.plus_node_id};
 
   static_assert(Pdo::number >= 1 && Pdo::number <= 512, "PDO: its number is 1 to 512");
-  static_assert(D.has(index, 1), "PDO: the device has no communication parameter for it");
-  static_assert(P.compatibility_entry || !D.has(index, 4),
+  static_assert(DeviceDictionary.has(index, 1), "PDO: the device has no communication parameter for it");
+  static_assert(Communication.compatibility_entry || !DeviceDictionary.has(index, 4),
                 "PDO: sub-index 4 of its communication parameter is reserved");
-  static_assert(CheckedCobId<Pdo, CanIdLabel<shown_can_id(P)>, cob_id_is_legal(P)>::is_legal);
-  static_assert(transmission_type_is_legal(Pdo::receive, P.transmission_type),
+  static_assert(CheckedCobId<Pdo, CanIdLabel<shown_can_id(Communication)>, cob_id_is_legal(Communication)>::is_legal);
+  static_assert(transmission_type_is_legal(Pdo::receive, Communication.transmission_type),
                 "PDO: its transmission type is reserved");
-  static_assert(P.inhibit_time == 0 || inhibit_time_is_used(Pdo::receive, P.transmission_type),
+  static_assert(Communication.inhibit_time == 0 || inhibit_time_is_used(Pdo::receive, Communication.transmission_type),
                 "PDO: an inhibit time is for TPDOs of transmission types 254 and 255");
-  static_assert(P.event_timer == 0 || event_timer_is_used(Pdo::receive, P.transmission_type),
+  static_assert(Communication.event_timer == 0 || event_timer_is_used(Pdo::receive, Communication.transmission_type),
                 "PDO: an event timer is for RPDOs, and for TPDOs of transmission types 254 and 255");
-  static_assert(Layout::entries <= 64, "PDO mapping: a PDO maps 64 objects at most");
-  static_assert(
-      decltype(check_entries<D, Pdo, Layout, Granularity>(std::make_index_sequence<Layout::entries>{}))::type::is_good);
+  static_assert(decltype(check_entries<DeviceDictionary, Pdo, Layout, Granularity>(
+      std::make_index_sequence<Layout::entries>{}))::type::is_good);
 };
 
 template <class First, class Second, class Id, bool Clash>
@@ -152,22 +154,22 @@ inline constexpr CobIdClash clash_of = [] {
   return find_cob_id_clash(cob_ids, sizeof...(Checked));
 }();
 
-template <std::size_t I, class... Checked>
-using NthOf = std::tuple_element_t<I, std::tuple<Checked...>>;
+template <std::size_t Position, class... Checked>
+using NthOf = std::tuple_element_t<Position, std::tuple<Checked...>>;
 
 }  // namespace pdo_detail
 
 /// `holds` if a layout can be TPDO `Number` of the device with this dictionary and, if specified, with these
 /// communication parameters; does not compile if it cannot. `Granularity` is that of the EDS: entries begin and end at
 /// multiples of this number of bits.
-template <const Dictionary& D, std::uint16_t Number, class Layout, PdoParameters P = PdoParameters{},
-          unsigned Granularity = 1>
-using CheckedTpdo = pdo_detail::CheckedPdo<D, TpdoNumber<Number>, Layout, P, Granularity>;
+template <const Dictionary& DeviceDictionary, std::uint16_t Number, class Layout,
+          PdoParameters Communication = PdoParameters{}, unsigned Granularity = 1>
+using CheckedTpdo = pdo_detail::CheckedPdo<DeviceDictionary, TpdoNumber<Number>, Layout, Communication, Granularity>;
 
 /// The same for RPDO `Number`.
-template <const Dictionary& D, std::uint16_t Number, class Layout, PdoParameters P = PdoParameters{},
-          unsigned Granularity = 1>
-using CheckedRpdo = pdo_detail::CheckedPdo<D, RpdoNumber<Number>, Layout, P, Granularity>;
+template <const Dictionary& DeviceDictionary, std::uint16_t Number, class Layout,
+          PdoParameters Communication = PdoParameters{}, unsigned Granularity = 1>
+using CheckedRpdo = pdo_detail::CheckedPdo<DeviceDictionary, RpdoNumber<Number>, Layout, Communication, Granularity>;
 
 /// Whether the valid ones among these CheckedTpdos and CheckedRpdos of a device have different COB-IDs for every
 /// node-ID; does not compile if two are equal. Several RPDOs may have the same COB-ID.

@@ -50,8 +50,8 @@ using WordOf = std::conditional_t<
     std::conditional_t<Bytes == 2, std::uint16_t, std::conditional_t<Bytes == 4, std::uint32_t, std::uint64_t>>>;
 
 /// Returns a value whose low `Bits` bits are valid; the others are undefined.
-template <unsigned Bits, class T>
-[[nodiscard]] constexpr Raw<Bits> unmasked(const T& value) {
+template <unsigned Bits, class Type>
+[[nodiscard]] constexpr Raw<Bits> unmasked(const Type& value) {
   if constexpr (Bits > 32) {
     return to_bits(value);
   } else {
@@ -60,9 +60,9 @@ template <unsigned Bits, class T>
 }
 
 /// Returns the low `Bits` bits of a value; the others are zero.
-template <unsigned Bits, class T>
-[[nodiscard]] constexpr Raw<Bits> masked(const T& value) {
-  if constexpr (std::is_same_v<T, bool>) {
+template <unsigned Bits, class Type>
+[[nodiscard]] constexpr Raw<Bits> masked(const Type& value) {
+  if constexpr (std::is_same_v<Type, bool>) {
     return unmasked<Bits>(value);
   } else {
     return unmasked<Bits>(value) & static_cast<Raw<Bits>>(mask(Bits));
@@ -139,31 +139,31 @@ struct Window {
 template <unsigned At, unsigned Bits>
 using TouchedBytes = std::make_index_sequence<(At % 8 + Bits + 7) / 8>;
 
-/// Returns byte `I` of a value that begins at bit `Shift` of byte 0.
-template <unsigned Shift, std::size_t I, class Value>
+/// Returns byte `Position` of a value that begins at bit `Shift` of byte 0.
+template <unsigned Shift, std::size_t Position, class Value>
 [[nodiscard]] constexpr std::uint8_t byte_of(Value value) {
-  if constexpr (I == 0) {
+  if constexpr (Position == 0) {
     return static_cast<std::uint8_t>(value << Shift);
   } else {
-    return static_cast<std::uint8_t>(value >> (8 * I - Shift));
+    return static_cast<std::uint8_t>(value >> (8 * Position - Shift));
   }
 }
 
-/// Returns the bits of byte `I` at their position in the value.
-template <class Value, unsigned Shift, std::size_t I>
+/// Returns the bits of byte `Position` at their position in the value.
+template <class Value, unsigned Shift, std::size_t Position>
 [[nodiscard]] constexpr Value bits_of(std::uint8_t byte) {
-  if constexpr (I == 0) {
+  if constexpr (Position == 0) {
     return static_cast<Value>(byte >> Shift);
   } else {
-    return static_cast<Value>(Value{byte} << (8 * I - Shift));
+    return static_cast<Value>(Value{byte} << (8 * Position - Shift));
   }
 }
 
 template <unsigned At, unsigned Bits>
 [[nodiscard]] constexpr Raw<Bits> take_bytewise(const std::uint8_t* data) {
   using Value = Raw<Bits>;
-  return [&]<std::size_t... I>(std::index_sequence<I...>) {
-    return (Value{0} | ... | bits_of<Value, At % 8, I>(data[At / 8 + I]));
+  return [&]<std::size_t... Position>(std::index_sequence<Position...>) {
+    return (Value{0} | ... | bits_of<Value, At % 8, Position>(data[At / 8 + Position]));
   }
   (TouchedBytes<At, Bits>{}) & static_cast<Value>(mask(Bits));
 }
@@ -177,46 +177,47 @@ template <unsigned At, unsigned Bits>
 }
 
 /// Returns the value of `Bits` bits from bit `At` on, which the window contains.
-template <class T, unsigned At, unsigned Bits, unsigned Align, unsigned First, unsigned Bytes>
-[[nodiscard]] T value_in_window(const Data& data) {
+template <class Type, unsigned At, unsigned Bits, unsigned Align, unsigned First, unsigned Bytes>
+[[nodiscard]] Type value_in_window(const Data& data) {
   const WordOf<Bytes> word = load_word<Bytes, alignment_at(Align, First)>(data.data() + First);
   constexpr unsigned shift = At - 8 * First;
   constexpr bool reaches_the_end = shift + Bits == 8 * Bytes;
-  if constexpr (std::is_same_v<T, bool>) {
+  if constexpr (std::is_same_v<Type, bool>) {
     return (word & (mask(Bits) << shift)) != 0;
-  } else if constexpr (std::is_integral_v<T> && shift == 0 && Bits == 8 * sizeof(T) && reaches_the_end) {
-    return static_cast<T>(word);
-  } else if constexpr (std::is_signed_v<T> && std::is_integral_v<T> && reaches_the_end) {
-    return static_cast<T>(static_cast<std::make_signed_t<WordOf<Bytes>>>(word) >> shift);
-  } else if constexpr (std::is_signed_v<T> && std::is_integral_v<T>) {
+  } else if constexpr (std::is_integral_v<Type> && shift == 0 && Bits == 8 * sizeof(Type) && reaches_the_end) {
+    return static_cast<Type>(word);
+  } else if constexpr (std::is_signed_v<Type> && std::is_integral_v<Type> && reaches_the_end) {
+    return static_cast<Type>(static_cast<std::make_signed_t<WordOf<Bytes>>>(word) >> shift);
+  } else if constexpr (std::is_signed_v<Type> && std::is_integral_v<Type>) {
     using Word = Raw<8 * Bytes>;
     constexpr unsigned above = 8 * sizeof(Word) - shift - Bits;
-    return static_cast<T>(static_cast<std::make_signed_t<Word>>(Word{word} << above) >> (above + shift));
+    return static_cast<Type>(static_cast<std::make_signed_t<Word>>(Word{word} << above) >> (above + shift));
   } else {
-    return from_bits<T, Bits>(static_cast<Raw<Bits>>(word >> shift) & static_cast<Raw<Bits>>(mask(Bits)));
+    return from_bits<Type, Bits>(static_cast<Raw<Bits>>(word >> shift) & static_cast<Raw<Bits>>(mask(Bits)));
   }
 }
 
 /// Returns the value of `Bits` bits from bit `At` on, for data aligned to `Align`. `Shared`: other entries
 /// are read too.
-template <class T, unsigned At, unsigned Bits, unsigned Align = 1, bool Shared = false>
-[[nodiscard]] constexpr T value_at(const Data& data) {
+template <class Type, unsigned At, unsigned Bits, unsigned Align = 1, bool Shared = false>
+[[nodiscard]] constexpr Type value_at(const Data& data) {
   constexpr Window window = Shared ? shared_window_of(At, Bits, Align) : window_of(At, Bits, Align);
   if constexpr (window.bytes > 0) {
-    if (!std::is_constant_evaluated()) return value_in_window<T, At, Bits, Align, window.first, window.bytes>(data);
+    if (!std::is_constant_evaluated()) return value_in_window<Type, At, Bits, Align, window.first, window.bytes>(data);
   }
-  return from_bits<T, Bits>(take_bytewise<At, Bits>(data.data()));
+  return from_bits<Type, Bits>(take_bytewise<At, Bits>(data.data()));
 }
 
 /// Writes the low `Bits` bits of a value at bit `At` of data, where the bits must be zero.
-template <unsigned At, unsigned Bits, unsigned Align = 1, class T>
-constexpr void put(Data& data, const T& value) {
+template <unsigned At, unsigned Bits, unsigned Align = 1, class Type>
+constexpr void put(Data& data, const Type& value) {
   const Raw<Bits> raw = masked<Bits>(value);
   if constexpr (At % 8 == 0 && Bits % 8 == 0) {
     store_bytes<Bits / 8, alignment_at(Align, At / 8)>(data.data() + At / 8, raw);
   } else {
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-      ((data[At / 8 + I] = static_cast<std::uint8_t>(data[At / 8 + I] | byte_of<At % 8, I>(raw))), ...);
+    [&]<std::size_t... Position>(std::index_sequence<Position...>) {
+      ((data[At / 8 + Position] = static_cast<std::uint8_t>(data[At / 8 + Position] | byte_of<At % 8, Position>(raw))),
+       ...);
     }
     (TouchedBytes<At, Bits>{});
   }
@@ -225,17 +226,17 @@ constexpr void put(Data& data, const T& value) {
 template <unsigned At, unsigned Bits>
 constexpr void replace_bytewise(Data& data, Raw<Bits> raw) {
   constexpr auto all = static_cast<Raw<Bits>>(mask(Bits));
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    ((data[At / 8 + I] =
-          static_cast<std::uint8_t>((data[At / 8 + I] & ~byte_of<At % 8, I>(all)) | byte_of<At % 8, I>(raw))),
+  [&]<std::size_t... Position>(std::index_sequence<Position...>) {
+    ((data[At / 8 + Position] = static_cast<std::uint8_t>((data[At / 8 + Position] & ~byte_of<At % 8, Position>(all)) |
+                                                          byte_of<At % 8, Position>(raw))),
      ...);
   }
   (TouchedBytes<At, Bits>{});
 }
 
 /// Writes the low `Bits` bits of a value at bit `At` of data, replacing the bits there.
-template <unsigned At, unsigned Bits, unsigned Align = 1, class T>
-constexpr void replace(Data& data, const T& value) {
+template <unsigned At, unsigned Bits, unsigned Align = 1, class Type>
+constexpr void replace(Data& data, const Type& value) {
   constexpr Window window = window_of(At, Bits, Align);
   if constexpr (At % 8 == 0 && Bits % 8 == 0) {
     store_bytes<Bits / 8, alignment_at(Align, At / 8)>(data.data() + At / 8, unmasked<Bits>(value));
@@ -270,14 +271,14 @@ struct Chunks {
 
 /// Returns the chunks of a layout, given the first bit of each entry and the end of the last one. Entries that share
 /// bytes are collected in words of the processor.
-template <std::size_t N>
-[[nodiscard]] constexpr Chunks chunks_of(const std::array<unsigned, N>& offsets) {
+template <std::size_t Count>
+[[nodiscard]] constexpr Chunks chunks_of(const std::array<unsigned, Count>& offsets) {
   constexpr unsigned word_bits = 8 * sizeof(std::size_t);
   Chunks chunks;
   unsigned first = 0;
   unsigned entries = 0;
-  for (std::size_t i = 1; i < N; ++i) {
-    const bool last = i + 1 == N;
+  for (std::size_t i = 1; i < Count; ++i) {
+    const bool last = i + 1 == Count;
     ++entries;
     if (offsets[i] % 8 != 0 && !last) continue;
     const unsigned end = (offsets[i] + 7) / 8 * 8;
@@ -296,8 +297,8 @@ using ChunkWord = std::conditional_t<(ChunkBits <= 8), std::uint8_t, Raw<ChunkBi
 
 /// Returns the bits that an entry of `Bits` bits at bit `At` contributes to the chunk of `ChunkBits` bits at
 /// bit `First`.
-template <unsigned At, unsigned Bits, unsigned First, unsigned ChunkBits, class T>
-[[nodiscard]] constexpr ChunkWord<ChunkBits> part_of_chunk([[maybe_unused]] const T& value) {
+template <unsigned At, unsigned Bits, unsigned First, unsigned ChunkBits, class Type>
+[[nodiscard]] constexpr ChunkWord<ChunkBits> part_of_chunk([[maybe_unused]] const Type& value) {
   using Word = ChunkWord<ChunkBits>;
   if constexpr (At >= First + ChunkBits || At + Bits <= First) {
     return 0;

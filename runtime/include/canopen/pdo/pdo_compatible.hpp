@@ -20,18 +20,18 @@ namespace pdo_detail {
 /// Meaning of an entry's bits; types of the same kind and length are compatible.
 enum class EntryKind : std::uint8_t { boolean, unsigned_integer, signed_integer, real, time, string };
 
-template <class T>
+template <class Type>
 [[nodiscard]] constexpr EntryKind kind_of() {
-  if constexpr (std::is_same_v<T, bool>) {
+  if constexpr (std::is_same_v<Type, bool>) {
     return EntryKind::boolean;
-  } else if constexpr (std::is_floating_point_v<T>) {
+  } else if constexpr (std::is_floating_point_v<Type>) {
     return EntryKind::real;
-  } else if constexpr (std::is_same_v<T, TimeOfDay> || std::is_same_v<T, TimeDifference>) {
+  } else if constexpr (std::is_same_v<Type, TimeOfDay> || std::is_same_v<Type, TimeDifference>) {
     return EntryKind::time;
-  } else if constexpr (StringValue<T>) {
+  } else if constexpr (StringValue<Type>) {
     return EntryKind::string;
   } else {
-    return std::is_signed_v<T> ? EntryKind::signed_integer : EntryKind::unsigned_integer;
+    return std::is_signed_v<Type> ? EntryKind::signed_integer : EntryKind::unsigned_integer;
   }
 }
 
@@ -51,23 +51,23 @@ template <class Layout>
   return i;
 }
 
-template <class Layout, std::size_t I>
+template <class Layout, std::size_t Position>
 [[nodiscard]] constexpr auto entry_or_none() {
-  if constexpr (I < Layout::entries) {
-    return std::type_identity<typename Layout::template Entry<I>>{};
+  if constexpr (Position < Layout::entries) {
+    return std::type_identity<typename Layout::template Entry<Position>>{};
   } else {
     return std::type_identity<NoObject>{};
   }
 }
 
-/// Entry `I` of the consumer, and the producer's entry at the same bit. A dummy ignores its bits.
-template <class Produced, class Consumed, std::size_t I>
+/// Entry `Position` of the consumer, and the producer's entry at the same bit. A dummy ignores its bits.
+template <class Produced, class Consumed, std::size_t Position>
 struct LinkOf {
-  using Consumer = typename Consumed::template Entry<I>;
-  using Producer = typename decltype(entry_or_none<Produced, entry_at<Produced>(Consumed::offsets[I])>())::type;
+  using Consumer = typename Consumed::template Entry<Position>;
+  using Producer = typename decltype(entry_or_none<Produced, entry_at<Produced>(Consumed::offsets[Position])>())::type;
 
   static constexpr Link value = [] {
-    if (Consumed::offsets[I + 1] > Produced::bits) return Link::too_short;
+    if (Consumed::offsets[Position + 1] > Produced::bits) return Link::too_short;
     if constexpr (is_dummy<Consumer>) {
       return Link::fits;
     } else if constexpr (std::is_same_v<Producer, NoObject>) {
@@ -82,31 +82,33 @@ struct LinkOf {
 
 template <class Produced, class Consumed>
 [[nodiscard]] constexpr bool all_links_fit() {
-  return []<std::size_t... I>(std::index_sequence<I...>) {
-    return (true && ... && (LinkOf<Produced, Consumed, I>::value == Link::fits));
+  return []<std::size_t... Position>(std::index_sequence<Position...>) {
+    return (true && ... && (LinkOf<Produced, Consumed, Position>::value == Link::fits));
   }
   (std::make_index_sequence<Consumed::entries>{});
 }
 
 /// Checks one entry of an RPDO, so that the compiler's message names both objects.
-template <class Number, class ConsumerLabel, class Consumer, class ProducerLabel, class Producer, Link L>
+template <class Number, class ConsumerLabel, class Consumer, class ProducerLabel, class Producer, Link Found>
 struct CompatibleEntry {
   static constexpr bool is_good = true;
-  static_assert(L != Link::too_short, "PDO link: the TPDO ends before this entry of the RPDO does");
-  static_assert(L != Link::nothing_begins_there,
+  static_assert(Found != Link::too_short, "PDO link: the TPDO ends before this entry of the RPDO does");
+  static_assert(Found != Link::nothing_begins_there,
                 "PDO link: no entry of the TPDO begins where this one of the RPDO does");
-  static_assert(L != Link::other_length, "PDO link: the entry of the TPDO has another length than that of the RPDO");
-  static_assert(L != Link::other_kind, "PDO link: the entry of the TPDO is of another kind than that of the RPDO");
+  static_assert(Found != Link::other_length,
+                "PDO link: the entry of the TPDO has another length than that of the RPDO");
+  static_assert(Found != Link::other_kind, "PDO link: the entry of the TPDO is of another kind than that of the RPDO");
 };
 
-template <std::size_t I, class Link>
-using CheckedLink = CompatibleEntry<EntryNumber<I + 1>, LabelOf<typename Link::Consumer>, typename Link::Consumer,
-                                    LabelOf<typename Link::Producer>, typename Link::Producer, Link::value>;
+template <std::size_t Position, class Link>
+using CheckedLink =
+    CompatibleEntry<EntryNumber<Position + 1>, LabelOf<typename Link::Consumer>, typename Link::Consumer,
+                    LabelOf<typename Link::Producer>, typename Link::Producer, Link::value>;
 
-template <class Produced, class Consumed, std::size_t... I>
-[[nodiscard]] constexpr auto check_links(std::index_sequence<I...> /*entries*/) {
-  return canopen::first_failure(VerdictOf<LinkOf<Produced, Consumed, I>::value == Link::fits,
-                                          CheckedLink<I, LinkOf<Produced, Consumed, I>>>{}...);
+template <class Produced, class Consumed, std::size_t... Position>
+[[nodiscard]] constexpr auto check_links(std::index_sequence<Position...> /*entries*/) {
+  return canopen::first_failure(VerdictOf<LinkOf<Produced, Consumed, Position>::value == Link::fits,
+                                          CheckedLink<Position, LinkOf<Produced, Consumed, Position>>>{}...);
 }
 
 }  // namespace pdo_detail

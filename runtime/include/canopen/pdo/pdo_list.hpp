@@ -41,7 +41,8 @@ namespace pdo_detail {
 template <class Pdo>
 inline constexpr std::array<std::uint32_t, Pdo::entries> keys_of = [] {
   std::array<std::uint32_t, Pdo::entries> keys{};
-  Pdo::for_each([&]<class O, std::size_t I>() { keys[I] = object_key(O::index, O::sub_index); });
+  Pdo::for_each(
+      [&]<class Object, std::size_t Position>() { keys[Position] = object_key(Object::index, Object::sub_index); });
   return keys;
 }();
 
@@ -58,17 +59,18 @@ struct PdoList {
   static constexpr std::array<std::uint8_t, count> sizes{Pdos::size...};  ///< data bytes of the default mapping
   static constexpr std::array<std::span<const std::uint32_t>, count> keys{pdo_detail::keys_of<Pdos>...};
 
-  /// Calls `visit.template operator()<Pdo, I>()` for each PDO in order.
+  /// Calls `visit.template operator()<Pdo, Position>()` for each PDO in order.
   template <class Visit>
   static constexpr void for_each([[maybe_unused]] Visit&& visit) {
     visit_all(visit, std::index_sequence_for<Pdos...>{});
   }
 
  private:
-  template <class Visit, std::size_t... I>
-  [[gnu::always_inline]] static constexpr void visit_all([[maybe_unused]] Visit& visit, std::index_sequence<I...>) {
+  template <class Visit, std::size_t... Position>
+  [[gnu::always_inline]] static constexpr void visit_all([[maybe_unused]] Visit& visit,
+                                                         std::index_sequence<Position...>) {
     // Not a fold: Clang accepts 256 operands at most.
-    [[maybe_unused]] const bool visited[] = {true, (visit.template operator()<Pdos, I>(), true)...};
+    [[maybe_unused]] const bool visited[] = {true, (visit.template operator()<Pdos, Position>(), true)...};
   }
 };
 
@@ -93,9 +95,11 @@ struct PdoList {
 namespace pdo_detail {
 
 /// Whether a PDO maps an object, or can do so, and its COB-ID is in the dictionary.
-template <const Dictionary& D, PdoIndices Indices, class P>
-inline constexpr bool is_served = (P::entries > 0 || mapping_capacity(D, Indices.mapping + P::number - 1) > 0) &&
-                                  D.has(Indices.communication + P::number - 1, pdo_parameter::cob_id);
+template <const Dictionary& DeviceDictionary, PdoIndices Indices, class PdoType>
+inline constexpr bool is_served = (PdoType::entries > 0 ||
+                                   mapping_capacity(DeviceDictionary, Indices.mapping + PdoType::number - 1) > 0) &&
+                                  DeviceDictionary.has(Indices.communication + PdoType::number - 1,
+                                                       pdo_parameter::cob_id);
 
 /// The PDOs of several lists.
 template <class... Lists>
@@ -104,33 +108,35 @@ template <>
 struct Joined<> {
   using type = PdoList<>;
 };
-template <class... A>
-struct Joined<PdoList<A...>> {
-  using type = PdoList<A...>;
+template <class... Application>
+struct Joined<PdoList<Application...>> {
+  using type = PdoList<Application...>;
 };
-template <class... A, class... B, class... Rest>
-struct Joined<PdoList<A...>, PdoList<B...>, Rest...> : Joined<PdoList<A..., B...>, Rest...> {};
-template <class... A, class... B, class... C, class... D, class... E, class... F, class... G, class... H, class... Rest>
-struct Joined<PdoList<A...>, PdoList<B...>, PdoList<C...>, PdoList<D...>, PdoList<E...>, PdoList<F...>, PdoList<G...>,
-              PdoList<H...>, Rest...> : Joined<PdoList<A..., B..., C..., D..., E..., F..., G..., H...>, Rest...> {};
+template <class... First, class... Second, class... Rest>
+struct Joined<PdoList<First...>, PdoList<Second...>, Rest...> : Joined<PdoList<First..., Second...>, Rest...> {};
+template <class... First, class... Second, class... Third, class... Fourth, class... Fifth, class... Sixth,
+          class... Seventh, class... Handler, class... Rest>
+struct Joined<PdoList<First...>, PdoList<Second...>, PdoList<Third...>, PdoList<Fourth...>, PdoList<Fifth...>,
+              PdoList<Sixth...>, PdoList<Seventh...>, PdoList<Handler...>, Rest...>
+    : Joined<PdoList<First..., Second..., Third..., Fourth..., Fifth..., Sixth..., Seventh..., Handler...>, Rest...> {};
 
 template <class List>
 struct Whole {
   using type = List;
 };
 
-template <const Dictionary& D, PdoIndices Indices, class List>
+template <const Dictionary& DeviceDictionary, PdoIndices Indices, class List>
 struct Served;
-template <const Dictionary& D, PdoIndices Indices, class... P>
-struct Served<D, Indices, PdoList<P...>> {
+template <const Dictionary& DeviceDictionary, PdoIndices Indices, class... PdoType>
+struct Served<DeviceDictionary, Indices, PdoList<PdoType...>> {
   static constexpr bool all = [] {
     bool every = true;
-    for (const bool serves : {true, is_served<D, Indices, P>...}) every = every && serves;
+    for (const bool serves : {true, is_served<DeviceDictionary, Indices, PdoType>...}) every = every && serves;
     return every;
   }();
-  using type =
-      typename std::conditional_t<all, Whole<PdoList<P...>>,
-                                  Joined<std::conditional_t<is_served<D, Indices, P>, PdoList<P>, PdoList<>>...>>::type;
+  using type = typename std::conditional_t<
+      all, Whole<PdoList<PdoType...>>,
+      Joined<std::conditional_t<is_served<DeviceDictionary, Indices, PdoType>, PdoList<PdoType>, PdoList<>>...>>::type;
 };
 
 /// Whether the PDOs of a list are numbered from 1 without gaps.
@@ -169,7 +175,7 @@ template <class Pdos>
 }
 
 /// The PDOs of a list that map an object, or can do so, and whose COB-ID is in the dictionary.
-template <const Dictionary& D, PdoIndices Indices, class List>
-using ServedPdos = typename pdo_detail::Served<D, Indices, List>::type;
+template <const Dictionary& DeviceDictionary, PdoIndices Indices, class List>
+using ServedPdos = typename pdo_detail::Served<DeviceDictionary, Indices, List>::type;
 
 }  // namespace canopen

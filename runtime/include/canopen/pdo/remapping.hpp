@@ -55,8 +55,9 @@ struct Remapping {
   /// The values of the sub-indices from 1 on.
   static constexpr std::array<std::uint32_t, Layout::entries> entries = [] {
     std::array<std::uint32_t, Layout::entries> values{};
-    Layout::for_each(
-        [&]<class O, std::size_t I>() { values[I] = (object_key(O::index, O::sub_index) << 8) | O::bits; });
+    Layout::for_each([&]<class Object, std::size_t Position>() {
+      values[Position] = (object_key(Object::index, Object::sub_index) << 8) | Object::bits;
+    });
     return values;
   }();
 

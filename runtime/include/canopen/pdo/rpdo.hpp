@@ -178,16 +178,16 @@ class RpdoService {
 
   /// Returns the first RPDO with a CAN-ID; `count` if there is none. Up to this number, the loop is unrolled.
   static constexpr std::size_t few = 8;
-  template <std::size_t I = 0>
+  template <std::size_t Position = 0>
   [[nodiscard, gnu::always_inline]] static std::size_t find(std::uint32_t cob_id, EntryAccess<Device> entries) {
     if constexpr (count > few) {
       std::size_t i = 0;
       while (i < count && cob_id_at(i, entries) != cob_id) ++i;
       return i;
-    } else if constexpr (I == count) {
+    } else if constexpr (Position == count) {
       return count;
     } else {
-      return cob_id_at(I, entries) == cob_id ? I : find<I + 1>(cob_id, entries);
+      return cob_id_at(Position, entries) == cob_id ? Position : find<Position + 1>(cob_id, entries);
     }
   }
 
@@ -315,12 +315,12 @@ class RpdoService {
     host.happened(RpdoEvent::taken, number_of(which));
   }
 
-  template <class Host, class... Pdo, std::size_t... I>
+  template <class Host, class... Pdo, std::size_t... Position>
   static void take_static([[maybe_unused]] std::size_t which, [[maybe_unused]] const Data& data,
-                          [[maybe_unused]] Host host, PdoList<Pdo...>, std::index_sequence<I...>) {
+                          [[maybe_unused]] Host host, PdoList<Pdo...>, std::index_sequence<Position...>) {
     // Not a fold: Clang accepts 256 operands at most.
-    [[maybe_unused]] const bool tried[] = {true,
-                                           (take_if<Pdo, Mapped::capacities[I] == 0>(which == I, data, host), true)...};
+    [[maybe_unused]] const bool tried[] = {
+        true, (take_if<Pdo, Mapped::capacities[Position] == 0>(which == Position, data, host), true)...};
   }
 
   template <class Pdo, bool IsStatic, class Host>
@@ -330,14 +330,15 @@ class RpdoService {
     }
   }
 
-  template <class Pdo, class Host, std::size_t... I>
-  static void take_objects([[maybe_unused]] const Data& data, [[maybe_unused]] Host host, std::index_sequence<I...>) {
-    (take_object<typename Pdo::template Entry<I>>(Pdo::template get_from_words<I>(data), host), ...);
+  template <class Pdo, class Host, std::size_t... Position>
+  static void take_objects([[maybe_unused]] const Data& data, [[maybe_unused]] Host host,
+                           std::index_sequence<Position...>) {
+    (take_object<typename Pdo::template Entry<Position>>(Pdo::template get_from_words<Position>(data), host), ...);
   }
 
-  template <class O, class Host>
-  static void take_object([[maybe_unused]] const typename O::type& value, [[maybe_unused]] Host host) {
-    if constexpr (!is_dummy<O>) host.template take<O>(value);
+  template <class Object, class Host>
+  static void take_object([[maybe_unused]] const typename Object::type& value, [[maybe_unused]] Host host) {
+    if constexpr (!is_dummy<Object>) host.template take<Object>(value);
   }
 
   /// A handler may change mappings: if it changes that of this PDO, the rest of the frame is discarded.

@@ -19,10 +19,10 @@ namespace pdo_detail {
 
 // `inline` makes GCC inline them, as functions that are defined in a class.
 
-template <class Pdo, class Device, std::size_t... I>
+template <class Pdo, class Device, std::size_t... Position>
 inline void pack_objects([[maybe_unused]] const ObjectStore<Device>& store, std::array<std::uint8_t, 8>& data,
-                         std::index_sequence<I...>) {
-  Pdo::pack_into_words(data, store.template get<typename Pdo::template Entry<I>>()...);
+                         std::index_sequence<Position...>) {
+  Pdo::pack_into_words(data, store.template get<typename Pdo::template Entry<Position>>()...);
 }
 
 template <class Pdo, bool IsStatic, class Device>
@@ -82,12 +82,12 @@ struct StaticTpdos {
   [[nodiscard]] static constexpr std::size_t count_of(std::uint32_t key) { return first_of(key + 1) - first_of(key); }
 
   /// Writes the values of the objects of one TPDO to data, which must be zero and aligned to four bytes.
-  template <class... Pdo, std::size_t... I>
+  template <class... Pdo, std::size_t... Position>
   static void pack([[maybe_unused]] std::size_t which, [[maybe_unused]] const ObjectStore<Device>& store,
-                   [[maybe_unused]] Data& data, PdoList<Pdo...>, std::index_sequence<I...>) {
+                   [[maybe_unused]] Data& data, PdoList<Pdo...>, std::index_sequence<Position...>) {
     // Not a fold: Clang accepts 256 operands at most.
     [[maybe_unused]] const bool tried[] = {
-        true, (pdo_detail::pack_if<Pdo, Mapped::capacities[I] == 0>(which == I, store, data), true)...};
+        true, (pdo_detail::pack_if<Pdo, Mapped::capacities[Position] == 0>(which == Position, store, data), true)...};
   }
 };
 

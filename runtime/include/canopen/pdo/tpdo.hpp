@@ -58,14 +58,14 @@ class TpdoService {
     }
   }
 
-  /// Marks the TPDOs that map `O` to be sent, because it has a new value. Returns false if there are none.
-  template <DictionaryObject O>
+  /// Marks the TPDOs that map `Object` to be sent, because it has a new value. Returns false if there are none.
+  template <DictionaryObject Object>
   bool changed([[maybe_unused]] EntryAccess<Device> entries) {
     bool carried = false;
-    if constexpr (!Device::triggers_event(O::index, O::sub_index)) {
+    if constexpr (!Device::triggers_event(Object::index, Object::sub_index)) {
       // never sent because of this object
     } else if constexpr (count > few) {
-      constexpr std::uint32_t key = object_key(O::index, O::sub_index);
+      constexpr std::uint32_t key = object_key(Object::index, Object::sub_index);
       constexpr std::size_t first = Static::first_of(key), carriers = Static::count_of(key);
       for (std::size_t i = first; i < first + carriers; ++i) {
         slots_[Static::place_in(Static::sorted[i])].flags |= changed_bit;
@@ -79,13 +79,13 @@ class TpdoService {
         }
       }
     } else {
-      Pdos::for_each([&]<class Pdo, std::size_t I>() {
-        if constexpr (Mapped::capacities[I] != 0) {
-          if (!Mapped::carries(I, entries, object_key(O::index, O::sub_index))) return;
-        } else if constexpr (!Pdo::template maps<O>) {
+      Pdos::for_each([&]<class Pdo, std::size_t Position>() {
+        if constexpr (Mapped::capacities[Position] != 0) {
+          if (!Mapped::carries(Position, entries, object_key(Object::index, Object::sub_index))) return;
+        } else if constexpr (!Pdo::template maps<Object>) {
           return;
         }
-        slots_[I].flags |= changed_bit;
+        slots_[Position].flags |= changed_bit;
         carried = true;
       });
     }
@@ -145,8 +145,8 @@ class TpdoService {
 
   /// Handles a SYNC: the TPDOs that wait for it are sent if `now` is set, otherwise they become due. Those of type 252
   /// sample their data. Returns false if any is due. `refresh(which)` is called before the values of a TPDO are read.
-  template <Bus B, class Refresh = NoRefresh>
-  [[nodiscard]] bool on_sync(ObjectStore<Device>& store, B& bus, Sync sync, bool now, Refresh refresh = {}) {
+  template <Bus BusType, class Refresh = NoRefresh>
+  [[nodiscard]] bool on_sync(ObjectStore<Device>& store, BusType& bus, Sync sync, bool now, Refresh refresh = {}) {
     for (std::size_t i = 0; i < count; ++i) {
       Slot& slot = slots_[i];
       if (slot.type > last_cyclic) {
@@ -179,8 +179,8 @@ class TpdoService {
   }
 
   /// Sends what is due. Returns false if the bus had no room; the rest remains due.
-  template <Bus B, class Refresh = NoRefresh>
-  bool serve(ObjectStore<Device>& store, B& bus, TimePoint now, Refresh refresh = {}) {
+  template <Bus BusType, class Refresh = NoRefresh>
+  bool serve(ObjectStore<Device>& store, BusType& bus, TimePoint now, Refresh refresh = {}) {
     for (std::size_t i = 0; i < count; ++i) {
       Slot& slot = slots_[i];
       // A TPDO that waits for a SYNC: saves 7 instructions of a Cortex-M4, takes 12 bytes of a Cortex-M0+.
@@ -341,8 +341,8 @@ class TpdoService {
     return false;
   }
 
-  template <Bus B>
-  [[nodiscard]] bool send(const Slot& slot, std::size_t which, ObjectStore<Device>& store, B& bus) {
+  template <Bus BusType>
+  [[nodiscard]] bool send(const Slot& slot, std::size_t which, ObjectStore<Device>& store, BusType& bus) {
     const std::uint32_t cob_id = cob_id_of(which, store.entries());
     if constexpr (prefers_size) {
       FrameWords words;
@@ -360,8 +360,8 @@ class TpdoService {
   }
 
   /// Sends the data of the last SYNC.
-  template <Bus B>
-  [[nodiscard]] bool send_sample(const Slot& slot, std::size_t which, ObjectStore<Device>& store, B& bus) {
+  template <Bus BusType>
+  [[nodiscard]] bool send_sample(const Slot& slot, std::size_t which, ObjectStore<Device>& store, BusType& bus) {
     std::array<std::uint32_t, 2> sampled;
     std::memcpy(sampled.data(), &slot.times, sizeof sampled);
     return send_configured(bus, cob_id_of(which, store.entries()), slot.size, sampled[0], sampled[1]);

@@ -40,14 +40,14 @@ namespace canopen {
 /// A received value is empty before the first PDO, and from the loss of its node until the first PDO after its boot-up.
 /// Handlers are called from `on_frame` and `on_time`; they may use the plant. Up to `Requests` SDO requests of the
 /// application may wait.
-template <class NetworkDescription, Bus B, std::size_t Requests = 4>
-class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription, B, Requests>> {
+template <class NetworkDescription, Bus BusType, std::size_t Requests = 4>
+class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription, BusType, Requests>> {
  public:
   using Network = NetworkDescription;
   using Nodes = typename Network::template Nodes<Plant>;
   static constexpr std::size_t count = Network::slaves.size();
 
-  explicit Plant(B& bus, SdoClientOptions options = {})
+  explicit Plant(BusType& bus, SdoClientOptions options = {})
       : Nodes{*this},
         node_{bus, Network::master_id, RpdoHandler<RpdoEvents>{{this}}},
         master_{bus, Network::slaves, Network::start_up, options, Host{this}} {}
@@ -60,38 +60,40 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
 
   /// Calls `function(value)` with each PDO that contains this signal, after all its values have been stored. Replaces
   /// an earlier function for it.
-  template <ReceivedBy<Network> S, class F>
-  void on(S, F function) {
-    std::get<Network::Received::template position_of<S>>(functions_).call = function;
+  template <ReceivedBy<Network> SignalType, class Callable>
+  void on(SignalType, Callable function) {
+    std::get<Network::Received::template position_of<SignalType>>(functions_).call = function;
   }
 
   /// Returns the last value received; empty if there is none since the node has booted.
-  template <ReceivedBy<Network> S>
-  [[nodiscard]] std::optional<typename S::type> get(S) const {
-    if (!fresh_[Network::Received::template position_of<S>]) return std::nullopt;
-    return node_.template get<typename S::object>();
+  template <ReceivedBy<Network> SignalType>
+  [[nodiscard]] std::optional<typename SignalType::type> get(SignalType) const {
+    if (!fresh_[Network::Received::template position_of<SignalType>]) return std::nullopt;
+    return node_.template get<typename SignalType::object>();
   }
 
   /// Sends a value with the next PDO, which an event-driven TPDO sends at once. value_too_high or value_too_low: it is
   /// outside the limits of the node's object, and the last value is kept.
-  template <SentBy<Network> S>
-  requires(!can_be_refused<typename S::receiver>) AbortCode
-      set(S, std::type_identity_t<ParameterFor<typename S::receiver>> value) {
-    return store<S>(value_for_detail::value_in(value));
+  template <SentBy<Network> SignalType>
+  requires(!can_be_refused<typename SignalType::receiver>) AbortCode
+      set(SignalType, std::type_identity_t<ParameterFor<typename SignalType::receiver>> value) {
+    return store<SignalType>(value_for_detail::value_in(value));
   }
-  template <SentBy<Network> S, FitsInto<typename S::type> V>
-  requires(can_be_refused<typename S::receiver>) [[nodiscard]] AbortCode set(S, V value) { return store<S>(value); }
+  template <SentBy<Network> SignalType, FitsInto<typename SignalType::type> Value>
+  requires(can_be_refused<typename SignalType::receiver>) [[nodiscard]] AbortCode set(SignalType, Value value) {
+    return store<SignalType>(value);
+  }
   /// A constant, whose limits the compiler checks.
-  template <SentBy<Network> S>
-  requires(can_be_refused<typename S::receiver>) void set(
-      S, std::type_identity_t<ConstantFor<typename S::receiver>> value) {
-    static_cast<void>(store<S>(value.value()));
+  template <SentBy<Network> SignalType>
+  requires(can_be_refused<typename SignalType::receiver>) void set(
+      SignalType, std::type_identity_t<ConstantFor<typename SignalType::receiver>> value) {
+    static_cast<void>(store<SignalType>(value.value()));
   }
 
   /// Returns the value that is sent.
-  template <SentBy<Network> S>
-  [[nodiscard]] typename S::type get(S) const {
-    return node_.template get<typename S::object>();
+  template <SentBy<Network> SignalType>
+  [[nodiscard]] typename SignalType::type get(SignalType) const {
+    return node_.template get<typename SignalType::object>();
   }
 
   /// Starts the master's device, resets the nodes and boots them.
@@ -158,18 +160,18 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
   };
 
   /// The master has its configurations from the network file; it does not have storage, LSS or memory for DOMAINs.
-  using OwnNode = Node<typename Network::Master, B, RpdoHandler<RpdoEvents>,
+  using OwnNode = Node<typename Network::Master, BusType, RpdoHandler<RpdoEvents>,
                        composition_detail::OmitsMissing<typename Network::Master, RpdoHandler<RpdoEvents>>>;
 
-  template <class S>
+  template <class SignalType>
   struct Function {
-    SmallFunction<void(typename S::type)> call;
+    SmallFunction<void(typename SignalType::type)> call;
   };
 
-  template <class S>
-  [[nodiscard]] AbortCode store(const typename S::type& value) {
-    if (const AbortCode code = check_limits<typename S::receiver>(value); code != ok) return code;
-    return node_.template set<typename S::object>(value);
+  template <class SignalType>
+  [[nodiscard]] AbortCode store(const typename SignalType::type& value) {
+    if (const AbortCode code = check_limits<typename SignalType::receiver>(value); code != ok) return code;
+    return node_.template set<typename SignalType::object>(value);
   }
 
   [[nodiscard]] static std::optional<std::size_t> position_of(NodeId node_id) {
@@ -193,34 +195,35 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
 
   /// All values of the PDO are valid before the first function is called.
   void take(std::uint16_t number) {
-    Network::Received::for_each([&]<class S, std::size_t I>() {
-      if (S::Rpdo::number == number) fresh_[I] = true;
+    Network::Received::for_each([&]<class SignalType, std::size_t Position>() {
+      if (SignalType::Rpdo::number == number) fresh_[Position] = true;
     });
-    Network::Received::for_each([&]<class S, std::size_t I>() {
-      if (S::Rpdo::number == number) std::get<I>(functions_).call(node_.template get<typename S::object>());
+    Network::Received::for_each([&]<class SignalType, std::size_t Position>() {
+      if (SignalType::Rpdo::number == number)
+        std::get<Position>(functions_).call(node_.template get<typename SignalType::object>());
     });
   }
 
   void forget(std::size_t position) {
     booted_[position] = false;
-    Network::Received::for_each([&]<class S, std::size_t I>() {
-      if (S::node == position) fresh_[I] = false;
+    Network::Received::for_each([&]<class SignalType, std::size_t Position>() {
+      if (SignalType::node == position) fresh_[Position] = false;
     });
   }
 
   /// Sends the values of event-driven TPDOs to a node that has missed them: an object that has changed and changed back
   /// is sent.
   void send_again(std::size_t position) {
-    Network::Sent::for_each([&]<class S, std::size_t I>() {
+    Network::Sent::for_each([&]<class SignalType, std::size_t Position>() {
       constexpr bool is_on_change =
-          S::Tpdo::parameters.event_timer == 0 &&
-          (S::Tpdo::parameters.transmission_type == 0 || S::Tpdo::parameters.transmission_type >= 254);
-      if constexpr (is_on_change && std::is_arithmetic_v<typename S::type>) {
-        if (S::node != position) return;
-        using O = typename S::object;
-        const typename S::type value = node_.template get<O>();
-        static_cast<void>(node_.template set<O>(static_cast<typename S::type>(value == 0 ? 1 : 0)));
-        static_cast<void>(node_.template set<O>(value));
+          SignalType::Tpdo::parameters.event_timer == 0 && (SignalType::Tpdo::parameters.transmission_type == 0 ||
+                                                            SignalType::Tpdo::parameters.transmission_type >= 254);
+      if constexpr (is_on_change && std::is_arithmetic_v<typename SignalType::type>) {
+        if (SignalType::node != position) return;
+        using Object = typename SignalType::object;
+        const typename SignalType::type value = node_.template get<Object>();
+        static_cast<void>(node_.template set<Object>(static_cast<typename SignalType::type>(value == 0 ? 1 : 0)));
+        static_cast<void>(node_.template set<Object>(value));
       }
     });
   }
@@ -232,8 +235,8 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
   /// An RPDO that several nodes could send is reported for the first one.
   void report_rpdo(PlantFaultKind kind, std::uint16_t number) {
     std::size_t position = count;
-    Network::Received::for_each([&]<class S, std::size_t I>() {
-      if (S::Rpdo::number == number && position == count) position = S::node;
+    Network::Received::for_each([&]<class SignalType, std::size_t Position>() {
+      if (SignalType::Rpdo::number == number && position == count) position = SignalType::node;
     });
     if (position != count) report(position, {.kind = kind, .rpdo = number});
   }
@@ -279,7 +282,7 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
 
   TimePoint now_{};
   OwnNode node_;
-  NmtMaster<B, count, Host, Requests> master_;
+  NmtMaster<BusType, count, Host, Requests> master_;
   typename Network::Received::template Slots<Function> functions_{};
   std::array<bool, Network::Received::count> fresh_{};
   std::array<bool, count> booted_{};

@@ -63,34 +63,34 @@ template <class... Signals>
 struct SignalList {
   static constexpr std::size_t count = sizeof...(Signals);
 
-  template <class S>
-  static constexpr bool contains = (std::is_same_v<S, Signals> || ...);
+  template <class SignalType>
+  static constexpr bool contains = (std::is_same_v<SignalType, Signals> || ...);
 
   /// Position of a signal in the list; `count` if it is not in it.
-  template <class S>
+  template <class SignalType>
   static constexpr std::size_t position_of = [] {
     std::size_t position = 0;
-    static_cast<void>(((std::is_same_v<S, Signals> || (++position, false)) || ...));
+    static_cast<void>(((std::is_same_v<SignalType, Signals> || (++position, false)) || ...));
     return position;
   }();
 
   template <template <class> class Slot>
   using Slots = std::tuple<Slot<Signals>...>;
 
-  /// Calls `visit.template operator()<S, I>()` for each signal in order.
+  /// Calls `visit.template operator()<SignalType, Place>()` for each signal in order.
   template <class Visit>
   static constexpr void for_each([[maybe_unused]] Visit visit) {
-    [&]<std::size_t... I>(std::index_sequence<I...>) { (visit.template operator()<Signals, I>(), ...); }
+    [&]<std::size_t... Place>(std::index_sequence<Place...>) { (visit.template operator()<Signals, Place>(), ...); }
     (std::index_sequence_for<Signals...>{});
   }
 };
 
 /// A signal that the master of a network receives.
-template <class S, class Network>
-concept ReceivedBy = Network::Received::template contains<S>;
+template <class SignalType, class Network>
+concept ReceivedBy = Network::Received::template contains<SignalType>;
 
 /// A signal that the master of a network sends.
-template <class S, class Network>
-concept SentBy = Network::Sent::template contains<S>;
+template <class SignalType, class Network>
+concept SentBy = Network::Sent::template contains<SignalType>;
 
 }  // namespace canopen

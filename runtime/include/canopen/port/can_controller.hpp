@@ -19,8 +19,8 @@ enum class BusMode : std::uint8_t {
 };
 
 /// Interface of a CAN controller driver: BxCan, Fdcan and new ports (docs/porting.md).
-template <class T>
-concept CanController = Bus<T> && requires(T& can, std::uint32_t number, std::span<const AcceptedFrame> frames) {
+template <class Type>
+concept CanController = Bus<Type> && requires(Type& can, std::uint32_t number, std::span<const AcceptedFrame> frames) {
   { can.start(number, number, BusMode::silent) } -> std::same_as<bool>;  // clock in Hz, bit rate in bit/s
   { can.stop() } -> std::same_as<bool>;
   can.accept_all();

@@ -35,8 +35,8 @@ namespace canopen {
 /// A driver whose controller has an interrupt for received frames and for mailboxes that have become free. If it has
 /// one for the status as well, `acknowledge_interrupts` returns whether it was that, and `has_status_interrupt` is
 /// true.
-template <class T>
-concept InterruptingController = CanController<T> && requires(T& can) {
+template <class Type>
+concept InterruptingController = CanController<Type> && requires(Type& can) {
   can.enable_interrupts();
   can.acknowledge_interrupts();
 };

@@ -39,20 +39,20 @@ struct ChannelObject {
   }();
 
   /// Returns the value of a channel, counted from 0; `missing` if the device does not have the object or the element.
-  template <class T>
-  [[nodiscard]] static T get([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t channel,
-                             T missing) {
+  template <class Type>
+  [[nodiscard]] static Type get([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t channel,
+                                Type missing) {
     if constexpr (exists) {
-      if (channel < count) return static_cast<T>(entries.number(words[channel]));
+      if (channel < count) return static_cast<Type>(entries.number(words[channel]));
     }
     return missing;
   }
 
   /// Sets a channel. `silently`: without the event that triggers TPDOs.
-  template <class Node, class T>
-  static void set(Node& node, std::uint8_t channel, T value, bool silently = false) {
+  template <class Node, class Type>
+  static void set(Node& node, std::uint8_t channel, Type value, bool silently = false) {
     static_assert(exists, "this device has no such object");
-    std::array<std::uint8_t, sizeof(T)> bytes;
+    std::array<std::uint8_t, sizeof(Type)> bytes;
     std::memcpy(bytes.data(), &value, sizeof value);
     if (silently) {
       node.entries().write(words[channel], bytes);

@@ -26,13 +26,13 @@ namespace canopen::cia401 {
 
 /// `Parts`: a device or a composition. `Handlers`: further parts of the node, such as an application class or a
 /// storage. Blocks and channels count from 0.
-template <class Parts, Bus B, class Terminals, class... Handlers>
-class ModuleNode : public ProfileNode<ModuleNode<Parts, B, Terminals, Handlers...>> {
+template <class Parts, Bus BusType, class Terminals, class... Handlers>
+class ModuleNode : public ProfileNode<ModuleNode<Parts, BusType, Terminals, Handlers...>> {
   friend ProfileNode<ModuleNode>;
   using Device = composition_detail::DeviceOf<Parts>;
 
  public:
-  constexpr ModuleNode(B& bus, NodeId node_id, Handlers... handlers)
+  constexpr ModuleNode(BusType& bus, NodeId node_id, Handlers... handlers)
       : node_{bus,
               node_id,
               on_state(StateWatch{this}),
@@ -107,7 +107,7 @@ class ModuleNode : public ProfileNode<ModuleNode<Parts, B, Terminals, Handlers..
   [[no_unique_address]] DigitalOutputs<Device> digital_outputs_{};
   [[no_unique_address]] AnalogueInputs<Device> analogue_inputs_{};
   [[no_unique_address]] AnalogueOutputs<Device> analogue_outputs_{};
-  composition_detail::NodeWith<Parts, B,
+  composition_detail::NodeWith<Parts, BusType,
                                composition_detail::Types<StateHandler<StateWatch>, LifeGuardingHandler<GuardWatch>,
                                                          HeartbeatHandler<HeartbeatWatch>>,
                                Handlers...>

@@ -46,13 +46,13 @@ namespace canopen::cia402 {
 ///                                                 replaces the fault of the profile
 struct NoApplication {};
 
-template <class Device, Axis A, Options options = Options{}>
+template <class Device, Axis AxisType, Options options = Options{}>
 class Drive {
-  using P = Parameters<Device, options>;
+  using DriveParameters = Parameters<Device, options>;
 
  public:
   /// The axis must outlive the drive.
-  explicit constexpr Drive(A& moved_axis) : axis_{moved_axis} {}
+  explicit constexpr Drive(AxisType& moved_axis) : axis_{moved_axis} {}
 
   /// Handler that the node of a drive needs. An error that the node reports is written to 603Fh. A heartbeat or life
   /// guarding event and bus-off are a loss of communication, as is NMT Stopped: the next `on_time` applies 6007h.
@@ -123,13 +123,15 @@ class Drive {
   void set_warning(bool there) { warning_ = there; }                      ///< bit 7
 
   /// Sets the mode of a drive without 6060h.
-  void select(std::int8_t new_mode) requires(!P::template has<object::ModesOfOperation>) { modes_.select(new_mode); }
+  void select(std::int8_t new_mode) requires(!DriveParameters::template has<object::ModesOfOperation>) {
+    modes_.select(new_mode);
+  }
 
   /// Whether the drive has a mode of operation. If the EDS lists the modes in 6502h, 6060h accepts only these.
-  [[nodiscard]] static constexpr bool supports(std::int8_t wanted) { return P::supports(wanted); }
+  [[nodiscard]] static constexpr bool supports(std::int8_t wanted) { return DriveParameters::supports(wanted); }
 
   /// Whether the node has to pass written data records and SYNC: the drive has interpolated position mode.
-  static constexpr bool has_interpolation = Modes<Device, A, options>::has_interpolation;
+  static constexpr bool has_interpolation = Modes<Device, AxisType, options>::has_interpolation;
 
   /// Takes a data record that has been received for 60C1h:01; device_state: the buffer is full or disabled (60C4h).
   /// Call it in the write handler of 60C1h:01, and return the result.
@@ -159,8 +161,8 @@ class Drive {
 
  private:
   static constexpr Duration step_time{options.step};
-  static constexpr bool has_probes = P::template has<object::TouchProbeFunction>;
-  static_assert(!has_probes || ProbedAxis<A>,
+  static constexpr bool has_probes = DriveParameters::template has<object::TouchProbeFunction>;
+  static_assert(!has_probes || ProbedAxis<AxisType>,
                 "this drive has touch probes, 60B8h: its axis needs latched(), profile/cia402_axis.hpp");
 
   /// Whether the axis depends on time.
@@ -174,7 +176,8 @@ class Drive {
     const Loss loss = connection_.take(node.state());
     if (loss == Loss::none) return;
     if (!has_power(state_) && !(options.faults_without_power && loss == Loss::reported)) return;
-    const auto code = P::template value<object::AbortConnectionOptionCode>(node, option_code::abort_connection);
+    const auto code =
+        DriveParameters::template value<object::AbortConnectionOptionCode>(node, option_code::abort_connection);
     switch (code) {
       case option_code::no_action: return;
       case option_code::disable_voltage: return carry_out(node, Command::disable_voltage);
@@ -200,7 +203,8 @@ class Drive {
     if (state_ == State::fault || state_ == State::fault_reaction_active) return;
     const bool had_power = has_power(state_);
     leave_operation();
-    const Braking braking = P::template braking<object::FaultReactionOptionCode>(node, option_code::fault_reaction);
+    const Braking braking =
+        DriveParameters::template braking<object::FaultReactionOptionCode>(node, option_code::fault_reaction);
     if (!had_power || braking == Braking::none || !axis_.moving()) return enter(State::fault);
     enter(State::fault_reaction_active);
     brake(node, braking);
@@ -210,7 +214,7 @@ class Drive {
   void take_controlword(Node& node) {
     remote_ = node.state() == NmtState::pre_operational || node.state() == NmtState::operational;
     if (!remote_) return;
-    const auto word = P::template value<object::Controlword>(node, 0);
+    const auto word = DriveParameters::template value<object::Controlword>(node, 0);
     const auto rising = static_cast<std::uint16_t>(word & ~controlword_);
     const bool changed = word != controlword_;
     const State before = state_;
@@ -246,7 +250,7 @@ class Drive {
         case 8: return leave<object::ShutdownOptionCode>(node, option_code::shutdown, transition->to);
         case 11: return enter_quick_stop(node);
         case 16:
-          if (!option_code::stays_in_quick_stop(P::quick_stop_option(node))) return;
+          if (!option_code::stays_in_quick_stop(DriveParameters::quick_stop_option(node))) return;
           break;
         default: break;
       }
@@ -258,7 +262,7 @@ class Drive {
   /// Leaves Operation Enabled for a state without power, once the axis has stopped as an option code says.
   template <class OptionCode, class Node>
   void leave(Node& node, std::int16_t otherwise, State to) {
-    const Braking braking = P::template braking<OptionCode>(node, otherwise);
+    const Braking braking = DriveParameters::template braking<OptionCode>(node, otherwise);
     if (braking == Braking::none || !axis_.moving()) return enter(to);
     leaving_ = true;
     leave_to_ = to;
@@ -274,7 +278,7 @@ class Drive {
 
   template <class Node>
   void enter_quick_stop(Node& node) {
-    const Braking braking = braking_of(P::quick_stop_option(node));
+    const Braking braking = braking_of(DriveParameters::quick_stop_option(node));
     leave_operation();
     enter(State::quick_stop_active);
     if (braking == Braking::none) return enter(State::switch_on_disabled);
@@ -328,7 +332,8 @@ class Drive {
     halted_ = halt;
     if (halt) {
       modes_.interrupt_homing();
-      axis_.stop(modes_.deceleration(node, P::template braking<object::HaltOptionCode>(node, option_code::halt)));
+      axis_.stop(modes_.deceleration(
+          node, DriveParameters::template braking<object::HaltOptionCode>(node, option_code::halt)));
     } else {
       resume();
     }
@@ -347,7 +352,8 @@ class Drive {
     if (axis_.moving()) return;
     switch (state_) {
       case State::quick_stop_active:
-        if (!option_code::stays_in_quick_stop(P::quick_stop_option(node))) enter(State::switch_on_disabled);
+        if (!option_code::stays_in_quick_stop(DriveParameters::quick_stop_option(node)))
+          enter(State::switch_on_disabled);
         break;
       case State::fault_reaction_active: enter(State::fault); break;
       case State::operation_enabled:
@@ -400,16 +406,16 @@ class Drive {
     conditions_.watch_limits(node, axis_, homing().running());
     std::uint16_t word = status();
     if constexpr (requires { application.statusword(word); }) word = application.statusword(word);
-    const bool changed = word != P::template value<object::Statusword>(node, 0);
-    P::template set<object::Statusword>(node, word);
-    P::template set<object::ModesOfOperationDisplay>(node, mode());
-    if constexpr (Modes<Device, A, options>::has_torque)
-      P::template set<object::TorqueDemand>(node, modes_.torque_demand());
+    const bool changed = word != DriveParameters::template value<object::Statusword>(node, 0);
+    DriveParameters::template set<object::Statusword>(node, word);
+    DriveParameters::template set<object::ModesOfOperationDisplay>(node, mode());
+    if constexpr (Modes<Device, AxisType, options>::has_torque)
+      DriveParameters::template set<object::TorqueDemand>(node, modes_.torque_demand());
     actual_values_.publish(node, axis_, now, changed);
   }
 
   // Bytes first: a Cortex-M0+ accesses offsets up to 31 with one instruction.
-  A& axis_;
+  AxisType& axis_;
   State state_ = State::not_ready_to_switch_on;
   State leave_to_ = State::switch_on_disabled;  ///< valid while `leaving_`
   std::uint16_t controlword_ = 0;               ///< the one processed last
@@ -421,8 +427,8 @@ class Drive {
   bool halted_ = false;
   bool leaving_ = false;   ///< decelerating to leave Operation Enabled
   bool changing_ = false;  ///< decelerating to change the mode
-  Modes<Device, A, options> modes_{};
-  [[no_unique_address]] std::conditional_t<has_probes, TouchProbes<P>, NoProbes> probes_{};
+  Modes<Device, AxisType, options> modes_{};
+  [[no_unique_address]] std::conditional_t<has_probes, TouchProbes<DriveParameters>, NoProbes> probes_{};
   TimePoint stepped_{};  ///< the axis has moved up to this time
   ActualValues<Device, options> actual_values_{};
   [[no_unique_address]] Conditions<Device, options> conditions_{};

@@ -16,24 +16,24 @@ template <class Device, Options options>
 class ActualValues {
  public:
   /// Sets the objects; while the axis moves only at intervals, unless `at_once`.
-  template <class Node, Axis A>
-  void publish(Node& node, const A& axis, TimePoint now, bool at_once) {
-    using P = Parameters<Device, options>;
+  template <class Node, Axis AxisType>
+  void publish(Node& node, const AxisType& axis, TimePoint now, bool at_once) {
+    using DriveParameters = Parameters<Device, options>;
     if (!at_once && axis.moving() && now - published_ < Duration{options.actual_values}) return;
     published_ = now;
-    P::template set<object::PositionDemandValue>(node, axis.position_demand());
-    P::template set<object::PositionActualValue>(node, axis.position());
-    P::template set<object::VelocityDemandValue>(node, axis.velocity_demand());
-    P::template set<object::VelocityActualValue>(node, axis.velocity());
-    P::template set<object::FollowingErrorActualValue>(
+    DriveParameters::template set<object::PositionDemandValue>(node, axis.position_demand());
+    DriveParameters::template set<object::PositionActualValue>(node, axis.position());
+    DriveParameters::template set<object::VelocityDemandValue>(node, axis.velocity_demand());
+    DriveParameters::template set<object::VelocityActualValue>(node, axis.velocity());
+    DriveParameters::template set<object::FollowingErrorActualValue>(
         node, static_cast<std::int32_t>(static_cast<std::uint32_t>(axis.position_demand()) -
                                         static_cast<std::uint32_t>(axis.position())));
-    P::template set<object::DigitalInputs>(node, axis.inputs());
-    if constexpr (TorqueAxis<A>) P::template set<object::TorqueActualValue>(node, axis.torque());
-    if constexpr (P::has_mode(mode::velocity)) {
-      using V = Velocity<P, options>;
-      P::template set<object::VelocityDemand>(node, V::from_axis(node, axis.velocity_demand()));
-      P::template set<object::VelocityActual>(node, V::from_axis(node, axis.velocity()));
+    DriveParameters::template set<object::DigitalInputs>(node, axis.inputs());
+    if constexpr (TorqueAxis<AxisType>) DriveParameters::template set<object::TorqueActualValue>(node, axis.torque());
+    if constexpr (DriveParameters::has_mode(mode::velocity)) {
+      using Value = Velocity<DriveParameters, options>;
+      DriveParameters::template set<object::VelocityDemand>(node, Value::from_axis(node, axis.velocity_demand()));
+      DriveParameters::template set<object::VelocityActual>(node, Value::from_axis(node, axis.velocity()));
     }
   }
 

@@ -30,8 +30,8 @@ inline constexpr std::uint8_t home_switch = 0x4;
 }
 
 /// A command replaces the previous one; ramps of 0 are as steep as the axis allows.
-template <class T>
-concept Axis = requires(T& axis, const T& state, std::int32_t number, std::uint32_t deceleration,
+template <class Type>
+concept Axis = requires(Type& axis, const Type& state, std::int32_t number, std::uint32_t deceleration,
                         const Profile& profile, bool on, Duration span) {
   axis.enable(on);                                     ///< power stage; off: the motor coasts
   axis.move_to(number, profile);                       ///< to a position
@@ -50,8 +50,8 @@ concept Axis = requires(T& axis, const T& state, std::int32_t number, std::uint3
 };
 
 /// Functions of an axis of a drive with a torque mode. Torque is in 0.1 % of the rated torque 6076h, as 6071h.
-template <class T>
-concept TorqueAxis = Axis<T> && requires(T& axis, const T& state, std::int16_t torque) {
+template <class Type>
+concept TorqueAxis = Axis<Type> && requires(Type& axis, const Type& state, std::int16_t torque) {
   axis.apply_torque(torque);                         ///< until the next command; limited only by the hardware
   { state.torque() } -> std::same_as<std::int16_t>;  ///< actual
 };
@@ -67,8 +67,8 @@ struct ProbeEdge {
 
 /// Function of an axis of a drive with touch probes (60B8h): returns the position at the last such edge since the last
 /// call. Hardware latches it; an axis that samples the signal returns the position at the step in which it has changed.
-template <class T>
-concept ProbedAxis = Axis<T> && requires(T& axis, const ProbeEdge& edge) {
+template <class Type>
+concept ProbedAxis = Axis<Type> && requires(Type& axis, const ProbeEdge& edge) {
   { axis.latched(edge) } -> std::same_as<std::optional<std::int32_t>>;
 };
 

@@ -39,53 +39,57 @@ class Conditions {
   [[nodiscard]] bool limit_switch() const { return limit_switch_; }        ///< a limit switch is active
 
   /// Updates bits 10, 12 and 13 after a time span.
-  template <class Node, Axis A>
-  void watch(const Node& node, const A& axis, const Activity& activity, Duration span) {
+  template <class Node, Axis AxisType>
+  void watch(const Node& node, const AxisType& axis, const Activity& activity, Duration span) {
     const std::uint32_t lag = distance(axis.position_demand(), axis.position());
-    if constexpr (P::template has<object::FollowingErrorWindow>) {
-      const std::uint32_t window = P::template value<object::FollowingErrorWindow>(node, 0);
+    if constexpr (DriveParameters::template has<object::FollowingErrorWindow>) {
+      const std::uint32_t window = DriveParameters::template value<object::FollowingErrorWindow>(node, 0);
       off_course_.step(window != 0 && window != 0xFFFF'FFFF && lag > window, span);
-      following_error_ = off_course_.lasts(P::template value<object::FollowingErrorTimeOut>(node, 0));
+      following_error_ = off_course_.lasts(DriveParameters::template value<object::FollowingErrorTimeOut>(node, 0));
     }
-    const std::uint32_t window = P::template value<object::PositionWindow>(node, 0);
+    const std::uint32_t window = DriveParameters::template value<object::PositionWindow>(node, 0);
     at_target_.step(!axis.moving() && !activity.set_point && (window == 0xFFFF'FFFF || lag <= window), span);
-    if constexpr (P::has_mode(mode::profile_velocity)) {
+    if constexpr (DriveParameters::has_mode(mode::profile_velocity)) {
       const std::int32_t velocity = axis.velocity();
-      const std::int32_t wanted = activity.halted ? 0 : P::template value<object::TargetVelocity>(node, 0);
-      at_speed_.step(distance(velocity, wanted) <= P::template value<object::VelocityWindow>(node, 0), span);
-      at_rest_.step(distance(velocity, 0) <= P::template value<object::VelocityThreshold>(node, 0), span);
-      resting_ = at_rest_.lasts(P::template value<object::VelocityThresholdTime>(node, 0));
+      const std::int32_t wanted =
+          activity.halted ? 0 : DriveParameters::template value<object::TargetVelocity>(node, 0);
+      at_speed_.step(distance(velocity, wanted) <= DriveParameters::template value<object::VelocityWindow>(node, 0),
+                     span);
+      at_rest_.step(distance(velocity, 0) <= DriveParameters::template value<object::VelocityThreshold>(node, 0), span);
+      resting_ = at_rest_.lasts(DriveParameters::template value<object::VelocityThresholdTime>(node, 0));
     }
     reached_ = is_reached(node, axis, activity);
   }
 
   /// Updates bit 11. During homing, limits are not indicated.
-  template <class Node, Axis A>
-  void watch_limits(const Node& node, const A& axis, bool homing) {
+  template <class Node, Axis AxisType>
+  void watch_limits(const Node& node, const AxisType& axis, bool homing) {
     limit_switch_ = !homing && (axis.inputs() & (input::negative_limit | input::positive_limit)) != 0;
-    software_limit_ = !homing && (P::software_limit_blocks(node, axis.position_demand(), 1) ||
-                                  P::software_limit_blocks(node, axis.position_demand(), -1));
+    software_limit_ = !homing && (DriveParameters::software_limit_blocks(node, axis.position_demand(), 1) ||
+                                  DriveParameters::software_limit_blocks(node, axis.position_demand(), -1));
   }
 
  private:
-  using P = Parameters<Device, options>;
+  using DriveParameters = Parameters<Device, options>;
 
-  template <class Node, Axis A>
-  [[nodiscard]] bool is_reached(const Node& node, const A& axis, const Activity& activity) const {
+  template <class Node, Axis AxisType>
+  [[nodiscard]] bool is_reached(const Node& node, const AxisType& axis, const Activity& activity) const {
     if (activity.stopping) return !axis.moving();
     switch (activity.mode) {
-      case mode::profile_velocity: return at_speed_.lasts(P::template value<object::VelocityWindowTime>(node, 0));
+      case mode::profile_velocity:
+        return at_speed_.lasts(DriveParameters::template value<object::VelocityWindowTime>(node, 0));
       case mode::homing: return !activity.homing && !axis.moving();
       default: break;
     }
-    if constexpr (P::has_mode(mode::velocity) || P::has_mode(mode::profile_torque)) {
+    if constexpr (DriveParameters::has_mode(mode::velocity) || DriveParameters::has_mode(mode::profile_torque)) {
       if (activity.mode == mode::velocity || activity.mode == mode::profile_torque) return activity.at_target;
     }
-    if constexpr (P::has_mode(mode::cyclic_synchronous_velocity) || P::has_mode(mode::cyclic_synchronous_torque)) {
+    if constexpr (DriveParameters::has_mode(mode::cyclic_synchronous_velocity) ||
+                  DriveParameters::has_mode(mode::cyclic_synchronous_torque)) {
       if (activity.mode == mode::cyclic_synchronous_velocity || activity.mode == mode::cyclic_synchronous_torque)
         return false;
     }
-    return at_target_.lasts(P::template value<object::PositionWindowTime>(node, 0));
+    return at_target_.lasts(DriveParameters::template value<object::PositionWindowTime>(node, 0));
   }
 
   Lasting at_target_{};

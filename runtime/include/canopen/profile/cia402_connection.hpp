@@ -17,7 +17,7 @@ enum class Loss : std::uint8_t {
   stopped,   ///< NMT Stopped, which is not reported by a service
 };
 
-template <class P>
+template <class DriveParameters>
 class Connection {
  public:
   /// Handler for the errors that the node reports: writes them to 603Fh. A heartbeat or life guarding event and bus-off
@@ -25,7 +25,7 @@ class Connection {
   struct ErrorTaker {
     Connection* connection;
     void operator()(auto& node, std::uint16_t code) const {
-      P::template set<object::ErrorCode>(node, code);
+      DriveParameters::template set<object::ErrorCode>(node, code);
       if (code == emergency_code::error_control || code == emergency_code::bus_off) connection->loss_ = Loss::reported;
     }
   };

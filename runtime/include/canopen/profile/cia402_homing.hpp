@@ -54,8 +54,8 @@ class Homing {
   [[nodiscard]] bool failed() const { return phase_ == Phase::failed; }
 
   /// Starts homing. Fails if the method is not supported or a speed that it needs is 0.
-  template <Axis A>
-  void start(A& axis, const HomingParameters& parameters) {
+  template <Axis AxisType>
+  void start(AxisType& axis, const HomingParameters& parameters) {
     parameters_ = parameters;
     method_ = homing_method(parameters.method);
     const bool needs_fast = method_ != nullptr && method_->signal != 0;
@@ -75,8 +75,8 @@ class Homing {
   }
 
   /// Executes one step; call it with each step of the axis.
-  template <Axis A>
-  void step(A& axis) {
+  template <Axis AxisType>
+  void step(AxisType& axis) {
     switch (phase_) {
       case Phase::idle:
       case Phase::attained:
@@ -115,33 +115,33 @@ class Homing {
  private:
   enum class Phase : std::uint8_t { idle, search, leave, index, stop, attained, failed };
 
-  template <Axis A>
-  [[nodiscard]] static bool active(const A& axis, std::uint8_t signal) {
+  template <Axis AxisType>
+  [[nodiscard]] static bool active(const AxisType& axis, std::uint8_t signal) {
     return (axis.inputs() & signal) != 0;
   }
 
   /// Whether a limit switch blocks motion in this direction.
-  template <Axis A>
-  [[nodiscard]] static bool blocked(const A& axis, std::int32_t direction) {
+  template <Axis AxisType>
+  [[nodiscard]] static bool blocked(const AxisType& axis, std::int32_t direction) {
     return active(axis, direction < 0 ? input::negative_limit : input::positive_limit);
   }
 
-  template <Axis A>
-  void run(A& axis, std::int32_t direction, std::uint32_t speed) {
+  template <Axis AxisType>
+  void run(AxisType& axis, std::int32_t direction, std::uint32_t speed) {
     axis.run_at(direction * static_cast<std::int32_t>(speed),
                 Profile{speed, parameters_.acceleration, parameters_.acceleration});
   }
 
   /// Sets the home position, which is the home offset away from zero.
-  template <Axis A>
-  void arrive(A& axis) {
+  template <Axis AxisType>
+  void arrive(AxisType& axis) {
     axis.set_position(static_cast<std::int32_t>(-static_cast<std::int64_t>(parameters_.home_offset)));
     axis.stop(parameters_.acceleration);
     phase_ = Phase::stop;
   }
 
-  template <Axis A>
-  void fail(A& axis) {
+  template <Axis AxisType>
+  void fail(AxisType& axis) {
     axis.stop(parameters_.acceleration);
     phase_ = Phase::failed;
   }

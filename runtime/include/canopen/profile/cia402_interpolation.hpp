@@ -14,10 +14,10 @@
 namespace canopen::cia402 {
 
 /// Returns the interpolation time period 60C2h, at most 2 s; 1 ms without it.
-template <class P, class Node>
+template <class DriveParameters, class Node>
 [[nodiscard]] Duration interpolation_period(const Node& node) {
-  const std::int32_t index = P::template value<object::InterpolationTimeIndex>(node, -3);
-  std::uint32_t period = P::template value<object::InterpolationTimeUnits>(node, 1);
+  const std::int32_t index = DriveParameters::template value<object::InterpolationTimeIndex>(node, -3);
+  std::uint32_t period = DriveParameters::template value<object::InterpolationTimeUnits>(node, 1);
   constexpr std::uint32_t longest = 2'000'000;
   for (std::int32_t i = -6; i < index && period < longest; ++i) period *= 10;
   for (std::int32_t i = index; i < -6; ++i) period /= 10;
@@ -61,9 +61,9 @@ class LinearMotion {
 
 /// The data records of interpolated position mode, first in, first out, and the motion between them. One record in each
 /// period 60C2h; if there is none, the position is held.
-template <class P, Options options>
+template <class DriveParameters, Options options>
 class InterpolatedPosition {
-  static constexpr bool has_buffer = P::template has<object::InterpolationBufferClear>;
+  static constexpr bool has_buffer = DriveParameters::template has<object::InterpolationBufferClear>;
   static constexpr std::size_t room = has_buffer ? options.interpolation_buffer : 1;
   static_assert(room > 0, "options.interpolation_buffer of a drive with 60C4h is at least 1");
 
@@ -102,7 +102,7 @@ class InterpolatedPosition {
       active_ = false;
       return demand;
     }
-    const Duration period = interpolation_period<P>(node);
+    const Duration period = interpolation_period<DriveParameters>(node);
     if (!active_) {
       active_ = true;
       motion_.begin(demand, demand);
@@ -125,12 +125,12 @@ class InterpolatedPosition {
  private:
   template <class Node>
   [[nodiscard]] static bool enabled(const Node& node) {
-    return P::template value<object::InterpolationBufferClear>(node, 1) != 0;
+    return DriveParameters::template value<object::InterpolationBufferClear>(node, 1) != 0;
   }
   /// Returns 60C4h:02, at most what there is room for; all of it if it is 0.
   template <class Node>
   [[nodiscard]] static std::size_t size(const Node& node) {
-    const std::uint32_t wanted = P::template value<object::InterpolationBufferSize>(node, 0);
+    const std::uint32_t wanted = DriveParameters::template value<object::InterpolationBufferSize>(node, 0);
     return wanted == 0 || wanted > room ? room : wanted;
   }
 

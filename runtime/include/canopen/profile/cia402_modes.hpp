@@ -25,15 +25,16 @@ namespace canopen::cia402 {
 
 /// The present mode, its bits of the controlword, and what it commands the axis. Device control decides when a mode
 /// operates. Modes that the drive does not have are not in the image.
-template <class Device, Axis A, Options options>
+template <class Device, Axis AxisType, Options options>
 class Modes {
-  using P = Parameters<Device, options>;
+  using DriveParameters = Parameters<Device, options>;
 
  public:
-  static constexpr bool has_torque = P::has_mode(mode::profile_torque) || P::has_mode(mode::cyclic_synchronous_torque);
-  static constexpr bool has_velocity = P::has_mode(mode::velocity);
-  static constexpr bool has_interpolation = P::has_mode(mode::interpolated_position);
-  static_assert(!has_torque || TorqueAxis<A>,
+  static constexpr bool has_torque =
+      DriveParameters::has_mode(mode::profile_torque) || DriveParameters::has_mode(mode::cyclic_synchronous_torque);
+  static constexpr bool has_velocity = DriveParameters::has_mode(mode::velocity);
+  static constexpr bool has_interpolation = DriveParameters::has_mode(mode::interpolated_position);
+  static_assert(!has_torque || TorqueAxis<AxisType>,
                 "this drive has a torque mode: its axis needs apply_torque() and torque(), profile/cia402_axis.hpp");
 
   [[nodiscard]] std::int8_t present() const { return mode_; }
@@ -46,7 +47,7 @@ class Modes {
   /// Returns the mode that is requested.
   template <class Node>
   [[nodiscard]] std::int8_t wanted(const Node& node) const {
-    return P::template value<object::ModesOfOperation>(node, selected_);
+    return DriveParameters::template value<object::ModesOfOperation>(node, selected_);
   }
 
   /// Power-on, or a reset that restarts the drive.
@@ -101,7 +102,7 @@ class Modes {
   [[nodiscard]] bool limited() const { return has_torque && controls_torque() && torque_.limited(); }
 
   /// Whether the demand has reached the target of velocity or profile torque mode.
-  [[nodiscard]] bool at_target(const A& axis) const {
+  [[nodiscard]] bool at_target(const AxisType& axis) const {
     if (has_torque && mode_ == mode::profile_torque) return torque_.reached();
     return has_velocity && velocity_told_ && axis.velocity_demand() == told_velocity_;
   }
@@ -114,11 +115,11 @@ class Modes {
   /// Returns the deceleration of a braking with power in this mode; 0: as hard as possible.
   template <class Node>
   [[nodiscard]] std::uint32_t deceleration(const Node& node, Braking braking) const {
-    const std::uint32_t usual = P::deceleration(node, braking);
+    const std::uint32_t usual = DriveParameters::deceleration(node, braking);
     if constexpr (has_velocity) {
       if (mode_ != mode::velocity) return usual;
-      if (braking == Braking::slow_down_ramp) return Velocity<P, options>::ramps(node).deceleration;
-      if (braking == Braking::quick_stop_ramp) return Velocity<P, options>::quick_stop(node, usual);
+      if (braking == Braking::slow_down_ramp) return Velocity<DriveParameters, options>::ramps(node).deceleration;
+      if (braking == Braking::quick_stop_ramp) return Velocity<DriveParameters, options>::quick_stop(node, usual);
     }
     return usual;
   }
@@ -134,18 +135,18 @@ class Modes {
     bool is_clock = true;
     if constexpr (Device::dictionary.has(0x1006, 0)) {
       const std::uint32_t cycle = node.template get<object::CommunicationCyclePeriod>();
-      is_clock = Duration{cycle} == interpolation_period<P>(node);
+      is_clock = Duration{cycle} == interpolation_period<DriveParameters>(node);
     }
     interpolated_.on_sync(is_clock);
   }
 
   /// Processes the bits of the controlword that depend on the mode; returns whether a motion begins with them.
   template <class Node>
-  bool take_bits(Node& node, A& axis, std::uint16_t word, std::uint16_t rising, bool halted) {
-    if constexpr (P::has_mode(mode::profile_position)) {
+  bool take_bits(Node& node, AxisType& axis, std::uint16_t word, std::uint16_t rising, bool halted) {
+    if constexpr (DriveParameters::has_mode(mode::profile_position)) {
       if (mode_ == mode::profile_position) return take_set_point(node, axis, word, rising);
     }
-    if constexpr (P::has_mode(mode::homing)) {
+    if constexpr (DriveParameters::has_mode(mode::homing)) {
       if (mode_ == mode::homing) return take_homing_bits(node, axis, word, rising, halted);
     }
     if constexpr (has_velocity || has_interpolation) bits_.word = word;
@@ -154,14 +155,14 @@ class Modes {
 
   /// Commands the axis before it takes a step.
   template <class Node, class Application>
-  void operate(Node& node, A& axis, Application& application, Duration span) {
-    if constexpr (P::has_mode(mode::profile_position)) {
+  void operate(Node& node, AxisType& axis, Application& application, Duration span) {
+    if constexpr (DriveParameters::has_mode(mode::profile_position)) {
       if (mode_ == mode::profile_position) return operate_profile_position(axis);
     }
-    if constexpr (P::has_mode(mode::profile_velocity)) {
+    if constexpr (DriveParameters::has_mode(mode::profile_velocity)) {
       if (mode_ == mode::profile_velocity) return operate_profile_velocity(node, axis);
     }
-    if constexpr (P::has_mode(mode::cyclic_synchronous_position)) {
+    if constexpr (DriveParameters::has_mode(mode::cyclic_synchronous_position)) {
       if (mode_ == mode::cyclic_synchronous_position) return follow_target(node, axis, span);
     }
     if constexpr (has_velocity) {
@@ -170,20 +171,20 @@ class Modes {
     if constexpr (has_interpolation) {
       if (mode_ == mode::interpolated_position) return interpolate(node, axis, span);
     }
-    if constexpr (P::has_mode(mode::cyclic_synchronous_velocity)) {
+    if constexpr (DriveParameters::has_mode(mode::cyclic_synchronous_velocity)) {
       if (mode_ == mode::cyclic_synchronous_velocity) return follow_velocity(node, axis, span);
     }
     if constexpr (has_torque) {
       if (controls_torque()) return operate_torque(node, axis, span);
     }
-    if constexpr (P::has_mode(mode::homing)) {
+    if constexpr (DriveParameters::has_mode(mode::homing)) {
       if (homing_starts_) return start_homing(node, axis);
     }
     if constexpr (requires { application.operate(mode_); }) {
-      if (mode_ != mode::none && !P::has_mode(mode_)) application.operate(mode_);
+      if (mode_ != mode::none && !DriveParameters::has_mode(mode_)) application.operate(mode_);
     } else {
       static_assert(
-          !P::leaves_modes,
+          !DriveParameters::leaves_modes,
           "6060h accepts modes that the profile does not have: the application of the drive needs operate(mode)");
     }
   }
@@ -209,7 +210,8 @@ class Modes {
       if (mode_ == mode::interpolated_position)
         return bit_if(operates && interpolated_.active(), statusword::interpolates);
     }
-    if constexpr (P::has_mode(mode::cyclic_synchronous_velocity) || P::has_mode(mode::cyclic_synchronous_torque)) {
+    if constexpr (DriveParameters::has_mode(mode::cyclic_synchronous_velocity) ||
+                  DriveParameters::has_mode(mode::cyclic_synchronous_torque)) {
       if (mode_ == mode::cyclic_synchronous_velocity || mode_ == mode::cyclic_synchronous_torque)
         return bit_if(operates, statusword::follows_command);
     }
@@ -217,33 +219,35 @@ class Modes {
   }
 
   /// Continues a homing after a step of the axis.
-  void step_homing(A& axis) {
-    if constexpr (P::has_mode(mode::homing)) {
+  void step_homing(AxisType& axis) {
+    if constexpr (DriveParameters::has_mode(mode::homing)) {
       if (homing_.running()) homing_.step(axis);
     }
   }
 
   /// Ends the present set-point when the axis is at standstill.
-  void finish_set_point(const A& axis) {
+  void finish_set_point(const AxisType& axis) {
     if (set_points_.active() && !set_points_.starts() && !axis.moving()) set_points_.reached();
   }
 
   /// Stops an axis that moves towards a limit.
   template <class Node>
-  void keep_limits(const Node& node, A& axis) {
+  void keep_limits(const Node& node, AxisType& axis) {
     const std::int32_t velocity = controls_torque() ? axis.velocity() : axis.velocity_demand();
     if (homing_.running()) return;
     const bool at_switch = limit_switch_blocks(axis.inputs(), velocity);
     if (at_switch) set_points_.clear();
-    if (at_switch || (keeps_software_limits() && P::software_limit_blocks(node, axis.position_demand(), velocity))) {
-      axis.stop(P::quick_stop_deceleration(node));
+    if (at_switch ||
+        (keeps_software_limits() && DriveParameters::software_limit_blocks(node, axis.position_demand(), velocity))) {
+      axis.stop(DriveParameters::quick_stop_deceleration(node));
     }
   }
 
  private:
-  static constexpr bool has_period = P::template has<object::InterpolationTimeUnits>;
+  static constexpr bool has_period = DriveParameters::template has<object::InterpolationTimeUnits>;
   static constexpr bool interpolates_targets =
-      has_period && (P::has_mode(mode::cyclic_synchronous_position) || P::has_mode(mode::cyclic_synchronous_velocity));
+      has_period && (DriveParameters::has_mode(mode::cyclic_synchronous_position) ||
+                     DriveParameters::has_mode(mode::cyclic_synchronous_velocity));
 
   /// Stands for a part that the drive does not have.
   struct Absent {
@@ -267,21 +271,21 @@ class Modes {
   /// Whether the mode has no target position that is clamped to the software limits.
   [[nodiscard]] bool keeps_software_limits() const {
     return mode_ == mode::profile_velocity || controls_torque() ||
-           (P::has_mode(mode::cyclic_synchronous_velocity) && mode_ == mode::cyclic_synchronous_velocity);
+           (DriveParameters::has_mode(mode::cyclic_synchronous_velocity) && mode_ == mode::cyclic_synchronous_velocity);
   }
 
   // Cyclic synchronous position and interpolated position
 
   template <class Node>
-  void follow_target(const Node& node, A& axis, [[maybe_unused]] Duration span) {
-    const auto offset = static_cast<std::uint32_t>(P::template value<object::PositionOffset>(node, 0));
+  void follow_target(const Node& node, AxisType& axis, [[maybe_unused]] Duration span) {
+    const auto offset = static_cast<std::uint32_t>(DriveParameters::template value<object::PositionOffset>(node, 0));
     const auto target = static_cast<std::int32_t>(
-        static_cast<std::uint32_t>(P::template value<object::TargetPosition>(node, 0)) + offset);
+        static_cast<std::uint32_t>(DriveParameters::template value<object::TargetPosition>(node, 0)) + offset);
     follow(node, axis, on_the_way(node, target, axis.position_demand(), span));
   }
 
   template <class Node>
-  void interpolate(const Node& node, A& axis, Duration span) {
+  void interpolate(const Node& node, AxisType& axis, Duration span) {
     const bool enable = (bits_.word & controlword::interpolate) != 0;
     const std::int32_t position = interpolated_.step(node, enable, axis.position_demand(), span);
     if (enable) follow(node, axis, position);
@@ -292,7 +296,7 @@ class Modes {
   [[nodiscard]] std::int32_t on_the_way([[maybe_unused]] const Node& node, std::int32_t target,
                                         [[maybe_unused]] std::int32_t present, [[maybe_unused]] Duration span) {
     if constexpr (interpolates_targets) {
-      const Duration period = interpolation_period<P>(node);
+      const Duration period = interpolation_period<DriveParameters>(node);
       if (!motion_.begun()) {
         motion_.begin(present, target);
       } else if (motion_.target() != target) {
@@ -306,8 +310,8 @@ class Modes {
   }
 
   template <class Node>
-  void follow(const Node& node, A& axis, std::int32_t target) {
-    const std::int32_t allowed = P::within_software_limits(node, target);
+  void follow(const Node& node, AxisType& axis, std::int32_t target) {
+    const std::int32_t allowed = DriveParameters::within_software_limits(node, target);
     const std::int32_t demand = axis.position_demand();
     const std::int32_t direction = allowed == demand ? 0 : allowed > demand ? 1 : -1;
     if (!limit_switch_blocks(axis.inputs(), direction)) axis.follow(allowed);
@@ -316,19 +320,20 @@ class Modes {
   // Profile position
 
   template <class Node>
-  bool take_set_point(Node& node, const A& axis, std::uint16_t word, std::uint16_t rising) {
+  bool take_set_point(Node& node, const AxisType& axis, std::uint16_t word, std::uint16_t rising) {
     if ((word & controlword::new_set_point) == 0) set_points_.release();
     if ((rising & controlword::new_set_point) == 0) return false;
-    auto target = static_cast<std::uint32_t>(P::template value<object::TargetPosition>(node, 0));
+    auto target = static_cast<std::uint32_t>(DriveParameters::template value<object::TargetPosition>(node, 0));
     if ((word & controlword::relative) != 0) {
       target += static_cast<std::uint32_t>(set_points_.active() ? set_points_.last_target() : axis.position_demand());
     }
-    set_points_.offer({P::within_software_limits(node, static_cast<std::int32_t>(target)), P::profile(node)},
+    set_points_.offer({DriveParameters::within_software_limits(node, static_cast<std::int32_t>(target)),
+                       DriveParameters::profile(node)},
                       (word & controlword::change_immediately) != 0);
     return true;
   }
 
-  void operate_profile_position(A& axis) {
+  void operate_profile_position(AxisType& axis) {
     const SetPoint* const set_point = set_points_.to_start();
     if (set_point == nullptr) return;
     const std::int32_t direction = axis.position_demand() < set_point->target ? 1 : -1;
@@ -339,13 +344,13 @@ class Modes {
   // Profile velocity
 
   template <class Node>
-  void operate_profile_velocity(Node& node, A& axis) {
-    const Profile ramps = P::profile(node);
-    run_at(axis, velocity_target(node, axis, P::template value<object::TargetVelocity>(node, 0)), ramps);
+  void operate_profile_velocity(Node& node, AxisType& axis) {
+    const Profile ramps = DriveParameters::profile(node);
+    run_at(axis, velocity_target(node, axis, DriveParameters::template value<object::TargetVelocity>(node, 0)), ramps);
   }
 
   /// Passes a command to the axis if it differs from the last one.
-  void run_at(A& axis, std::int32_t wanted, const Profile& ramps) {
+  void run_at(AxisType& axis, std::int32_t wanted, const Profile& ramps) {
     if (velocity_told_ && wanted == told_velocity_ && ramps == told_ramps_) return;
     velocity_told_ = true;
     told_velocity_ = wanted;
@@ -355,11 +360,13 @@ class Modes {
 
   /// Returns a velocity limited to 607Fh; 0 if a limit switch or software limit blocks the motion.
   template <class Node>
-  [[nodiscard]] static std::int32_t velocity_target(const Node& node, const A& axis, std::int32_t wanted) {
-    const std::uint32_t allowed = std::min<std::uint32_t>(P::at_most_allowed(node, 0x7FFF'FFFF), 0x7FFF'FFFF);
+  [[nodiscard]] static std::int32_t velocity_target(const Node& node, const AxisType& axis, std::int32_t wanted) {
+    const std::uint32_t allowed =
+        std::min<std::uint32_t>(DriveParameters::at_most_allowed(node, 0x7FFF'FFFF), 0x7FFF'FFFF);
     const auto most = static_cast<std::int32_t>(allowed);
     wanted = std::clamp(wanted, -most, most);
-    return limit_switch_blocks(axis.inputs(), wanted) || P::software_limit_blocks(node, axis.position_demand(), wanted)
+    return limit_switch_blocks(axis.inputs(), wanted) ||
+                   DriveParameters::software_limit_blocks(node, axis.position_demand(), wanted)
                ? 0
                : wanted;
   }
@@ -367,9 +374,9 @@ class Modes {
   // Cyclic synchronous velocity: the ramps are those of the master.
 
   template <class Node>
-  void follow_velocity(const Node& node, A& axis, Duration span) {
-    const std::int64_t sum = std::int64_t{P::template value<object::TargetVelocity>(node, 0)} +
-                             P::template value<object::VelocityOffset>(node, 0);
+  void follow_velocity(const Node& node, AxisType& axis, Duration span) {
+    const std::int64_t sum = std::int64_t{DriveParameters::template value<object::TargetVelocity>(node, 0)} +
+                             DriveParameters::template value<object::VelocityOffset>(node, 0);
     const auto target = static_cast<std::int32_t>(std::clamp<std::int64_t>(sum, -0x7FFF'FFFF, 0x7FFF'FFFF));
     run_at(axis, velocity_target(node, axis, on_the_way(node, target, axis.velocity_demand(), span)), Profile{});
   }
@@ -377,28 +384,29 @@ class Modes {
   // Velocity
 
   template <class Node>
-  void operate_velocity(const Node& node, A& axis) {
-    using V = Velocity<P, options>;
-    std::int32_t wanted = (bits_.word & controlword::use_reference) != 0 ? V::target(node) : 0;
+  void operate_velocity(const Node& node, AxisType& axis) {
+    using Value = Velocity<DriveParameters, options>;
+    std::int32_t wanted = (bits_.word & controlword::use_reference) != 0 ? Value::target(node) : 0;
     if ((bits_.word & controlword::unlock_ramp) == 0) wanted = bits_.locked ? told_velocity_ : axis.velocity_demand();
     bits_.locked = (bits_.word & controlword::unlock_ramp) == 0;
     if ((bits_.word & controlword::enable_ramp) == 0 || limit_switch_blocks(axis.inputs(), wanted)) wanted = 0;
-    run_at(axis, wanted, V::ramps(node));
+    run_at(axis, wanted, Value::ramps(node));
   }
 
   // Torque
 
   template <class Node>
-  void operate_torque(const Node& node, A& axis, Duration span) {
+  void operate_torque(const Node& node, AxisType& axis, Duration span) {
     if (mode_ == mode::profile_torque) {
       torque_.approach(node, span);
     } else {
       torque_.follow(node);
     }
     const std::int32_t direction = torque_.demand();
-    if (limit_switch_blocks(axis.inputs(), direction) || P::software_limit_blocks(node, axis.position(), direction)) {
+    if (limit_switch_blocks(axis.inputs(), direction) ||
+        DriveParameters::software_limit_blocks(node, axis.position(), direction)) {
       torque_.block();
-      axis.stop(P::quick_stop_deceleration(node));
+      axis.stop(DriveParameters::quick_stop_deceleration(node));
     } else {
       axis.apply_torque(torque_.demand());
     }
@@ -407,7 +415,7 @@ class Modes {
   // Homing
 
   template <class Node>
-  bool take_homing_bits(Node& node, A& axis, std::uint16_t word, std::uint16_t rising, bool halted) {
+  bool take_homing_bits(Node& node, AxisType& axis, std::uint16_t word, std::uint16_t rising, bool halted) {
     if ((rising & controlword::start_homing) != 0 && !halted && (word & controlword::halt) == 0) {
       if constexpr (options.target_reached_until_motion) {
         homing_starts_ = true;
@@ -418,19 +426,21 @@ class Modes {
     }
     if ((word & controlword::start_homing) == 0 && homing_.running()) {
       homing_.interrupt();
-      axis.stop(P::profile(node).deceleration);
+      axis.stop(DriveParameters::profile(node).deceleration);
     }
     return false;
   }
 
   template <class Node>
-  void start_homing(const Node& node, A& axis) {
-    const auto acceleration = P::template value<object::ProfileAcceleration>(node, options.homing_acceleration);
-    homing_.start(axis, {.method = P::template value<object::HomingMethodCode>(node, 0),
-                         .fast = P::template value<object::SpeedToSwitch>(node, 0),
-                         .slow = P::template value<object::SpeedToZero>(node, 0),
-                         .acceleration = P::template value<object::HomingAcceleration>(node, acceleration),
-                         .home_offset = P::template value<object::HomeOffset>(node, 0)});
+  void start_homing(const Node& node, AxisType& axis) {
+    const auto acceleration =
+        DriveParameters::template value<object::ProfileAcceleration>(node, options.homing_acceleration);
+    homing_.start(axis,
+                  {.method = DriveParameters::template value<object::HomingMethodCode>(node, 0),
+                   .fast = DriveParameters::template value<object::SpeedToSwitch>(node, 0),
+                   .slow = DriveParameters::template value<object::SpeedToZero>(node, 0),
+                   .acceleration = DriveParameters::template value<object::HomingAcceleration>(node, acceleration),
+                   .home_offset = DriveParameters::template value<object::HomeOffset>(node, 0)});
     homing_starts_ = false;
   }
 
@@ -442,8 +452,9 @@ class Modes {
   Profile told_ramps_{};
   SetPoints set_points_{};
   Homing homing_{};
-  [[no_unique_address]] std::conditional_t<has_torque, Torque<P>, NoTorque> torque_{};
-  [[no_unique_address]] std::conditional_t<has_interpolation, InterpolatedPosition<P, options>, NoInterpolation>
+  [[no_unique_address]] std::conditional_t<has_torque, Torque<DriveParameters>, NoTorque> torque_{};
+  [[no_unique_address]] std::conditional_t<has_interpolation, InterpolatedPosition<DriveParameters, options>,
+                                           NoInterpolation>
       interpolated_{};
   [[no_unique_address]] std::conditional_t<interpolates_targets, LinearMotion, NoMotion> motion_{};
   [[no_unique_address]] std::conditional_t<has_velocity || has_interpolation, Bits, NoBits> bits_{};

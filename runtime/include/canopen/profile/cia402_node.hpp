@@ -29,13 +29,13 @@ namespace canopen::cia402 {
 /// The axis is a member. It may also have the functions of NoApplication, profile/cia402.hpp, for what is specific to
 /// the manufacturer. `Parts`: a device or a composition. `Handlers`: further parts of the node, such as an application
 /// class or a storage.
-template <class Parts, Bus B, Axis A, Options options = Options{}, class... Handlers>
-class DriveNode : public ProfileNode<DriveNode<Parts, B, A, options, Handlers...>> {
+template <class Parts, Bus BusType, Axis AxisType, Options options = Options{}, class... Handlers>
+class DriveNode : public ProfileNode<DriveNode<Parts, BusType, AxisType, options, Handlers...>> {
   friend ProfileNode<DriveNode>;
   using Device = composition_detail::DeviceOf<Parts>;
 
  public:
-  constexpr DriveNode(B& bus, NodeId node_id, Handlers... handlers)
+  constexpr DriveNode(BusType& bus, NodeId node_id, Handlers... handlers)
       : node_{bus, node_id, drive_.error_handler(), restart(), std::move(handlers)...} {}
 
   /// Moves the axis and sends what is due. Call it at `next_deadline`, and after the axis has changed by itself.
@@ -55,8 +55,8 @@ class DriveNode : public ProfileNode<DriveNode<Parts, B, A, options, Handlers...
     on_time(now);
   }
 
-  [[nodiscard]] A& axis() { return axis_; }
-  [[nodiscard]] const A& axis() const { return axis_; }
+  [[nodiscard]] AxisType& axis() { return axis_; }
+  [[nodiscard]] const AxisType& axis() const { return axis_; }
   [[nodiscard]] auto& drive() { return drive_; }
   [[nodiscard]] const auto& drive() const { return drive_; }
   [[nodiscard]] auto& node() { return node_; }
@@ -65,7 +65,7 @@ class DriveNode : public ProfileNode<DriveNode<Parts, B, A, options, Handlers...
  private:
   void after_event(TimePoint now) { on_time(now); }
 
-  using Control = Drive<Device, A, options>;
+  using Control = Drive<Device, AxisType, options>;
 
   /// Starts device control again at power-on and at each NMT reset.
   struct Restarting {
@@ -78,9 +78,9 @@ class DriveNode : public ProfileNode<DriveNode<Parts, B, A, options, Handlers...
   // Interpolated position mode: data records, and SYNC as the clock.
 
   struct Interpolating : Restarting {
-    template <DictionaryObject O>
-    requires(O::index == 0x60C1 + options.axis * axis_distance && O::sub_index == 1) AbortCode
-        write(O, const typename O::type& value, auto& node) {
+    template <DictionaryObject Object>
+    requires(Object::index == 0x60C1 + options.axis * axis_distance && Object::sub_index == 1) AbortCode
+        write(Object, const typename Object::type& value, auto& node) {
       return this->drive->offer_set_point(node, static_cast<std::int32_t>(value));
     }
   };
@@ -96,10 +96,10 @@ class DriveNode : public ProfileNode<DriveNode<Parts, B, A, options, Handlers...
     return application;
   }
 
-  A axis_{};
+  AxisType axis_{};
   Control drive_{axis_};
-  composition_detail::NodeWith<Parts, B, composition_detail::Types<ErrorHandler<typename Control::ErrorTaker>, Restart>,
-                               Handlers...>
+  composition_detail::NodeWith<
+      Parts, BusType, composition_detail::Types<ErrorHandler<typename Control::ErrorTaker>, Restart>, Handlers...>
       node_;
 };
 

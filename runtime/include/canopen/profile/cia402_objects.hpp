@@ -8,8 +8,8 @@
 
 namespace canopen::cia402::object {
 
-template <std::uint16_t Index, class T, std::uint8_t SubIndex = 0>
-using Entry = Object<Index, SubIndex, T, Access::rw>;
+template <std::uint16_t Index, class Type, std::uint8_t SubIndex = 0>
+using Entry = Object<Index, SubIndex, Type, Access::rw>;
 
 using CommunicationCyclePeriod = Entry<0x1006, std::uint32_t>;
 using AbortConnectionOptionCode = Entry<0x6007, std::int16_t>;

@@ -20,11 +20,12 @@ inline constexpr unsigned axis_distance = 0x800;
 template <class Device, Options options>
 struct Parameters {
   /// The object of this axis.
-  template <class O>
-  using At = Object<O::index + options.axis * axis_distance, O::sub_index, typename O::type, Access::rw>;
+  template <class ObjectType>
+  using At = Object<ObjectType::index + options.axis * axis_distance, ObjectType::sub_index, typename ObjectType::type,
+                    Access::rw>;
 
-  template <class O>
-  static constexpr bool has = Device::dictionary.has(At<O>::index, O::sub_index);
+  template <class ObjectType>
+  static constexpr bool has = Device::dictionary.has(At<ObjectType>::index, ObjectType::sub_index);
 
   /// The modes that 6060h accepts by the EDS, as bits of 6502h; 0: the EDS does not list them.
   static constexpr std::uint32_t listed_modes = [] {
@@ -70,25 +71,25 @@ struct Parameters {
       (listed_modes & ~implemented_modes) != 0 || (lowest_mode < 0 && listed_modes != 0);
 
   /// Returns the value of an object; `otherwise` if the device does not have it.
-  template <class O, class Node>
-  [[nodiscard]] static typename O::type value(const Node& node, typename O::type otherwise) {
-    if constexpr (has<O>) {
-      return node.template get<At<O>>();
+  template <class ObjectType, class Node>
+  [[nodiscard]] static typename ObjectType::type value(const Node& node, typename ObjectType::type otherwise) {
+    if constexpr (has<ObjectType>) {
+      return node.template get<At<ObjectType>>();
     } else {
       return otherwise;
     }
   }
 
   /// Sets an object, if the device has it.
-  template <class O, class Node>
-  static void set([[maybe_unused]] Node& node, [[maybe_unused]] const typename O::type& new_value) {
-    if constexpr (has<O>) static_cast<void>(node.template set<At<O>>(new_value));
+  template <class ObjectType, class Node>
+  static void set([[maybe_unused]] Node& node, [[maybe_unused]] const typename ObjectType::type& new_value) {
+    if constexpr (has<ObjectType>) static_cast<void>(node.template set<At<ObjectType>>(new_value));
   }
 
   /// Returns the braking that an option code selects, whose default is `otherwise`.
-  template <class O, class Node>
+  template <class ObjectType, class Node>
   [[nodiscard]] static Braking braking(const Node& node, std::int16_t otherwise) {
-    return braking_of(value<O>(node, otherwise));
+    return braking_of(value<ObjectType>(node, otherwise));
   }
 
   /// Returns 605Ah.

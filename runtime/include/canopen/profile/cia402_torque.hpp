@@ -11,7 +11,7 @@
 namespace canopen::cia402 {
 
 /// The torque demand 6074h. Torque is in 0.1 % of the rated torque.
-template <class P>
+template <class DriveParameters>
 class Torque {
  public:
   /// The next demand begins at 0.
@@ -26,8 +26,8 @@ class Torque {
   /// Profile torque: the demand moves to 6071h with the slope 6087h, in 0.1 % per second; at once if that is 0.
   template <class Node>
   void approach(const Node& node, Duration span) {
-    take_target(node, P::template value<object::TargetTorque>(node, 0));
-    const std::uint32_t slope = P::template value<object::TorqueSlope>(node, 0);
+    take_target(node, DriveParameters::template value<object::TargetTorque>(node, 0));
+    const std::uint32_t slope = DriveParameters::template value<object::TorqueSlope>(node, 0);
     if (slope == 0) {
       demand_ = target_;
       return;
@@ -43,8 +43,8 @@ class Torque {
   /// Cyclic synchronous torque: the demand is 6071h plus the offset 60B2h.
   template <class Node>
   void follow(const Node& node) {
-    take_target(node, P::template value<object::TargetTorque>(node, 0) +
-                          std::int32_t{P::template value<object::TorqueOffset>(node, 0)});
+    take_target(node, DriveParameters::template value<object::TargetTorque>(node, 0) +
+                          std::int32_t{DriveParameters::template value<object::TorqueOffset>(node, 0)});
     demand_ = target_;
   }
 
@@ -58,11 +58,11 @@ class Torque {
   template <class Node>
   void take_target(const Node& node, std::int32_t wanted) {
     const auto limit = [&](std::uint16_t other) {
-      const std::uint16_t most = std::min(P::template value<object::MaxTorque>(node, 0x7FFF), other);
+      const std::uint16_t most = std::min(DriveParameters::template value<object::MaxTorque>(node, 0x7FFF), other);
       return std::int32_t{std::min<std::uint16_t>(most, 0x7FFF)};
     };
-    const std::int32_t positive = limit(P::template value<object::PositiveTorqueLimit>(node, 0x7FFF));
-    const std::int32_t negative = limit(P::template value<object::NegativeTorqueLimit>(node, 0x7FFF));
+    const std::int32_t positive = limit(DriveParameters::template value<object::PositiveTorqueLimit>(node, 0x7FFF));
+    const std::int32_t negative = limit(DriveParameters::template value<object::NegativeTorqueLimit>(node, 0x7FFF));
     const std::int32_t allowed = std::clamp(wanted, -negative, positive);
     limited_ = allowed != wanted;
     target_ = static_cast<std::int16_t>(allowed);

@@ -26,7 +26,7 @@ inline constexpr std::int16_t zero_impulse = 5;  ///< of the position encoder, a
 
 /// Edges before the function has been enabled or changed are ignored. After the first event, disable and enable the
 /// function for the next one.
-template <class P>
+template <class DriveParameters>
 class TouchProbes {
  public:
   void clear() { *this = TouchProbes{}; }
@@ -35,9 +35,9 @@ class TouchProbes {
   [[nodiscard]] bool enabled() const { return ((function_ | function_ >> 8) & touch_probe::enable) != 0; }
 
   /// Processes 60B8h.
-  template <class Node, class A>
-  void take(Node& node, A& axis) {
-    const auto function = P::template value<object::TouchProbeFunction>(node, 0);
+  template <class Node, class AxisType>
+  void take(Node& node, AxisType& axis) {
+    const auto function = DriveParameters::template value<object::TouchProbeFunction>(node, 0);
     if (function == function_) return;
     const auto changed = static_cast<std::uint16_t>(function ^ function_);
     function_ = function;
@@ -50,19 +50,19 @@ class TouchProbes {
       status_ = static_cast<std::uint16_t>(status_ | touch_probe::is_enabled << shift);
       for (const bool positive : {true, false}) static_cast<void>(axis.latched(edge_of(node, probe, positive)));
     }
-    P::template set<object::TouchProbeStatus>(node, status_);
+    DriveParameters::template set<object::TouchProbeStatus>(node, status_);
   }
 
   /// Stores the positions of new edges.
-  template <class Node, class A>
-  void step(Node& node, A& axis) {
+  template <class Node, class AxisType>
+  void step(Node& node, AxisType& axis) {
     using namespace object;
     if (!enabled()) return;
     store<TouchProbe1Positive>(node, axis, 0, true);
     store<TouchProbe1Negative>(node, axis, 0, false);
     store<TouchProbe2Positive>(node, axis, 1, true);
     store<TouchProbe2Negative>(node, axis, 1, false);
-    P::template set<TouchProbeStatus>(node, status_);
+    DriveParameters::template set<TouchProbeStatus>(node, status_);
   }
 
  private:
@@ -74,16 +74,16 @@ class TouchProbes {
     switch (function_ >> probe * 8 & touch_probe::source) {
       case 0x04: source = touch_probe::zero_impulse; break;
       case 0x08:
-        source = probe == 0 ? P::template value<object::TouchProbe1Source>(node, source)
-                            : P::template value<object::TouchProbe2Source>(node, source);
+        source = probe == 0 ? DriveParameters::template value<object::TouchProbe1Source>(node, source)
+                            : DriveParameters::template value<object::TouchProbe2Source>(node, source);
         break;
       default: break;
     }
     return {number, source, positive};
   }
 
-  template <class Position, class Node, class A>
-  void store(Node& node, A& axis, unsigned probe, bool positive) {
+  template <class Position, class Node, class AxisType>
+  void store(Node& node, AxisType& axis, unsigned probe, bool positive) {
     const unsigned bits = unsigned{function_} >> probe * 8;
     const unsigned wanted = positive ? touch_probe::positive_edge : touch_probe::negative_edge;
     if ((bits & touch_probe::enable) == 0 || (bits & wanted) == 0) return;
@@ -92,7 +92,7 @@ class TouchProbes {
     if ((status_ & stored) != 0 && (bits & touch_probe::continuous) == 0) return;
     const auto position = axis.latched(edge_of(node, probe, positive));
     if (!position) return;
-    P::template set<Position>(node, *position);
+    DriveParameters::template set<Position>(node, *position);
     status_ = static_cast<std::uint16_t>(status_ | stored);
   }
 

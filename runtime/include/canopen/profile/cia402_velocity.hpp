@@ -13,15 +13,16 @@ namespace canopen::cia402 {
 
 /// The objects of velocity mode in the units of the axis. 6042h times 604Bh and 604Ch is in rpm. A factor with a 0 is
 /// not used.
-template <class P, Options options>
+template <class DriveParameters, Options options>
 struct Velocity {
   /// Returns 6042h within 6046h; 0 stays 0.
   template <class Node>
   [[nodiscard]] static std::int32_t target(const Node& node) {
-    const std::int32_t wanted = P::template value<object::VelocityTarget>(node, 0);
+    const std::int32_t wanted = DriveParameters::template value<object::VelocityTarget>(node, 0);
     constexpr std::uint32_t highest = 0x7FFF'FFFF;
-    const std::uint32_t most = std::min(P::template value<object::VelocityMaxAmount>(node, highest), highest);
-    const std::uint32_t least = std::min(P::template value<object::VelocityMinAmount>(node, 0), most);
+    const std::uint32_t most =
+        std::min(DriveParameters::template value<object::VelocityMaxAmount>(node, highest), highest);
+    const std::uint32_t least = std::min(DriveParameters::template value<object::VelocityMinAmount>(node, 0), most);
     const auto amount = static_cast<std::uint32_t>(wanted < 0 ? -wanted : wanted);
     const auto limited = static_cast<std::int32_t>(std::clamp(amount, least, most));
     return wanted == 0 ? 0 : to_axis(node, wanted < 0 ? -limited : limited, options.velocity_of_rpm);
@@ -31,7 +32,7 @@ struct Velocity {
   template <class Node>
   [[nodiscard]] static Profile ramps(const Node& node) {
     using namespace object;
-    const Profile profile = P::profile(node);
+    const Profile profile = DriveParameters::profile(node);
     return {profile.velocity, slope<VelocityAccelerationSpeed, VelocityAccelerationTime>(node, profile.acceleration),
             slope<VelocityDecelerationSpeed, VelocityDecelerationTime>(node, profile.deceleration)};
   }
@@ -57,11 +58,11 @@ struct Velocity {
   /// A speed per time; a time of 0 is as steep as the axis allows, and so is a slope of 0.
   template <class Speed, class Time, class Node>
   [[nodiscard]] static std::uint32_t slope(const Node& node, std::uint32_t otherwise) {
-    if constexpr (P::template has<Speed>) {
-      const std::uint32_t time = P::template value<Time>(node, 1);
+    if constexpr (DriveParameters::template has<Speed>) {
+      const std::uint32_t time = DriveParameters::template value<Time>(node, 1);
       if (time == 0) return 0;
-      const auto speed =
-          static_cast<std::int32_t>(std::min<std::uint32_t>(P::template value<Speed>(node, 0), 0x7FFF'FFFF));
+      const auto speed = static_cast<std::int32_t>(
+          std::min<std::uint32_t>(DriveParameters::template value<Speed>(node, 0), 0x7FFF'FFFF));
       const std::int32_t per_time = to_axis(node, speed, options.acceleration_of_rpm);
       return static_cast<std::uint32_t>(per_time < 0 ? 0 : per_time) / time;
     } else {
@@ -77,13 +78,13 @@ struct Velocity {
 
   template <class Node>
   [[nodiscard]] static Ratio set_point_factor(const Node& node) {
-    return {P::template value<object::SetPointNumerator>(node, 1),
-            P::template value<object::SetPointDenominator>(node, 1)};
+    return {DriveParameters::template value<object::SetPointNumerator>(node, 1),
+            DriveParameters::template value<object::SetPointDenominator>(node, 1)};
   }
   template <class Node>
   [[nodiscard]] static Ratio dimension_factor(const Node& node) {
-    return {P::template value<object::DimensionNumerator>(node, 1),
-            P::template value<object::DimensionDenominator>(node, 1)};
+    return {DriveParameters::template value<object::DimensionNumerator>(node, 1),
+            DriveParameters::template value<object::DimensionDenominator>(node, 1)};
   }
 
   /// Limited to 32 bits, so that factors do not overflow.

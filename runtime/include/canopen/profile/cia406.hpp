@@ -72,11 +72,11 @@ class Encoder {
   }
 
   /// TPDOs are triggered if the value has changed.
-  template <class Node, class T>
-  static void set(Node& node, std::uint16_t index, std::uint8_t sub_index, T value) {
+  template <class Node, class Type>
+  static void set(Node& node, std::uint16_t index, std::uint8_t sub_index, Type value) {
     const entry::Word word = Device::dictionary.find(index, sub_index);
-    if (static_cast<T>(node.entries().number(word)) == value) return;
-    std::array<std::uint8_t, sizeof(T)> bytes;
+    if (static_cast<Type>(node.entries().number(word)) == value) return;
+    std::array<std::uint8_t, sizeof(Type)> bytes;
     std::memcpy(bytes.data(), &value, sizeof value);
     static_cast<void>(node.set(index, sub_index, bytes));
   }

@@ -22,13 +22,13 @@ namespace canopen::cia406 {
 
 /// `Parts`: a device or a composition. `Handlers`: further parts of the node, such as an application class or a
 /// storage.
-template <class Parts, Bus B, class Sensor, class... Handlers>
-class EncoderNode : public ProfileNode<EncoderNode<Parts, B, Sensor, Handlers...>> {
+template <class Parts, Bus BusType, class Sensor, class... Handlers>
+class EncoderNode : public ProfileNode<EncoderNode<Parts, BusType, Sensor, Handlers...>> {
   friend ProfileNode<EncoderNode>;
   using Device = composition_detail::DeviceOf<Parts>;
 
  public:
-  constexpr EncoderNode(B& bus, NodeId node_id, Handlers... handlers)
+  constexpr EncoderNode(BusType& bus, NodeId node_id, Handlers... handlers)
       : node_{bus, node_id, Written{&encoder_}, std::move(handlers)...} {}
 
   /// Measures, and sends what is due.
@@ -45,8 +45,8 @@ class EncoderNode : public ProfileNode<EncoderNode<Parts, B, Sensor, Handlers...
  private:
   void after_event(TimePoint) {}
 
-  template <class O>
-  static constexpr bool is_preset = (O::index == 0x6010 && O::sub_index == 1) || O::index == 0x6003;
+  template <class Object>
+  static constexpr bool is_preset = (Object::index == 0x6010 && Object::sub_index == 1) || Object::index == 0x6003;
   static_assert(Device::dictionary.has(0x6010, 1) || Device::dictionary.has(0x6003, 0),
                 "the device of an encoder has a preset value, 6003h or 6010h:01");
   static constexpr bool has_timers = Device::dictionary.has(0x6200, 0) && Device::dictionary.has(0x1800, 5);
@@ -55,24 +55,25 @@ class EncoderNode : public ProfileNode<EncoderNode<Parts, B, Sensor, Handlers...
   struct Written {
     Encoder<Device>* encoder;
 
-    template <DictionaryObject O>
-    requires is_preset<O>
-    void written(O, const typename O::type& value) { encoder->preset(static_cast<std::int32_t>(value)); }
+    template <DictionaryObject Object>
+    requires is_preset<Object>
+    void written(Object, const typename Object::type& value) { encoder->preset(static_cast<std::int32_t>(value)); }
 
-    template <DictionaryObject O>
-    requires(has_timers&& O::index == 0x6200) void written(O, const typename O::type& value, auto& node) {
+    template <DictionaryObject Object>
+    requires(has_timers&& Object::index == 0x6200) void written(Object, const typename Object::type& value,
+                                                                auto& node) {
       cia406_detail::Copy<0x1800, 5>{}(node, value);
     }
-    template <DictionaryObject O>
-    requires(has_timers&& O::index == 0x1800 && O::sub_index == 5) void written(O, const typename O::type& value,
-                                                                                auto& node) {
+    template <DictionaryObject Object>
+    requires(has_timers&& Object::index == 0x1800 &&
+             Object::sub_index == 5) void written(Object, const typename Object::type& value, auto& node) {
       cia406_detail::Copy<0x6200, 0>{}(node, value);
     }
   };
 
   Sensor sensor_{};
   Encoder<Device> encoder_{};
-  composition_detail::NodeWith<Parts, B, composition_detail::Types<Written>, Handlers...> node_;
+  composition_detail::NodeWith<Parts, BusType, composition_detail::Types<Written>, Handlers...> node_;
 };
 
 }  // namespace canopen::cia406

@@ -29,67 +29,69 @@
 namespace canopen {
 
 /// An object of this device.
-template <class O, class Device>
-concept ObjectOf = DictionaryObject<O> && Device::dictionary.has(O::index, O::sub_index);
+template <class Object, class Device>
+concept ObjectOf = DictionaryObject<Object> && Device::dictionary.has(Object::index, Object::sub_index);
 
 /// An object that SDO can read.
-template <class O>
-concept RemoteReadable = DictionaryObject<O> && readable(O::access);
+template <class Object>
+concept RemoteReadable = DictionaryObject<Object> && readable(Object::access);
 
 /// An object that SDO can write.
-template <class O>
-concept RemoteWritable = DictionaryObject<O> && writable(O::access);
+template <class Object>
+concept RemoteWritable = DictionaryObject<Object> && writable(Object::access);
 
 namespace remote_detail {
 
 // Conditions of a transfer. The compiler's message has the name with its arguments.
 
-template <class O, class Device>
-inline constexpr bool device_has = Device::dictionary.has(O::index, O::sub_index);
-template <class O, class Device>
-inline constexpr bool is_of_device = !device_has<O, Device> || !is_of_another_device<O, Device>;
-template <class O>
-inline constexpr bool is_readable = readable(O::access);
-template <class O>
-inline constexpr bool is_writable = writable(O::access);
-template <class O, class V>
-inline constexpr bool has_the_type_of = NumberObject<O>
-                                            ? ValueFor<V, O>
-                                            : std::is_convertible_v<V, std::span<const std::uint8_t>> ||
-                                                  (StringObject<O> && std::is_convertible_v<V, std::string_view>);
-template <class O, auto Value>
+template <class Object, class Device>
+inline constexpr bool device_has = Device::dictionary.has(Object::index, Object::sub_index);
+template <class Object, class Device>
+inline constexpr bool is_of_device = !device_has<Object, Device> || !is_of_another_device<Object, Device>;
+template <class Object>
+inline constexpr bool is_readable = readable(Object::access);
+template <class Object>
+inline constexpr bool is_writable = writable(Object::access);
+template <class Object, class ValueType>
+inline constexpr bool has_the_type_of = NumberObject<Object>
+                                            ? ValueFor<ValueType, Object>
+                                            : std::is_convertible_v<ValueType, std::span<const std::uint8_t>> ||
+                                                  (StringObject<Object> &&
+                                                   std::is_convertible_v<ValueType, std::string_view>);
+template <class Object, auto Value>
 inline constexpr bool is_within_the_limits_of = true;
-template <class O, auto Value>
-requires ValueFor<decltype(Value), O>
-inline constexpr bool is_within_the_limits_of<O, Value> = check_value<O>(Value) == ok;
+template <class Object, auto Value>
+requires ValueFor<decltype(Value), Object>
+inline constexpr bool is_within_the_limits_of<Object, Value> = check_value<Object>(Value) == ok;
 
 /// A string, or a literal, for a string object.
-template <class O, class V>
-inline constexpr bool is_text_for = TextFor<std::decay_t<const V&>, O>;
+template <class Object, class ValueType>
+inline constexpr bool is_text_for = TextFor<std::decay_t<const ValueType&>, Object>;
 
 /// An object of this device that SDO can read.
-template <class O, class Device>
+template <class Object, class Device>
 [[nodiscard]] constexpr bool can_be_read() {
-  static_assert(device_has<O, Device>, "read: this device does not have the object");
-  static_assert(is_of_device<O, Device>, "read: this is an object of another device");
-  static_assert(is_readable<O>, "read: the object is wo");
-  return device_has<O, Device> && is_of_device<O, Device> && is_readable<O>;
+  static_assert(device_has<Object, Device>, "read: this device does not have the object");
+  static_assert(is_of_device<Object, Device>, "read: this is an object of another device");
+  static_assert(is_readable<Object>, "read: the object is wo");
+  return device_has<Object, Device> && is_of_device<Object, Device> && is_readable<Object>;
 }
 
 /// An object of this device that SDO can write with a value of this type. Limits are checked when it is written.
-template <class O, class Device, class V>
+template <class Object, class Device, class ValueType>
 [[nodiscard]] constexpr bool can_be_written() {
-  constexpr bool exists = device_has<O, Device> && is_of_device<O, Device> && is_writable<O>;
-  static_assert(device_has<O, Device>, "write: this device does not have the object");
-  static_assert(is_of_device<O, Device>, "write: this is an object of another device");
-  static_assert(is_writable<O>, "write: the object is ro or const");
-  static_assert(!exists || has_the_type_of<O, V>, "write: this value is not of the type of the object");
-  return exists && has_the_type_of<O, V>;
+  constexpr bool exists = device_has<Object, Device> && is_of_device<Object, Device> && is_writable<Object>;
+  static_assert(device_has<Object, Device>, "write: this device does not have the object");
+  static_assert(is_of_device<Object, Device>, "write: this is an object of another device");
+  static_assert(is_writable<Object>, "write: the object is ro or const");
+  static_assert(!exists || has_the_type_of<Object, ValueType>, "write: this value is not of the type of the object");
+  return exists && has_the_type_of<Object, ValueType>;
 }
 
 /// Whether `can_be_written` is true, without a message.
-template <class V, class O, class Device>
-concept WrittenTo = device_has<O, Device> && is_of_device<O, Device> && is_writable<O> && has_the_type_of<O, V>;
+template <class ValueType, class Object, class Device>
+concept WrittenTo = device_has<Object, Device> && is_of_device<Object, Device> && is_writable<Object> &&
+    has_the_type_of<Object, ValueType>;
 
 /// What `write` returns where it does not compile: the compiler then does not also report that it is not used.
 struct NotWritten : Result<void> {
@@ -97,10 +99,10 @@ struct NotWritten : Result<void> {
 };
 
 /// The same with a constant.
-template <class O, class Device, auto Value>
+template <class Object, class Device, auto Value>
 [[nodiscard]] constexpr bool can_be_written_with() {
-  static_assert(is_within_the_limits_of<O, Value>, "write: this value is outside the limits of the object");
-  return is_within_the_limits_of<O, Value> && can_be_written<O, Device, decltype(Value)>();
+  static_assert(is_within_the_limits_of<Object, Value>, "write: this value is outside the limits of the object");
+  return is_within_the_limits_of<Object, Value> && can_be_written<Object, Device, decltype(Value)>();
 }
 
 }  // namespace remote_detail
@@ -112,69 +114,69 @@ template <class O, class Device, auto Value>
 /// `busy()`, then `value()`, `data()` or `result()` return its outcome.
 ///
 /// The following do not compile: an object that the device does not have, one that SDO cannot read or write, a value of
-/// a type that cannot be converted without loss, and a constant outside the limits in `write<O, value>(now)`.
-template <class Device, Bus B>
+/// a type that cannot be converted without loss, and a constant outside the limits in `write<Object, value>(now)`.
+template <class Device, Bus BusType>
 class RemoteNode {
  public:
-  constexpr RemoteNode(B& can_bus, NodeId node_id, SdoClientOptions options = {})
+  constexpr RemoteNode(BusType& can_bus, NodeId node_id, SdoClientOptions options = {})
       : client_{can_bus, node_id, options} {}
 
-  /// Starts to read an object; `value<O>()` then returns it. 060A 0023h while busy.
-  template <NumberObject O>
+  /// Starts to read an object; `value<Object>()` then returns it. 060A 0023h while busy.
+  template <NumberObject Object>
   [[nodiscard]] Result<void> read(TimePoint now) {
-    if constexpr (remote_detail::can_be_read<O, Device>()) return begun(client_.template read<O>(now));
+    if constexpr (remote_detail::can_be_read<Object, Device>()) return begun(client_.template read<Object>(now));
     return AbortCode::general;
   }
 
   /// Starts to read a string or DOMAIN into memory; `data()` then returns its bytes.
-  template <DictionaryObject O>
-  requires(StringObject<O> || DomainObject<O>)
+  template <DictionaryObject Object>
+  requires(StringObject<Object> || DomainObject<Object>)
       [[nodiscard]] Result<void> read(std::span<std::uint8_t> memory, TimePoint now) {
-    if constexpr (remote_detail::can_be_read<O, Device>())
-      return begun(client_.upload(O::index, O::sub_index, memory, now));
+    if constexpr (remote_detail::can_be_read<Object, Device>())
+      return begun(client_.upload(Object::index, Object::sub_index, memory, now));
     return AbortCode::general;
   }
 
   /// Starts to write an object. A value outside the limits is rejected at once and not sent.
-  template <NumberObject O, remote_detail::WrittenTo<O, Device> V>
-  [[nodiscard]] Result<void> write(V value, TimePoint now) {
-    if (const AbortCode code = check_value<O>(value); code != ok) return code;
-    return begun(client_.template write<O>(static_cast<typename O::type>(value), now));
+  template <NumberObject Object, remote_detail::WrittenTo<Object, Device> ValueType>
+  [[nodiscard]] Result<void> write(ValueType value, TimePoint now) {
+    if (const AbortCode code = check_value<Object>(value); code != ok) return code;
+    return begun(client_.template write<Object>(static_cast<typename Object::type>(value), now));
   }
   /// What does not compile.
-  template <NumberObject O, class V>
-  remote_detail::NotWritten write(V, TimePoint) {
-    static_cast<void>(remote_detail::can_be_written<O, Device, V>());
+  template <NumberObject Object, class ValueType>
+  remote_detail::NotWritten write(ValueType, TimePoint) {
+    static_cast<void>(remote_detail::can_be_written<Object, Device, ValueType>());
     return {};
   }
 
   /// Starts to write a constant.
-  template <NumberObject O, auto Value>
+  template <NumberObject Object, auto Value>
   [[nodiscard]] Result<void> write(TimePoint now) {
-    if constexpr (remote_detail::can_be_written_with<O, Device, Value>())
-      return begun(client_.template write<O>(static_cast<typename O::type>(Value), now));
+    if constexpr (remote_detail::can_be_written_with<Object, Device, Value>())
+      return begun(client_.template write<Object>(static_cast<typename Object::type>(Value), now));
     return AbortCode::general;
   }
 
   /// Starts to write a string or DOMAIN from memory. A string longer than the capacity of the object is rejected at
   /// once with 0607 0012h.
-  template <DictionaryObject O>
-  requires(StringObject<O> || DomainObject<O>)
+  template <DictionaryObject Object>
+  requires(StringObject<Object> || DomainObject<Object>)
       [[nodiscard]] Result<void> write(std::span<const std::uint8_t> bytes, TimePoint now) {
-    if constexpr (remote_detail::can_be_written<O, Device, std::span<const std::uint8_t>>()) {
-      if constexpr (StringObject<O>) {
-        if (bytes.size() > O::type::capacity()) return AbortCode::length_too_high;
+    if constexpr (remote_detail::can_be_written<Object, Device, std::span<const std::uint8_t>>()) {
+      if constexpr (StringObject<Object>) {
+        if (bytes.size() > Object::type::capacity()) return AbortCode::length_too_high;
       }
-      return begun(client_.download(O::index, O::sub_index, bytes, now));
+      return begun(client_.download(Object::index, Object::sub_index, bytes, now));
     }
     return AbortCode::general;
   }
 
-  /// Returns the value that `read<O>` has read, or why it is missing. 060A 0023h while busy.
-  template <NumberObject O>
-  [[nodiscard]] Result<typename O::type> value() {
+  /// Returns the value that `read<Object>` has read, or why it is missing. 060A 0023h while busy.
+  template <NumberObject Object>
+  [[nodiscard]] Result<typename Object::type> value() {
     if (busy()) return AbortCode::no_resource;
-    if (const std::optional<typename O::type> value = client_.template value<O>()) return *value;
+    if (const std::optional<typename Object::type> value = client_.template value<Object>()) return *value;
     return client_.result();
   }
 
@@ -190,12 +192,12 @@ class RemoteNode {
   [[nodiscard]] std::optional<TimePoint> next_deadline() const { return client_.next_deadline(); }
 
   /// Returns the client, for access by index and sub-index and for transfers piece by piece.
-  [[nodiscard]] SdoClient<B>& sdo() { return client_; }
+  [[nodiscard]] SdoClient<BusType>& sdo() { return client_; }
 
  private:
   [[nodiscard]] static Result<void> begun(bool yes) { return yes ? ok : AbortCode::no_resource; }
 
-  SdoClient<B> client_;
+  SdoClient<BusType> client_;
 };
 
 }  // namespace canopen

@@ -36,14 +36,14 @@ namespace canopen {
 ///   - another entry is requested at once: responses of one server arrive in the order of the requests;
 ///   - the same entry is requested after the late response has arrived, or after another timeout;
 ///   - after the segments of a block upload, which may have any content, nothing is requested for another timeout.
-template <Bus B>
+template <Bus BusType>
 class SdoClient {
  public:
-  constexpr SdoClient(B& can_bus, SdoChannel channel, SdoClientOptions options = {})
+  constexpr SdoClient(BusType& can_bus, SdoChannel channel, SdoClientOptions options = {})
       : bus_{can_bus}, channel_{channel}, transfer_{options} {}
-  constexpr SdoClient(B& can_bus, NodeId server, SdoClientOptions options = {})
+  constexpr SdoClient(BusType& can_bus, NodeId server, SdoClientOptions options = {})
       : SdoClient{can_bus, default_sdo(server), options} {}
-  constexpr SdoClient(B& can_bus, NodeId server, Duration timeout)
+  constexpr SdoClient(BusType& can_bus, NodeId server, Duration timeout)
       : SdoClient{can_bus, server, SdoClientOptions{.timeout = timeout}} {}
 
   /// Starts to read an entry into `memory`. 0504 0005h: the value is longer than that. Returns false while busy.
@@ -79,30 +79,30 @@ class SdoClient {
   }
 
   /// Starts to read an object of a generated dictionary; `value()` returns it. Strings and DOMAINs need `upload`.
-  template <DictionaryObject O>
-  requires(O::bits > 0) bool read(TimePoint now) { return upload(O::index, O::sub_index, number_, now); }
+  template <DictionaryObject Object>
+  requires(Object::bits > 0) bool read(TimePoint now) { return upload(Object::index, Object::sub_index, number_, now); }
 
-  /// Returns the value that `read<O>` has read; empty if the transfer has failed or, with `result()` 0607 0010h, if its
-  /// length is wrong.
-  template <DictionaryObject O>
-  requires(O::bits > 0) [[nodiscard]] std::optional<typename O::type> value() {
+  /// Returns the value that `read<Object>` has read; empty if the transfer has failed or, with `result()` 0607 0010h,
+  /// if its length is wrong.
+  template <DictionaryObject Object>
+  requires(Object::bits > 0) [[nodiscard]] std::optional<typename Object::type> value() {
     if (busy() || result() != ok) return std::nullopt;
-    constexpr std::uint32_t size = (O::bits + 7u) / 8u;
+    constexpr std::uint32_t size = (Object::bits + 7u) / 8u;
     const SdoClientValue& read = transfer_.value();
     if (read.position() != size && (read.size_known() || read.position() < size)) {
       transfer_.finish(AbortCode::length_mismatch);
       return std::nullopt;
     }
-    return value_detail::value_from<O>(std::span{number_}.first(size));
+    return value_detail::value_from<Object>(std::span{number_}.first(size));
   }
 
   /// Starts to write an object of a generated dictionary.
-  template <DictionaryObject O>
-  requires(O::bits > 0) bool write(const typename O::type& value, TimePoint now) {
+  template <DictionaryObject Object>
+  requires(Object::bits > 0) bool write(const typename Object::type& value, TimePoint now) {
     if (busy()) return false;
     const std::uint64_t raw = value_detail::to_bits(value);
     std::memcpy(number_.data(), &raw, sizeof raw);
-    return download(O::index, O::sub_index, std::span{number_}.first((O::bits + 7u) / 8u), now);
+    return download(Object::index, Object::sub_index, std::span{number_}.first((Object::bits + 7u) / 8u), now);
   }
 
   /// Ends the transfer with an abort code, which is sent to the server unless the first request has not been sent yet.
@@ -239,7 +239,7 @@ class SdoClient {
     }
   }
 
-  B& bus_;
+  BusType& bus_;
   SdoChannel channel_;
   SdoClientTransfer transfer_;
   SdoLateResponse late_{};

@@ -42,10 +42,10 @@ struct SdoRequest {
 /// Transfers to one node run one after the other, in the order of `submit`; up to `Clients` nodes are served at the
 /// same time. All requests to the default SDO of a node must use the same queue: two clients of one SDO receive each
 /// other's responses. At most `Capacity` requests wait; further ones are rejected with 060A 0023h.
-template <Bus B, std::size_t Clients, std::size_t Capacity>
+template <Bus BusType, std::size_t Clients, std::size_t Capacity>
 class SdoQueue {
  public:
-  constexpr explicit SdoQueue(B& can_bus, SdoClientOptions options = {}) : bus_{can_bus}, options_{options} {}
+  constexpr explicit SdoQueue(BusType& can_bus, SdoClientOptions options = {}) : bus_{can_bus}, options_{options} {}
   SdoQueue(const SdoQueue&) = delete;
   SdoQueue& operator=(const SdoQueue&) = delete;
 
@@ -123,7 +123,7 @@ class SdoQueue {
   }
 
  private:
-  using Client = SdoClient<B>;
+  using Client = SdoClient<BusType>;
 
   struct Waiting {
     SdoRequest request{};
@@ -237,7 +237,7 @@ class SdoQueue {
     begin_waiting(now);
   }
 
-  B& bus_;
+  BusType& bus_;
   SdoClientOptions options_;
   std::array<Channel, Clients> channels_{};
   std::array<Waiting, Capacity> waiting_{};

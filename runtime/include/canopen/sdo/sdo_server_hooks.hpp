@@ -20,8 +20,9 @@ namespace canopen {
 /// and, optionally:
 ///   bool is_new(word, bytes);                           after before_write: whether they still need to be stored
 ///   bool started_command();                             whether the request started a command that has not ended yet
-template <class T, class Device>
-concept SdoServerHooks = requires(T hooks, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
+template <class Type, class Device>
+concept SdoServerHooks = requires(Type hooks, std::uint16_t index, std::uint8_t sub_index,
+                                  std::span<std::uint8_t> bytes) {
   { hooks.entries() } -> std::same_as<EntryAccess<Device>>;
   { hooks.before_read(index, sub_index) } -> std::same_as<AbortCode>;
   { hooks.before_write(index, sub_index, bytes) } -> std::same_as<AbortCode>;
@@ -37,10 +38,10 @@ concept SdoServerHooks = requires(T hooks, std::uint16_t index, std::uint8_t sub
 ///   AbortCode write_domain(index, sub_index, offset, bytes, last);
 ///       each byte once and in order. `last` is passed when the transfer has succeeded, including its CRC; an aborted
 ///       transfer has none, and the next one starts at offset 0.
-template <class T, class Device>
-concept DomainStreamHooks = SdoServerHooks<T, Device> &&
-    requires(T hooks, std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset, std::span<std::uint8_t> into,
-             std::span<const std::uint8_t> from) {
+template <class Type, class Device>
+concept DomainStreamHooks = SdoServerHooks<Type, Device> &&
+    requires(Type hooks, std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset,
+             std::span<std::uint8_t> into, std::span<const std::uint8_t> from) {
   { hooks.streams_upload(index, sub_index) } -> std::same_as<bool>;
   { hooks.read_domain(index, sub_index, offset, into) } -> std::same_as<Result<std::uint32_t>>;
   { hooks.streams_download(index, sub_index) } -> std::same_as<bool>;

@@ -61,8 +61,8 @@ class SdoServers {
   }
 
   /// Sends pending responses. Returns false if the bus had no room; they remain pending.
-  template <Bus B, class Hooks>
-  [[nodiscard]] bool serve(ObjectStore<Device>& store, B& bus, Hooks&& hooks, TimePoint now) {
+  template <Bus BusType, class Hooks>
+  [[nodiscard]] bool serve(ObjectStore<Device>& store, BusType& bus, Hooks&& hooks, TimePoint now) {
     for (std::size_t i = 0; i < count; ++i) {
       while (servers_[i].has_reply()) {
         const std::uint32_t cob_id = cob_id_of_server(i, response_sub_index, store);

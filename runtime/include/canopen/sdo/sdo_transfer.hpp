@@ -59,19 +59,19 @@ struct SdoSource {
 };
 
 /// Returns a sink that calls `callable(offset, bytes, last)`, which must exist until the transfer has ended.
-template <class F>
-[[nodiscard]] SdoSink sink_of(F& callable) {
+template <class Function>
+[[nodiscard]] SdoSink sink_of(Function& callable) {
   return {[](void* context, std::uint32_t offset, std::span<const std::uint8_t> bytes, bool last) -> AbortCode {
-            return (*static_cast<F*>(context))(offset, bytes, last);
+            return (*static_cast<Function*>(context))(offset, bytes, last);
           },
           &callable};
 }
 
 /// Returns a source that calls `callable(offset, bytes)`, which must exist until the transfer has ended.
-template <class F>
-[[nodiscard]] SdoSource source_of(F& callable, std::uint32_t size = sdo::unknown_size) {
+template <class Function>
+[[nodiscard]] SdoSource source_of(Function& callable, std::uint32_t size = sdo::unknown_size) {
   return {[](void* context, std::uint32_t offset, std::span<std::uint8_t> bytes) -> Result<std::uint32_t> {
-            return (*static_cast<F*>(context))(offset, bytes);
+            return (*static_cast<Function*>(context))(offset, bytes);
           },
           &callable, size};
 }

@@ -26,12 +26,13 @@ struct NoWatchdog {
 /// `on_time`; the SDO response is sent after the last one (CiA 301, 7.5.2.13). `Watchdog` is called before each step.
 /// If the other storage has a function `ready`, a step waits until it returns true: it may start an erase in `begin`
 /// and return.
-template <Storage S, std::uint32_t Capacity, std::uint32_t StepSize = 64, class Watchdog = NoWatchdog>
+template <Storage StorageType, std::uint32_t Capacity, std::uint32_t StepSize = 64, class Watchdog = NoWatchdog>
 class BackgroundStorage {
  public:
   static constexpr std::uint32_t capacity = Capacity;
 
-  explicit constexpr BackgroundStorage(S& storage, Watchdog watchdog = {}) : storage_{storage}, watchdog_{watchdog} {}
+  explicit constexpr BackgroundStorage(StorageType& storage, Watchdog watchdog = {})
+      : storage_{storage}, watchdog_{watchdog} {}
 
   [[nodiscard]] StorageState open() {
     work_ = Work::none;
@@ -102,7 +103,7 @@ class BackgroundStorage {
   }
 
  private:
-  static constexpr std::uint32_t max_polls = storage_detail::max_polls<S>;
+  static constexpr std::uint32_t max_polls = storage_detail::max_polls<StorageType>;
   enum class Work : std::uint8_t { none, begin, write, commit };
 
   void after(bool good, Work next) {
@@ -110,7 +111,7 @@ class BackgroundStorage {
     work_ = good ? next : Work::none;
   }
 
-  S& storage_;
+  StorageType& storage_;
   std::uint32_t size_ = 0;  ///< of the new image
   std::uint32_t done_ = 0;  ///< bytes that have been copied, then those that have been written
   Work work_ = Work::none;

@@ -17,11 +17,11 @@ namespace canopen {
 /// bytes, a power of two, 32 at most. Offsets and sizes of `write` are multiples of it. False: the medium has failed.
 /// Pages with a function `bool ready()` may return from `erase` before it is complete: it is then false until it is.
 /// Such pages may have a constant `max_polls`: how often `ready` is called in one wait, before the medium has failed.
-template <class T>
-concept FlashPages = requires(T& pages, std::uint8_t page, std::uint32_t offset, std::span<const std::uint8_t> words,
+template <class Type>
+concept FlashPages = requires(Type& pages, std::uint8_t page, std::uint32_t offset, std::span<const std::uint8_t> words,
                               std::span<std::uint8_t> to) {
-  { T::page_size } -> std::convertible_to<std::uint32_t>;
-  { T::word_size } -> std::convertible_to<std::uint32_t>;
+  { Type::page_size } -> std::convertible_to<std::uint32_t>;
+  { Type::word_size } -> std::convertible_to<std::uint32_t>;
   { pages.erase(page) } -> std::same_as<bool>;
   { pages.write(page, offset, words) } -> std::same_as<bool>;
   { pages.read(page, offset, to) } -> std::same_as<bool>;

@@ -89,7 +89,7 @@ class ParameterLayout {
     std::array<std::uint32_t, entries_of<typename Device::Rpdos> + entries_of<typename Device::Tpdos>> keys{};
     std::size_t i = 0;
     const auto add = [&]<class Pdo, std::size_t>() {
-      Pdo::for_each([&]<class O, std::size_t>() { keys[i++] = object_key(O::index, O::sub_index); });
+      Pdo::for_each([&]<class Object, std::size_t>() { keys[i++] = object_key(Object::index, Object::sub_index); });
     };
     Device::Rpdos::for_each(add);
     Device::Tpdos::for_each(add);

@@ -55,8 +55,8 @@ class ParameterStorage {
       Layout::stores(verify_configuration, 1) && Layout::stores(verify_configuration, 2);
 
   /// Opens the storage at power-on.
-  template <Storage S>
-  void open(S& storage) {
+  template <Storage StorageType>
+  void open(StorageType& storage) {
     damaged_ = storage.open() == StorageState::damaged;
     restored_ = false;
     reported_ = false;
@@ -67,8 +67,8 @@ class ParameterStorage {
 
   /// Sets 2000h..FFFFh to their default values, then to the stored ones. `hook(value)` is called for each stored value
   /// that is not loaded, or was stored with another `storage_version`.
-  template <Storage S, class Hook>
-  void reset_application(S& storage, ObjectStore<Device>& store, NodeId node_id, Hook& hook) {
+  template <Storage StorageType, class Hook>
+  void reset_application(StorageType& storage, ObjectStore<Device>& store, NodeId node_id, Hook& hook) {
     store.reset_application(node_id);
     if (load(storage, store, Work::load_application, hook)) return;
     damaged_ = true;
@@ -76,8 +76,8 @@ class ParameterStorage {
   }
 
   /// Sets 1000h..1FFFh to their default values, then to the stored ones.
-  template <Storage S, class Hook>
-  void reset_communication(S& storage, ObjectStore<Device>& store, NodeId node_id, Hook& hook) {
+  template <Storage StorageType, class Hook>
+  void reset_communication(StorageType& storage, ObjectStore<Device>& store, NodeId node_id, Hook& hook) {
     if constexpr (Check::has_mappings) rejected_ = {};
     store.reset_communication(node_id);
     bool loaded = load(storage, store, Work::load_communication, hook);
@@ -95,8 +95,8 @@ class ParameterStorage {
 
   /// Calls `visit(StoredValue)` for each stored value that is not loaded. The next "save" of all parameters removes
   /// them.
-  template <Storage S, class Visit>
-  void for_each_not_loaded(S& storage, ObjectStore<Device>& store, Visit visit) {
+  template <Storage StorageType, class Visit>
+  void for_each_not_loaded(StorageType& storage, ObjectStore<Device>& store, Visit visit) {
     reported_ = true;
     Lister<Visit> lister{visit};
     Pass pass{&store, Work::list};
@@ -106,8 +106,8 @@ class ParameterStorage {
   /// Stores the values of some sections, and 1020h with them. Other stored values are kept. If all values are stored
   /// and the application has been able to use those that were not loaded, by its hook or the list, these are removed,
   /// otherwise they are kept as long as the storage has room. False: storage has not changed.
-  template <Storage S, class Hook>
-  [[nodiscard]] bool save(S& storage, SectionSet sections, ObjectStore<Device>& store, Hook& hook) {
+  template <Storage StorageType, class Hook>
+  [[nodiscard]] bool save(StorageType& storage, SectionSet sections, ObjectStore<Device>& store, Hook& hook) {
     Pass pass{&store, Work::keep};
     pass.written = static_cast<SectionSet>(sections | set_of(ParameterSection::configuration));
     pass.keeps_not_loaded = sections != all_sections || !(Hook::exists || reported_);
@@ -117,8 +117,8 @@ class ParameterStorage {
   /// Removes some sections from storage: the next reset or, depending on the options, the next power-on sets their
   /// default values. As 1020h is then no longer valid, it is removed too, and becomes 0 at once. False: storage has
   /// not changed.
-  template <Storage S, class Hook>
-  [[nodiscard]] bool restore(S& storage, SectionSet sections, ObjectStore<Device>& store, Hook& hook) {
+  template <Storage StorageType, class Hook>
+  [[nodiscard]] bool restore(StorageType& storage, SectionSet sections, ObjectStore<Device>& store, Hook& hook) {
     Pass pass{&store, Work::keep};
     constexpr SectionSet kept = set_of(ParameterSection::with_node_id);
     constexpr SectionSet always = set_of(ParameterSection::configuration);
@@ -132,11 +132,11 @@ class ParameterStorage {
 
   /// Whether an object belongs to the configuration that 1020h identifies: it is writable over the bus, and "save"
   /// stores it.
-  template <DictionaryObject O>
+  template <DictionaryObject Object>
   static constexpr bool is_configuration = [] {
-    if (!has_configuration || O::index == verify_configuration) return false;
-    const entry::Word word = Device::dictionary.find(O::index, O::sub_index);
-    return (word & entry::writable) != 0 && Layout::stores(O::index, O::sub_index);
+    if (!has_configuration || Object::index == verify_configuration) return false;
+    const entry::Word word = Device::dictionary.find(Object::index, Object::sub_index);
+    return (word & entry::writable) != 0 && Layout::stores(Object::index, Object::sub_index);
   }();
 
   /// Sets 1020h to 0, because the configuration is no longer the one that it identifies.
@@ -205,8 +205,8 @@ class ParameterStorage {
   // Reading: storage/stored_format.hpp describes the bytes
 
   /// Does the work of a pass for each stored value.
-  template <Storage S, class Hook>
-  [[nodiscard, gnu::noinline]] ReadResult walk(S& storage, Pass& pass, Hook& hook) {
+  template <Storage StorageType, class Hook>
+  [[nodiscard, gnu::noinline]] ReadResult walk(StorageType& storage, Pass& pass, Hook& hook) {
     const std::uint32_t end = storage.size();
     Record record;
     std::array<std::uint8_t, stored_format::header_bytes> bytes{};
@@ -241,8 +241,9 @@ class ParameterStorage {
   }
 
   /// Reads the next bytes of an image.
-  template <Storage S>
-  [[nodiscard]] static bool read(S& storage, std::uint32_t& at, std::uint32_t end, std::span<std::uint8_t> to) {
+  template <Storage StorageType>
+  [[nodiscard]] static bool read(StorageType& storage, std::uint32_t& at, std::uint32_t end,
+                                 std::span<std::uint8_t> to) {
     if (end - at < to.size() || !storage.read(at, to)) return false;
     at += static_cast<std::uint32_t>(to.size());
     return true;
@@ -252,8 +253,8 @@ class ParameterStorage {
   }
 
   /// The same for an image of the first format. A section of this dictionary has the values of all its entries.
-  template <Storage S, class Hook>
-  [[nodiscard]] ReadResult walk_sections(S& storage, Pass& pass, Hook& hook) {
+  template <Storage StorageType, class Hook>
+  [[nodiscard]] ReadResult walk_sections(StorageType& storage, Pass& pass, Hook& hook) {
     const std::uint32_t end = storage.size();
     ReadResult result = ReadResult::whole;
     for (std::uint32_t at = 0; at != end;) {
@@ -280,9 +281,9 @@ class ParameterStorage {
 
   /// Does the work of a pass for each entry of some sections: for its value in an image of the first format, whose
   /// section is at the position of `section`, or for its present value.
-  template <Storage S, class Hook>
-  [[nodiscard, gnu::noinline]] bool visit_entries(S& storage, Pass& pass, SectionSet sections, const Record& section,
-                                                  Hook& hook) {
+  template <Storage StorageType, class Hook>
+  [[nodiscard, gnu::noinline]] bool visit_entries(StorageType& storage, Pass& pass, SectionSet sections,
+                                                  const Record& section, Hook& hook) {
     bool good = true;
     Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
       if (!good || entry::place_of(word) != entry::Place::ram) return;
@@ -312,8 +313,8 @@ class ParameterStorage {
   }
 
   /// Does the work of a pass for one stored value. False: storage could not be read or written.
-  template <Storage S, class Hook>
-  [[nodiscard, gnu::noinline]] bool visit(S& storage, Pass& pass, const Record& record, Hook& hook) {
+  template <Storage StorageType, class Hook>
+  [[nodiscard, gnu::noinline]] bool visit(StorageType& storage, Pass& pass, const Record& record, Hook& hook) {
     const bool loads = pass.work < Work::keep;
     if (loads && is_communication_index(record.index) != (pass.work == Work::load_communication)) return true;
     const bool is_void = record.is_given_up() && !restored_;
@@ -354,8 +355,8 @@ class ParameterStorage {
   // Loading
 
   /// Replaces default values by the stored ones. False: storage could not be read, and some values are undefined.
-  template <Storage S, class Hook>
-  [[nodiscard]] bool load(S& storage, ObjectStore<Device>& store, Work work, Hook& hook) {
+  template <Storage StorageType, class Hook>
+  [[nodiscard]] bool load(StorageType& storage, ObjectStore<Device>& store, Work work, Hook& hook) {
     Pass pass{&store, work};
     const ReadResult result = walk(storage, pass, hook);
     if (result == ReadResult::unreadable) return false;
@@ -368,8 +369,8 @@ class ParameterStorage {
   }
 
   /// Loads a value. False: storage could not be read.
-  template <Storage S, class Hook>
-  [[nodiscard]] bool load_one(S& storage, Pass& pass, const Record& record, entry::Word word,
+  template <Storage StorageType, class Hook>
+  [[nodiscard]] bool load_one(StorageType& storage, Pass& pass, const Record& record, entry::Word word,
                               std::span<const std::uint8_t> number, Hook& hook) {
     const EntryAccess<Device> entries = pass.store->entries();
     if constexpr (Layout::has(ParameterSection::with_node_id)) {
@@ -395,8 +396,8 @@ class ParameterStorage {
   }
 
   /// Asks the application about a value. Returns whether it has replaced or discarded it.
-  template <Storage S, class Hook>
-  [[nodiscard]] static bool asked([[maybe_unused]] S& storage, [[maybe_unused]] Pass& pass,
+  template <Storage StorageType, class Hook>
+  [[nodiscard]] static bool asked([[maybe_unused]] StorageType& storage, [[maybe_unused]] Pass& pass,
                                   [[maybe_unused]] const Record& record, [[maybe_unused]] NotLoaded why,
                                   [[maybe_unused]] std::span<const std::uint8_t> number, [[maybe_unused]] Hook& hook) {
     if constexpr (Hook::exists) {
@@ -419,8 +420,8 @@ class ParameterStorage {
   }
 
   /// Passes a value to the application, with its bytes, of a string the first ones.
-  template <Storage S, class Hook>
-  static void report(S& storage, const Record& record, NotLoaded why, std::span<const std::uint8_t> number,
+  template <Storage StorageType, class Hook>
+  static void report(StorageType& storage, const Record& record, NotLoaded why, std::span<const std::uint8_t> number,
                      StoredValueAnswer* answer, Hook& hook) {
     std::array<std::uint8_t, string_bytes> text{};
     std::span<const std::uint8_t> bytes = number;
@@ -478,8 +479,8 @@ class ParameterStorage {
 
   /// Writes a new image; if no value is written, only if it differs from the present one. False: storage has not
   /// changed.
-  template <Storage S, class Hook>
-  [[nodiscard, gnu::noinline]] bool rewrite(S& storage, Pass& pass, Hook& hook) {
+  template <Storage StorageType, class Hook>
+  [[nodiscard, gnu::noinline]] bool rewrite(StorageType& storage, Pass& pass, Hook& hook) {
     if (!produce(storage, pass, hook)) return false;
     if (pass.written == 0 && !pass.changes) return true;
     if (!storage.begin(pass.size)) {
@@ -492,8 +493,8 @@ class ParameterStorage {
   }
 
   /// Writes the bytes of a new image, or counts them.
-  template <Storage S, class Hook>
-  [[nodiscard, gnu::noinline]] bool produce(S& storage, Pass& pass, Hook& hook) {
+  template <Storage StorageType, class Hook>
+  [[nodiscard, gnu::noinline]] bool produce(StorageType& storage, Pass& pass, Hook& hook) {
     pass.context = 0;
     pass.size = 0;
     pass.work = Work::keep;
@@ -508,8 +509,8 @@ class ParameterStorage {
   }
 
   /// Writes the present value of an entry, without the 00h after a text.
-  template <Storage S>
-  [[nodiscard]] static bool write_present(S& storage, Pass& pass, Record& record, entry::Word word) {
+  template <Storage StorageType>
+  [[nodiscard]] static bool write_present(StorageType& storage, Pass& pass, Record& record, entry::Word word) {
     const std::uint8_t* value = pass.store->entries().ram(word);
     if constexpr (EntryAccess<Device>::kinds.strings_in_ram) {
       if (entry::is_string(word)) {
@@ -527,8 +528,8 @@ class ParameterStorage {
   }
 
   /// Copies a stored value to the new image, unless it is removed.
-  template <Storage S>
-  [[nodiscard]] static bool keep(S& storage, Pass& pass, Record record, entry::Word word, NotLoaded why) {
+  template <Storage StorageType>
+  [[nodiscard]] static bool keep(StorageType& storage, Pass& pass, Record record, entry::Word word, NotLoaded why) {
     const unsigned section = why == NotLoaded::none ? Layout::section_at(entry::offset_of(word))
                                                     : static_cast<unsigned>(parameter_detail::section_of(record.index));
     if (why == NotLoaded::none ? is_in(pass.written, section) : !pass.keeps_not_loaded) return removed(pass);
@@ -548,8 +549,8 @@ class ParameterStorage {
   }
 
   /// Writes what is before the bytes of a value.
-  template <Storage S>
-  [[nodiscard, gnu::noinline]] static bool put_header(S& storage, Pass& pass, const Record& record) {
+  template <Storage StorageType>
+  [[nodiscard, gnu::noinline]] static bool put_header(StorageType& storage, Pass& pass, const Record& record) {
     if (pass.context != record.context) {
       pass.context = record.context;
       if (!put_word(storage, pass, std::uint32_t{record.context} << 16)) return false;
@@ -560,13 +561,13 @@ class ParameterStorage {
     if (!stored_format::is_string(record.type)) return true;
     return put(storage, pass, {reinterpret_cast<const std::uint8_t*>(&record.size), sizeof record.size});
   }
-  template <Storage S>
-  [[nodiscard]] static bool put_word(S& storage, Pass& pass, std::uint32_t word) {
+  template <Storage StorageType>
+  [[nodiscard]] static bool put_word(StorageType& storage, Pass& pass, std::uint32_t word) {
     return put(storage, pass, {reinterpret_cast<const std::uint8_t*>(&word), sizeof word});
   }
 
-  template <Storage S>
-  [[nodiscard, gnu::noinline]] static bool put(S& storage, Pass& pass, std::span<const std::uint8_t> bytes) {
+  template <Storage StorageType>
+  [[nodiscard, gnu::noinline]] static bool put(StorageType& storage, Pass& pass, std::span<const std::uint8_t> bytes) {
     pass.size += static_cast<std::uint32_t>(bytes.size());
     return pass.counts || storage.write(bytes);
   }

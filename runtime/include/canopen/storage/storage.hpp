@@ -14,8 +14,8 @@ enum class StorageState : std::uint8_t { empty, whole, damaged };
 
 /// `begin`, `write` and `commit` write a new image. After a power loss either the old or the new image exists; until
 /// `commit`, `size` and `read` access the old one. False: the medium has failed.
-template <class T>
-concept Storage = requires(T& storage, std::uint32_t number, std::span<std::uint8_t> to,
+template <class Type>
+concept Storage = requires(Type& storage, std::uint32_t number, std::span<std::uint8_t> to,
                            std::span<const std::uint8_t> from) {
   { storage.open() } -> std::same_as<StorageState>;    ///< looks for an image; once at power-on
   { storage.size() } -> std::same_as<std::uint32_t>;   ///< bytes of the image; 0: none
@@ -27,9 +27,9 @@ concept Storage = requires(T& storage, std::uint32_t number, std::span<std::uint
 
 /// A storage that `commit` only asks to write the image, of at most `capacity` bytes: `step` does so, a part at a time,
 /// as long as it is busy. BackgroundStorage is one.
-template <class T>
-concept SteppedStorage = Storage<T> && requires(T& storage) {
-  { T::capacity } -> std::convertible_to<std::uint32_t>;
+template <class Type>
+concept SteppedStorage = Storage<Type> && requires(Type& storage) {
+  { Type::capacity } -> std::convertible_to<std::uint32_t>;
   { storage.busy() } -> std::same_as<bool>;    ///< steps are left
   { storage.ready() } -> std::same_as<bool>;   ///< the next one can be executed now
   { storage.failed() } -> std::same_as<bool>;  ///< the last image could not be written
@@ -38,15 +38,15 @@ concept SteppedStorage = Storage<T> && requires(T& storage) {
 };
 
 /// The storage of a node, passed with its handlers. It must outlive the node.
-template <Storage S>
+template <Storage StorageType>
 struct StoredIn {
-  S* storage;
+  StorageType* storage;
 };
 
 /// Gives a node its storage:
 ///     auto drive = canopen::make_node<Device>(bus, NodeId{5}, canopen::stored_in(flash), canopen::on_write<...>(...));
-template <Storage S>
-[[nodiscard]] constexpr StoredIn<S> stored_in(S& storage) {
+template <Storage StorageType>
+[[nodiscard]] constexpr StoredIn<StorageType> stored_in(StorageType& storage) {
   return {&storage};
 }
 
@@ -65,8 +65,8 @@ inline constexpr std::uint32_t max_polls<Medium> = Medium::max_polls;
 
 template <class Handler>
 inline constexpr bool is_stored_in = false;
-template <Storage S>
-inline constexpr bool is_stored_in<StoredIn<S>> = true;
+template <Storage StorageType>
+inline constexpr bool is_stored_in<StoredIn<StorageType>> = true;
 
 /// Whether a storage is among the handlers of a node.
 template <class... Handlers>
@@ -74,8 +74,8 @@ inline constexpr bool has_storage = (is_stored_in<Handlers> || ...);
 
 template <class Handler>
 inline constexpr bool is_stepped = false;
-template <Storage S>
-inline constexpr bool is_stepped<StoredIn<S>> = SteppedStorage<S>;
+template <Storage StorageType>
+inline constexpr bool is_stepped<StoredIn<StorageType>> = SteppedStorage<StorageType>;
 
 }  // namespace storage_detail
 

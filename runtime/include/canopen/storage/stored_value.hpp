@@ -82,13 +82,13 @@ class StoredValue {
   /// Sets an object to this value instead, which is checked as by the node's `set`; the stored value is then no longer
   /// reported, and the next "save" of all parameters removes it. The object must be in the same part of the dictionary,
   /// 1000h..1FFFh or the rest. A later stored value of that object replaces it.
-  template <NumberObject O, ValueFor<O> V>
-  [[nodiscard]] AbortCode replace_by(O, V value) const {
+  template <NumberObject Object, ValueFor<Object> Value>
+  [[nodiscard]] AbortCode replace_by(Object, Value value) const {
     if (answer_ == nullptr) return AbortCode::device_state;
-    if (const AbortCode code = check_value<O>(value); code != ok) return code;
-    const std::uint64_t bits = value_detail::to_bits(static_cast<typename O::type>(value));
-    answer_->key = object_key(O::index, O::sub_index);
-    answer_->size = static_cast<std::uint8_t>((O::bits + 7) / 8);
+    if (const AbortCode code = check_value<Object>(value); code != ok) return code;
+    const std::uint64_t bits = value_detail::to_bits(static_cast<typename Object::type>(value));
+    answer_->key = object_key(Object::index, Object::sub_index);
+    answer_->size = static_cast<std::uint8_t>((Object::bits + 7) / 8);
     answer_->discarded = true;
     std::memcpy(answer_->bytes.data(), &bits, sizeof bits);
     return ok;

@@ -93,8 +93,8 @@ class SyncProducer {
   void stop() { running_ = false; }
 
   /// Sends a SYNC that is due; a producer consumes its own. Returns false if none is due or the bus had no room.
-  template <Bus B>
-  [[nodiscard]] bool serve(const ObjectStore<Device>& store, B& bus, TimePoint now) {
+  template <Bus BusType>
+  [[nodiscard]] bool serve(const ObjectStore<Device>& store, BusType& bus, TimePoint now) {
     if (!running_ || due_.is_ahead(now)) return false;
     const std::uint8_t overflow = SyncConsumer<Device>::overflow_of(store);
     const std::uint8_t counter = counter_ < overflow ? static_cast<std::uint8_t>(counter_ + 1) : std::uint8_t{1};

@@ -39,8 +39,8 @@ class TimeStamp {
   }
 
   /// Sends the time of day. Returns false if this device does not produce TIME, or the bus had no room.
-  template <Bus B>
-  [[nodiscard]] static bool send(const ObjectStore<Device>& store, B& bus, TimeOfDay time) {
+  template <Bus BusType>
+  [[nodiscard]] static bool send(const ObjectStore<Device>& store, BusType& bus, TimeOfDay time) {
     static_assert(exists, "this device has no 1012h");
     const CobId cob_id{store.template number<0x1012, 0>()};
     if ((cob_id.value() & produce_bit) == 0 || !is_usable(cob_id.value() & CobId::identifier)) return false;

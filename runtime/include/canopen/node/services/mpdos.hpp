@@ -63,9 +63,9 @@ class Mpdos : public ServiceDefaults<Mpdos<Device>> {
   void after_operational_write(Host& host, std::uint16_t index, std::uint8_t sub_index, bool new_value) {
     if (new_value) mpdos_.changed(host.entries(), index, sub_index);
   }
-  template <DictionaryObject O, class Host>
+  template <DictionaryObject Object, class Host>
   bool on_new_value(Host& host) {
-    return mpdos_.changed(host.entries(), O::index, O::sub_index);
+    return mpdos_.changed(host.entries(), Object::index, Object::sub_index);
   }
 
   /// Queues a DAM-MPDO. Returns false if the node is not Operational or cannot send it.

@@ -31,8 +31,8 @@ class PostedValues : public ServiceDefaults<PostedValues<Device, Handlers...>> {
  private:
   template <class Handler, class Host>
   static void take_over(const Handler&, Host&) {}
-  template <class M, class Host>
-  static void take_over(const ValuesFrom<M>& values, Host& host) {
+  template <class MailboxType, class Host>
+  static void take_over(const ValuesFrom<MailboxType>& values, Host& host) {
     values.mailbox->take_over(host.node());
   }
 
@@ -40,8 +40,8 @@ class PostedValues : public ServiceDefaults<PostedValues<Device, Handlers...>> {
   [[nodiscard]] static bool pending(const Handler&) {
     return false;
   }
-  template <class M>
-  [[nodiscard]] static bool pending(const ValuesFrom<M>& values) {
+  template <class MailboxType>
+  [[nodiscard]] static bool pending(const ValuesFrom<MailboxType>& values) {
     return values.mailbox->pending();
   }
 };

@@ -44,9 +44,9 @@ struct RpdoHooks {
   [[nodiscard]] TimePoint now() const { return host.now(); }
   [[nodiscard]] bool operational() const { return serves_pdo(host.state()); }
   [[nodiscard]] bool window_over() const { return sync_window_over(host); }
-  template <DictionaryObject O>
-  void take(const typename O::type& value) const {
-    take_received<O>(host, value);
+  template <DictionaryObject Object>
+  void take(const typename Object::type& value) const {
+    take_received<Object>(host, value);
   }
   void take(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) const {
     take_received(host, index, sub_index, bytes);

@@ -61,10 +61,10 @@ class Tpdos : public ServiceDefaults<Tpdos<Device>> {
     if (new_value && !host.handler_calls().is_supplied(object_key(index, sub_index)))
       tpdos_.changed(host.entries(), index, sub_index);
   }
-  template <DictionaryObject O, class Host>
+  template <DictionaryObject Object, class Host>
   bool on_new_value(Host& host) {
-    if (host.handler_calls().is_supplied(object_key(O::index, O::sub_index))) return false;
-    return tpdos_.template changed<O>(host.entries());
+    if (host.handler_calls().is_supplied(object_key(Object::index, Object::sub_index))) return false;
+    return tpdos_.template changed<Object>(host.entries());
   }
 
  private:

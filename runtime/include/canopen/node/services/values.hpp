@@ -153,9 +153,9 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
     Stored::before_write(host.store(), index, sub_index, bytes);
   }
   /// The same after the value of an object has changed.
-  template <DictionaryObject O, class Host>
+  template <DictionaryObject Object, class Host>
   static void after_change([[maybe_unused]] Host& host) {
-    if constexpr (Stored::template is_configuration<O>) Stored::clear_configuration(host.store());
+    if constexpr (Stored::template is_configuration<Object>) Stored::clear_configuration(host.store());
   }
 
  private:
