@@ -27,6 +27,7 @@ READ_MESSAGES = 12
 # The lines that all messages of a case may have, without the lists of including files. LONGER: why a case may have more.
 MOST_LINES = 12
 LONGER = {
+    "application_deduced_result": "a deduced result needs the body of the function, before the node is complete",
     "application_every_0_ms": "the compilers continue after the wrong type of a parameter, which they then do not know",
     "application_every_hour": "like application_every_0_ms",
     "checked_pdo_over_64_bits": "Clang: the layout, its base and its check are one template each",

@@ -197,7 +197,9 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// Returns the value of an object, whatever its access type.
   template <DictionaryObject Object>
   [[nodiscard]] typename Object::type get(Object = {}) const {
-    static_assert(is_in_dictionary<Object, Device>, "get: this device does not have the object");
+    static_assert(!lacks_sub_index<Object, Device>, "get: an ARRAY has many elements; give its sub-index: array<1>");
+    static_assert(lacks_sub_index<Object, Device> || is_in_dictionary<Object, Device>,
+                  "get: this device does not have the object");
     static_assert(!is_of_another_device<Object, Device>,
                   "get: this is an object of another device; this device has another one at its index");
     if constexpr (is_in_dictionary<Object, Device>) return store_.template get<Object>();

@@ -90,7 +90,7 @@ struct UncalledFunction {
   static constexpr bool is_good = true;
   static_assert(!DictionaryObject<Object> || std::is_same_v<Function, function::Read>,
                 "application: the node calls write and written with (object, value) or (object, value, node); a value "
-                "is passed by value or as const&");
+                "is passed by value or as const&, and the node as auto&");
   static_assert(!DictionaryObject<Object> || !std::is_same_v<Function, function::Read>,
                 "application: the node calls read with (object) or (object, node)");
 };

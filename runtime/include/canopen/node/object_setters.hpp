@@ -95,7 +95,9 @@ class ObjectSetters {
     constexpr bool is_domain = std::is_same_v<typename Object::type, Domain>;
     constexpr bool is_constant =
         exists && entry::place_of(Device::dictionary.find(Object::index, Object::sub_index)) != entry::Place::ram;
-    static_assert(exists, "set: this device does not have the object");
+    constexpr bool is_array = lacks_sub_index<Object, Device>;
+    static_assert(!is_array, "set: an ARRAY has many elements; give its sub-index: array<1>");
+    static_assert(is_array || exists, "set: this device does not have the object");
     static_assert(!is_foreign, "set: this is an object of another device; this device has another one at its index");
     static_assert(!is_constant, "set: a constant of the EDS cannot be set");
     static_assert(!is_domain, "set: the memory of a DOMAIN is bound with bind()");

@@ -76,6 +76,10 @@ template <class Object, class Device>
 template <class Object, class Device>
 inline constexpr bool is_in_dictionary = Device::dictionary.has(Object::index, Object::sub_index);
 
+/// Whether an object is an ARRAY without the sub-index of an element.
+template <class Object, class Device>
+inline constexpr bool lacks_sub_index = Object::sub_index == whole_array && !is_in_dictionary<Object, Device>;
+
 /// Whether an object is one of another device, whose EDS has another name at this index. Objects without a name, which
 /// are not generated, are those of every device.
 template <class Object, class Device>
