@@ -11,10 +11,10 @@ struct Bus {
   bool send(const canopen::Frame&) { return true; }
 };
 
+auto make(Bus& bus) {
 #ifdef GOOD
-constexpr canopen::NodeId node_id{127};
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{127});
 #else
-constexpr canopen::NodeId node_id{0};
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{0});
 #endif
-
-auto make(Bus& bus) { return bench::make_node<every_type::Device>(bus, node_id); }
+}

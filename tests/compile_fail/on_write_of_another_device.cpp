@@ -20,11 +20,11 @@ struct target_torque : canopen::TypedObject<std::uint16_t, canopen::Access::rw> 
 }  // namespace other::od
 
 #ifdef GOOD
-using object = od::access_rw;
+using selected = od::access_rw;
 #else
-using object = other::od::target_torque;
+using selected = other::od::target_torque;
 #endif
 
 auto make(Bus& bus) {
-  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_write<object>([](std::uint16_t) {}));
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_write<selected>([](std::uint16_t) {}));
 }

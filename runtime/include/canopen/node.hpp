@@ -34,6 +34,7 @@
 #include "canopen/node/idle_time.hpp"
 #include "canopen/node/make_node.hpp"
 #include "canopen/node/object_values.hpp"
+#include "canopen/node/parts.hpp"
 #include "canopen/node/service_host.hpp"
 #include "canopen/node/services.hpp"
 #include "canopen/node/value_check.hpp"
@@ -81,12 +82,14 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   template <class... Given>
   constexpr Node(BusType& can_bus, NodeId node_id, Given&&... parts)
       : bus_{can_bus}, handlers_{std::forward_as_tuple(std::forward<Given>(parts)...)}, node_id_{node_id} {
+    static_assert(sizeof(part_detail::CheckedParts<std::tuple<Handlers...>, Given&&...>) != 0);
     (handler_detail::check_parameters<Node, Handlers>(), ...);
   }
   /// For a node-ID passed to `start`. With a bus by value such a node is all zeros, without initial values in flash.
   template <class... Given>
   constexpr explicit Node(BusType& can_bus, Given&&... parts)
       : bus_{can_bus}, handlers_{std::forward_as_tuple(std::forward<Given>(parts)...)} {
+    static_assert(sizeof(part_detail::CheckedParts<std::tuple<Handlers...>, Given&&...>) != 0);
     (handler_detail::check_parameters<Node, Handlers>(), ...);
   }
   Node(const Node&) = delete;

@@ -44,9 +44,7 @@ class HandlerSet {
   /// With references to the values of some parts, in any order; the others are default-constructed (node/parts.hpp).
   template <class... Given>
   constexpr explicit HandlerSet(std::tuple<Given...> parts)
-      : HandlerSet{parts, std::index_sequence_for<Handlers...>{}} {
-    static_assert(part_detail::CheckedParts<std::tuple<Handlers...>, Given...>::is_good);
-  }
+      : HandlerSet{parts, std::index_sequence_for<Handlers...>{}} {}
 
   /// Whether the value of `Object` is checked before it is written, or used after it.
   template <DictionaryObject Object>

@@ -69,7 +69,7 @@ template <class OneObject, class OtherObject>
 inline constexpr bool same_object =
     OneObject::index == OtherObject::index&& OneObject::sub_index == OtherObject::sub_index;
 
-template <class Layout, class Label, class Object, bool Found>
+template <class Layout, class Label, bool Found, class Object>
 struct MappedObject {
   static constexpr bool is_good = true;
   static_assert(Found, "this PDO does not map the object");
@@ -230,12 +230,12 @@ struct PdoLayout {
   /// Returns the value of an object in these data bytes.
   template <DictionaryObject Object>
   [[nodiscard]] static constexpr typename Object::type get(const Data& data) {
-    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, Object, maps<Object>>::is_good);
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, maps<Object>, Object>::is_good);
     return get_aligned<position_of<Object>, 1>(data);
   }
   template <DictionaryObject Object>
   [[nodiscard]] static constexpr typename Object::type get(const Frame& frame) {
-    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, Object, maps<Object>>::is_good);
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, maps<Object>, Object>::is_good);
     return get_aligned<position_of<Object>, pdo_detail::frame_data_align>(frame.data);
   }
 
@@ -253,12 +253,12 @@ struct PdoLayout {
   /// Sets the value of an object. All other bits keep their value.
   template <DictionaryObject Object>
   static constexpr void set(Data& data, ParameterFor<Object> value) {
-    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, Object, maps<Object>>::is_good);
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, maps<Object>, Object>::is_good);
     set<position_of<Object>>(data, value_for_detail::value_in(value));
   }
   template <DictionaryObject Object>
   static constexpr void set(Frame& frame, ParameterFor<Object> value) {
-    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, Object, maps<Object>>::is_good);
+    static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, maps<Object>, Object>::is_good);
     set<position_of<Object>>(frame, value_for_detail::value_in(value));
   }
 
