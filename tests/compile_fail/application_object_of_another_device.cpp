@@ -1,4 +1,4 @@
-// expect: this device does not have the object of one of its functions .*sdo_device::od::[a-z_]+
+// expect: this device does not have the object of one of its functions .*function::Written
 // A function of an application for an object of another device.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>

@@ -20,12 +20,12 @@ struct target_torque : canopen::TypedObject<std::uint16_t, canopen::Access::rw> 
 }  // namespace other::od
 
 #ifdef GOOD
-using selected = od::access_rw;
+using checked_object = od::access_rw;
 #else
-using selected = other::od::target_torque;
+using checked_object = other::od::target_torque;
 #endif
 
-void run(Bus& bus, canopen::Mailbox<selected>& measured) {
+void run(Bus& bus, canopen::Mailbox<checked_object>& measured) {
   auto node = bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::values_from(measured));
   node.on_time(canopen::TimePoint{});
 }

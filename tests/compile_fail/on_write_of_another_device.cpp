@@ -20,11 +20,12 @@ struct target_torque : canopen::TypedObject<std::uint16_t, canopen::Access::rw> 
 }  // namespace other::od
 
 #ifdef GOOD
-using selected = od::access_rw;
+using checked_object = od::access_rw;
 #else
-using selected = other::od::target_torque;
+using checked_object = other::od::target_torque;
 #endif
 
 auto make(Bus& bus) {
-  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_write<selected>([](std::uint16_t) {}));
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5},
+                                              canopen::on_write<checked_object>([](std::uint16_t) {}));
 }
