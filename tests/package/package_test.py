@@ -119,7 +119,7 @@ class Mistakes(PackageTest):
                 ("edsc_add_conformance_test(test valve_test)", "is not a library"),
                 ("edsc_add_conformance_test(test valve EDS valve.eds)", "unknown arguments: EDS"),
                 ("edsc_add_conformance_test(test valve NODE_ID 128)", "128 is not a node-ID"),
-                ("edsc_add_conformance_test(test valve APPLICATION main.cpp)", "takes a header and a class"),
+                ("edsc_add_conformance_test(test valve APPLICATION main.cpp)", "takes a header and a type"),
                 ("edsc_add_conformance_test(test valve APPLICATION none.hpp Valve)", "none.hpp does not exist"),
                 ("edsc_add_conformance_test(test valve DEVIATIONS none.json)", "none.json does not exist"))):
             with self.subTest(call=call), self.assertRaisesRegex(AssertionError, words):
