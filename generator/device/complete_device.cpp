@@ -185,7 +185,7 @@ class Completion {
     if (!holds(entry, on_command)) return;
     if (!entry.default_value) {
       if (!stores_entries(entry.sub_index)) return;
-      diagnostics_.warning(
+      diagnostics_.note(
           "storage-default", entry.position,
           fmt::format("{} has no default value; using {}, on command ({})", named(entry), on_command, by(row->clause)));
       return set(entry, on_command, row->clause);

@@ -58,7 +58,7 @@ struct StaticMappingCause {
   const Entry* by = nullptr;
 };
 
-StaticMappingCause cause_of(const Pdo& pdo) {
+StaticMappingCause cause_of(const RuleContext& context, const Pdo& pdo) {
   const Entry* const count = pdo.mapping->find(0);
   if (count == nullptr) return {"its sub-index 0 is missing", &pdo.mapping->entries.front()};
   if (!canopen::writable(count->access)) return {fmt::format("its sub-index 0 is {}", access_name(*count)), count};
@@ -66,17 +66,19 @@ StaticMappingCause cause_of(const Pdo& pdo) {
     if (!canopen::writable(entry.access)) return {fmt::format("{} is {}", named(entry), access_name(entry)), &entry};
     if (!canopen::readable(entry.access)) return {fmt::format("{} is {}", named(entry), access_name(entry)), &entry};
   }
+  if (context.options.static_mapping.applies_to(pdo.mapping->index)) {
+    return {"the option pdo.static_mapping makes it so", count};
+  }
   return {"the device does not support a mapping with these entries that changes", count};
 }
 
 /// A mapping is changed as a whole: sub-index 0 is set to 0 first (CiA 301, 7.5.2.36).
 void check_static_mapping(const RuleContext& context, const Pdo& pdo) {
   if (pdo.mapping == nullptr || pdo.dynamic || pdo.broken) return;
-  if (context.options.static_mapping.applies_to(pdo.mapping->index)) return;
   const auto writable =
       std::ranges::find_if(pdo.mapping->entries, [](const Entry& entry) { return is_writable(&entry); });
   if (writable == pdo.mapping->entries.end()) return;
-  const StaticMappingCause cause = cause_of(pdo);
+  const StaticMappingCause cause = cause_of(context, pdo);
   report_never(context, *writable, fmt::format("the mapping of {} is static, because {}", pdo_label(pdo), cause.why),
                *cause.by, "static mapping");
 }

@@ -275,6 +275,12 @@ std::string outside_limits(const LiveEntry& entry, const Bytes& bytes) {
                      limits_text(*entry.entry));
 }
 
+/// 6060h of each axis (CiA 402-2): the values between its limits are those of 6502h.
+bool is_mode_of_operation(const LiveEntry& entry) {
+  constexpr std::uint16_t first = 0x6060, axis = 0x800, end = 0xA000;
+  return entry.index >= first && entry.index < end && (entry.index - first) % axis == 0;
+}
+
 void try_limits(Dut& dut) {
   EntryResults results{dut};
   for (const LiveEntry& entry : dut.entries()) {
@@ -292,6 +298,7 @@ void try_limits(Dut& dut) {
       results.add_warning(entry, outside_limits(entry, before.bytes));
       continue;
     }
+    if (is_mode_of_operation(entry)) continue;
     if (row.high_limit) try_limit(dut, results, entry, *row.high_limit, "HighLimit");
     if (row.low_limit) try_limit(dut, results, entry, *row.low_limit, "LowLimit");
     // Written back at once, so that an output does not keep its limit during the other entries.

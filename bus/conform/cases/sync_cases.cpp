@@ -3,6 +3,7 @@
 
 #include <canopen/sync/sync.hpp>
 
+#include "conform/cases/shared/entry_values.hpp"
 #include "conform/cases/shared/setup.hpp"
 #include "conform/cases/shared/storage_setup.hpp"
 
@@ -194,7 +195,8 @@ void stored_values(Dut& dut) {
   with_storage(dut, save_communication(dut), [&dut](const Storage& storage) {
     const std::uint32_t cob_id = stop_sync(dut);
     const auto set = [&dut](std::uint16_t index, std::uint64_t value) {
-      if (dut.is_writable(index)) dut.write(index, 0, value);
+      if (!dut.is_writable(index)) return;
+      if (is_within_limits(dut, *dut.entry(index, 0), dut.bytes_of(index, 0, value))) dut.write(index, 0, value);
     };
     set(sync_overflow, 7);
     set(sync_cob_id, cob_id == 0x6A0 ? 0x6A1 : 0x6A0);  // not used in the pre-defined connection set

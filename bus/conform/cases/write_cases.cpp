@@ -38,8 +38,17 @@ constexpr std::uint16_t error_register = 0x1001, status_register = 0x1002, cob_i
 
 // Which entries
 
+/// Whether an entry belongs to a PDO whose mapping in the EDS is wrong: `edsc check` reports the mapping.
+bool is_of_wrong_pdo(const Device& sheet, const LiveEntry& entry) {
+  return std::ranges::any_of(sheet.pdos, [&](const Pdo& pdo) {
+    const auto has = [&](const Object* object) { return object != nullptr && object->index == entry.index; };
+    return pdo.broken && (has(pdo.communication) || has(pdo.mapping));
+  });
+}
+
 bool is_written(const Dut& dut, const LiveEntry& entry) {
   if (!is_writable(entry) || entry.type == nullptr || is_domain(entry)) return false;
+  if (is_of_wrong_pdo(dut.sheet(), entry)) return false;
   if (is_left_out(entry) || sets_node_id_or_bit_rate(entry)) return false;
   // The value of a write-only entry cannot be put back.
   return (flags_of(dut.sheet(), entry) & refuse_write_flag) == 0 && (is_readable(entry) || dut.simulated());
@@ -315,6 +324,10 @@ void try_other_values(Dut& dut, WriteResults& results, const LiveEntry& entry, c
 void try_values(Dut& dut, WriteResults& results, const LiveEntry& entry) {
   const SdoOutcome before = is_readable(entry) ? dut.upload(entry.index, entry.sub_index) : SdoOutcome{};
   if (is_readable(entry) && !before.done()) return;  // cases 4.1 and 4.7
+  if (is_readable(entry) && !is_within_limits(dut, *entry.entry, before.bytes)) {
+    const std::string present = value_of(entry, before.bytes);
+    return results.warn(entry, fmt::format("has {}, which is not within its limits: no value is written", present));
+  }
   results.count();
   try_stated_values(dut, results, entry);
   try_other_values(dut, results, entry, before.bytes);
