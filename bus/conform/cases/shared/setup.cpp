@@ -41,6 +41,16 @@ bool maps_objects(Dut& dut, std::uint16_t index, std::uint8_t count) {
   return true;
 }
 
+/// Whether another TPDO has the same CAN-ID: their frames cannot be told apart.
+bool shares_can_id(Dut& dut, const Pdo& pdo, CobId cob_id) {
+  return std::ranges::any_of(dut.pdos(PdoDirection::transmit), [&](const Pdo* other) {
+    if (other == &pdo || other->communication == nullptr) return false;
+    const CobId used{
+        static_cast<std::uint32_t>(dut.read_number(other->communication->index, canopen::pdo_parameter::cob_id))};
+    return used.valid() && used.can_id() == cob_id.can_id();
+  });
+}
+
 }  // namespace
 
 void expect_default_cob_id(Dut& dut, std::uint16_t index, std::uint32_t standard) {
@@ -124,6 +134,7 @@ std::optional<std::uint32_t> set_up_tpdo(Dut& dut, std::uint8_t transmission_typ
     const std::uint64_t mapped = dut.read_number(pdo->mapping->index);
     if (!canopen::is_usable(cob_id.value()) || mapped == 0 || mapped > 64) continue;
     if (!maps_objects(dut, pdo->mapping->index, static_cast<std::uint8_t>(mapped))) continue;
+    if (shares_can_id(dut, *pdo, cob_id)) continue;
 
     const auto set = [&](std::uint8_t sub_index, std::uint64_t value) {
       if (!dut.has(index, sub_index)) return value == 0;
