@@ -11,9 +11,6 @@
 
 namespace canopen {
 
-/// Whether an index is in the communication profile area, 1000h..1FFFh, whose objects belong to services.
-[[nodiscard]] constexpr bool is_communication_index(std::uint16_t index) { return index < 0x2000; }
-
 /// Whether services are asked about a write to an object. None has one of the application; for size, all are asked, and
 /// compare the index anyway.
 [[nodiscard]] constexpr bool may_concern_services(std::uint16_t index) {

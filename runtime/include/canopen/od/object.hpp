@@ -10,6 +10,9 @@
 
 namespace canopen {
 
+/// Whether an index is in the communication profile area, 1000h..1FFFh, whose objects belong to services.
+[[nodiscard]] constexpr bool is_communication_index(std::uint16_t index) { return index < 0x2000; }
+
 /// Bits of a value on the wire that follow from its C++ type; 0 for strings and domains.
 template <class Type>
 inline constexpr std::uint16_t wire_bits = std::is_arithmetic_v<Type> ? sizeof(Type) * 8 : 0;

@@ -12,6 +12,7 @@
 #include "canopen/base/abort_code.hpp"
 #include "canopen/can/node_id.hpp"
 #include "canopen/od/dictionary.hpp"
+#include "canopen/od/object.hpp"
 #include "canopen/od/object_store.hpp"
 #include "canopen/storage/parameter_layout.hpp"
 #include "canopen/storage/storage.hpp"
