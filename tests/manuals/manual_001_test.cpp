@@ -369,13 +369,13 @@ TEST(Manual001, TellsErrorsAndKeepsTheRecentOnes) {
   constexpr std::uint8_t bits[] = {0x01, 0x02, 0x04, 0x08, 0x10, 0x20, 0x80};
   Drive drive;
   for (const std::uint8_t bit : bits) {
-    drive.node.emergency(0x000D, static_cast<ErrorRegister>(bit), {1, 2, 3, 4, 5});
+    drive.node.emergency(std::uint16_t{0x000D}, static_cast<ErrorRegister>(bit), {1, 2, 3, 4, 5});
     drive.pass(0s);
     EXPECT_EQ(drive.node.get<od::error_register>(), bit | 1);
     drive.node.emergency_over(static_cast<ErrorRegister>(bit));
     drive.pass(0s);
   }
-  drive.node.emergency(0x080E, ErrorRegister::voltage, {1, 2, 3, 4, 5});
+  drive.node.emergency(std::uint16_t{0x080E}, ErrorRegister::voltage, {1, 2, 3, 4, 5});
   EXPECT_EQ(drive.pass(0s), "085 0E 08 05 01 02 03 04 05");
   EXPECT_EQ(drive.ask("605 40 03 10 00 00 00 00 00"), "585 4F 03 10 00 08 00 00 00");
   EXPECT_EQ(drive.ask("605 40 03 10 01 00 00 00 00"), "585 43 03 10 01 0E 08 01 02");

@@ -21,11 +21,18 @@ inline constexpr bool node_id_is_not_1_to_127[1] = {};
 class NodeId {
  public:
   constexpr NodeId() = default;
-  /// A constant.
+  /// A constant. Clang before 16 ends with a segmentation fault where such a constructor is consteval: there, a
+  /// constant outside the range is an invalid node-ID, as a value at run time is.
+#if defined(__clang__) && __clang_major__ < 16
+  template <std::same_as<int> Constant>
+  constexpr explicit NodeId(const Constant& constant)
+      : value_{constant >= 1 && constant <= 127 ? static_cast<std::uint8_t>(constant) : std::uint8_t{0}} {}
+#else
   template <std::same_as<int> Constant>
   consteval explicit NodeId(const Constant& constant) : value_{static_cast<std::uint8_t>(constant)} {
     if (node_id_detail::node_id_is_not_1_to_127[constant >= 1 && constant <= 127 ? 0 : 1]) value_ = 0;
   }
+#endif
   constexpr explicit NodeId(std::uint8_t value) : value_{value} {}
 
   /// Returns the node-ID of a value that is known only at run time, such as that of a switch; empty if it is
