@@ -34,6 +34,9 @@ class VirtualPort final : public BusPort {
   explicit VirtualPort(VirtualBus& bus) : bus_{bus} {
     end_.on_frame = [this](const Frame& frame, TimePoint) { received_.push_back(frame); };
   }
+  ~VirtualPort() override { end_.on_frame = nullptr; }  // the bus lives longer
+  VirtualPort(const VirtualPort&) = delete;
+  VirtualPort& operator=(const VirtualPort&) = delete;
   bool send(const Frame& frame) override { return end_.send(frame); }
   std::optional<Frame> receive(Duration timeout) override {
     bus_.run_until([this] { return !received_.empty(); }, timeout);
