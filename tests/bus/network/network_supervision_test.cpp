@@ -96,7 +96,8 @@ class NetworkApply : public testing::Test {
   faulty::Slave& add(faulty::Settings settings) {
     VirtualBus::Endpoint& port = bus.attach();
     settings.values = values;
-    for (const auto& [entry, bytes] : expected) settings.values.try_emplace(entry, faulty::Bytes(bytes.size(), 0));
+    // The device of the network has its configuration already.
+    for (const auto& [entry, bytes] : expected) settings.values.insert_or_assign(entry, faulty::Bytes(bytes.size(), 0));
     faulty::Slave& slave =
         slaves.emplace_back(std::move(settings), [&port](const Frame& frame) { static_cast<void>(port.send(frame)); });
     slave.expected = expected;
