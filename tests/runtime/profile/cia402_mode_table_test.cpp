@@ -52,7 +52,7 @@ struct Moving : bench::EveryMode<> {
 
 struct EachMode : testing::TestWithParam<std::int8_t> {};
 INSTANTIATE_TEST_SUITE_P(Modes, EachMode, testing::ValuesIn(modes),
-                         [](const auto& info) { return std::to_string(info.param); });
+                         [](const auto& tested) { return std::to_string(tested.param); });
 
 TEST_P(EachMode, MovesInOperationEnabledOnly) {
   Moving drive{GetParam()};
