@@ -166,7 +166,9 @@ void expect_modes(std::uint32_t supported_modes) {
   for (int wanted = 1; wanted <= 11; ++wanted) {
     const bool is_supported = ((supported_modes >> (wanted - 1)) & 1) != 0;
     EXPECT_EQ(drive.write(0x6060, 0, wanted, 1), is_supported ? 0u : 0x0609'0030u) << wanted;
-    if (is_supported) EXPECT_EQ(drive.drive.node().get(od::modes_of_operation_display{}), wanted);
+    if (is_supported) {
+      EXPECT_EQ(drive.drive.node().get(od::modes_of_operation_display{}), wanted);
+    }
   }
 }
 
@@ -304,7 +306,9 @@ TEST(AnySequence, MovesWithPowerOnlyAndHasAValidStatusword) {
         ASSERT_EQ(status & 0x3000 & ~bits_of_mode(present), 0u) << std::hex << status << " mode " << int{present};
       } else {
         ASSERT_EQ(status & 0x3000, 0u) << std::hex << status;
-        if ((status & 0x04) == 0) ASSERT_EQ(drive.axis().torque(), 0);
+        if ((status & 0x04) == 0) {
+          ASSERT_EQ(drive.axis().torque(), 0);
+        }
       }
     }
   }
