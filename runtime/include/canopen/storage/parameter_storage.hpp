@@ -201,7 +201,9 @@ class ParameterStorage {
     std::uint32_t size = 0;     ///< bytes of the new image
   };
 
-  [[nodiscard]] static constexpr bool is_in(SectionSet sections, unsigned i) { return ((sections >> i) & SectionSet{1}) != 0; }
+  [[nodiscard]] static constexpr bool is_in(SectionSet sections, unsigned i) {
+    return ((sections >> i) & SectionSet{1}) != 0;
+  }
 
   // Reading: storage/stored_format.hpp describes the bytes
 
