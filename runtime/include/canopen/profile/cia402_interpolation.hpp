@@ -65,7 +65,7 @@ template <class DriveParameters, Options options>
 class InterpolatedPosition {
   static constexpr bool has_buffer = DriveParameters::template has<object::InterpolationBufferClear>;
   static constexpr std::size_t room = has_buffer ? options.interpolation_buffer : 1;
-  static_assert(room > 0, "options.interpolation_buffer of a drive with 60C4h is at least 1");
+  static_assert(room > 0 && room <= 255, "options.interpolation_buffer of a drive with 60C4h is 1 to 255");
 
  public:
   void clear() { *this = InterpolatedPosition{}; }

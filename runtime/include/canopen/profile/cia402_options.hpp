@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include "canopen/profile/cia402_axis.hpp"
 
@@ -68,6 +69,9 @@ struct Options {
   /// Maximum number of steps to catch up if `on_time` was called late. Time beyond them is skipped, so that the axis
   /// does not jump and a call takes bounded time.
   std::uint16_t max_steps = 100;
+  /// Data records that interpolated position mode can buffer, if the device has 60C4h: 4 bytes of RAM each; at most
+  /// 255.
+  std::uint16_t interpolation_buffer = 8;
   /// Time between two steps of the axis, in us.
   std::uint32_t step = 1'000;
   /// Interval in us at which actual values are set while the axis moves. They are always set when it has come to rest.
@@ -79,8 +83,8 @@ struct Options {
   /// Velocity and acceleration of the axis for 1 rpm and 1 rpm/s, the units of velocity mode (6042h, 6048h).
   Ratio velocity_of_rpm{};
   Ratio acceleration_of_rpm{};
-  /// Data records that interpolated position mode can buffer, if the device has 60C4h: 4 bytes of RAM each.
-  std::uint8_t interpolation_buffer = 8;
 };
+// In a template parameter with padding, Clang 14 reads members of class type at wrong offsets.
+static_assert(std::has_unique_object_representations_v<Options>);
 
 }  // namespace canopen::cia402
