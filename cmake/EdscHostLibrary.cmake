@@ -44,8 +44,7 @@ function(edsc_add_host_library name)
     cmake_path(GET source PARENT_PATH folder)
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
   endforeach()
-  # Fuzz targets must run fast and report coverage to the fuzzer.
-  if(EDSC_BUILD_FUZZ)
-    target_compile_options(${name} PRIVATE -O1 -fsanitize=fuzzer-no-link)
+  if(EDSC_BUILD_FUZZ) # Report coverage to the fuzzer.
+    target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
   endif()
 endfunction()

@@ -21,6 +21,19 @@ function(edsc_add_test_run name)
   endif()
 endfunction()
 
+# edsc_precompile_test_headers(NAME): the headers of most GoogleTest programs take a quarter of the time of a test; they are
+# compiled once for all programs with the same optimisation.
+function(edsc_precompile_test_headers name)
+  if(NOT TARGET edsc_test_headers)
+    set(empty ${CMAKE_BINARY_DIR}/test_headers.cpp)
+    file(WRITE ${empty} "")
+    add_library(edsc_test_headers OBJECT ${empty})
+    target_link_libraries(edsc_test_headers PRIVATE edsc_runtime GTest::gtest)
+    target_precompile_headers(edsc_test_headers PRIVATE <gtest/gtest.h> <chrono> <deque> <canopen/node.hpp>)
+  endif()
+  target_precompile_headers(${name} REUSE_FROM edsc_test_headers)
+endfunction()
+
 # edsc_add_gtest(NAME SOURCES file... [LIBRARIES target...] [LONG] [NO_COVERAGE]): a GoogleTest program. Its includes are
 # relative to tests/.
 # NO_COVERAGE: it does not cover the runtime, or covers no more than others that compile faster.
@@ -33,6 +46,9 @@ function(edsc_add_gtest name)
   edsc_add_test_program(${name} ${long} ${arg_SOURCES})
   target_include_directories(${name} PRIVATE ${EDSC_TESTS_DIR})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gtest_main)
+  if(EDSC_SANITIZE AND NOT arg_LONG)
+    edsc_precompile_test_headers(${name})
+  endif()
   if(EDSC_COVERAGE AND NOT arg_NO_COVERAGE)
     target_compile_options(${name} PRIVATE -O0 --coverage)
     target_link_options(${name} PRIVATE --coverage)
