@@ -143,7 +143,9 @@ TEST(Manual004, RefusesRestrictedCanIdsAndBits29And30ForEmcy) {
       EXPECT_EQ(write(sensor, 0x1014, 0, 4, can_id), refused(0x1014, 0, invalid_value)) << can_id;
     }
   }
+  EXPECT_EQ(write(sensor, 0x1014, 0, 4, 0x80), refused(0x1014, 0, invalid_value)) << "a SYNC for the other nodes";
   for (const std::uint32_t can_id : free_can_ids) {
+    if (can_id == 0x80) continue;
     EXPECT_EQ(write(sensor, 0x1014, 0, 4, can_id), taken(0x1014, 0)) << can_id;
     write(sensor, 0x1014, 0, 4, 0x8000'0000 | can_id);
   }

@@ -36,8 +36,8 @@ std::string store(int highest = 1, const std::string& last_name = "Save") {
 
 using List = std::vector<std::string>;
 
-struct Compared {
-  Compared(std::string old_text, std::string new_text, Options old_options = {}, Options new_options = {})
+struct ComparedStorage {
+  ComparedStorage(std::string old_text, std::string new_text, Options old_options = {}, Options new_options = {})
       : before(std::move(old_text), std::move(old_options), {"device", {}}, "old.eds"),
         after(std::move(new_text), std::move(new_options), {"device", {}}, "new.eds"),
         values(compare_stored_values({before.device, before.options}, {after.device, after.options})) {}
@@ -64,13 +64,13 @@ Options storing(std::uint16_t index, std::string how) {
 TEST(StoredValues, OfTheSameVersionAreKept) {
   const std::string sheet = store() + var("1017", "Time", "6", "rw") + var("2000", "Gain", "6", "rw") +
                             var("2001", "Status", "6", "ro") + var("2002", "Output", "6", "rww");
-  EXPECT_EQ(Compared(sheet, sheet).list(), (List{"kept 1017h:00", "kept 2000h:00", "kept 2002h:00"}))
+  EXPECT_EQ(ComparedStorage(sheet, sheet).list(), (List{"kept 1017h:00", "kept 2000h:00", "kept 2002h:00"}))
       << "2002h cannot be mapped, so that it is not process data";
 }
 
 TEST(StoredValues, OfADeviceWithout1010hDoNotExist) {
   const std::string sheet = var("2000", "Gain", "6", "rw");
-  EXPECT_EQ(Compared(sheet, "").list(), List{});
+  EXPECT_EQ(ComparedStorage(sheet, "").list(), List{});
 }
 
 TEST(StoredValues, AreConvertedOrDropped) {
@@ -80,24 +80,25 @@ TEST(StoredValues, AreConvertedOrDropped) {
   const std::string new_sheet = store() + var("2000", "Gain", "7", "rw") + var("2002", "Limit", "6", "ro") +
                                 var("2003", "Range", "6", "rw", "HighLimit=11\n") +
                                 var("2004", "Text", "9", "rw", "DefaultValue=text\n");
-  EXPECT_EQ(Compared(old_sheet, new_sheet).list(), (List{"converted 2000h:00 data type UNSIGNED16 becomes UNSIGNED32",
-                                                         "dropped 2001h:00 the entry does not exist any more",
-                                                         "dropped 2002h:00 the entry is not stored any more",
-                                                         "kept 2003h:00 a value outside none to 11 is not loaded",
-                                                         "kept 2004h:00 a text of more than 4 bytes is not loaded"}));
+  EXPECT_EQ(
+      ComparedStorage(old_sheet, new_sheet).list(),
+      (List{"converted 2000h:00 data type UNSIGNED16 becomes UNSIGNED32",
+            "dropped 2001h:00 the entry does not exist any more", "dropped 2002h:00 the entry is not stored any more",
+            "kept 2003h:00 a value outside none to 11 is not loaded",
+            "kept 2004h:00 a text of more than 4 bytes is not loaded"}));
 }
 
 TEST(StoredValues, FollowTheOptions) {
   const std::string sheet = store() + var("2000", "Gain", "6", "rw") + var("2001", "Offset", "6", "ro");
-  EXPECT_EQ(Compared(sheet, sheet, {}, storing(0x2000, "never")).list(),
+  EXPECT_EQ(ComparedStorage(sheet, sheet, {}, storing(0x2000, "never")).list(),
             (List{"dropped 2000h:00 the entry is not stored any more"}));
-  EXPECT_EQ(Compared(sheet, sheet, storing(0x2001, "always"), storing(0x2001, "always")).list(),
+  EXPECT_EQ(ComparedStorage(sheet, sheet, storing(0x2001, "always"), storing(0x2001, "always")).list(),
             (List{"kept 2000h:00", "kept 2001h:00"}));
 }
 
 TEST(StoredValues, ThatAreLostBreakTheStorage) {
   const std::string sheet = store() + var("2000", "Gain", "6", "rw");
-  const Compared compared(sheet, sheet, {}, storing(0x2000, "never"));
+  const ComparedStorage compared(sheet, sheet, {}, storing(0x2000, "never"));
   Changes changes = compare_devices(compared.before.device, compared.after.device);
   EXPECT_EQ(changes.all().size(), 0U);
   add_lost_values(compared.values, changes);
@@ -109,7 +110,7 @@ TEST(StoredValues, ThatAreLostBreakTheStorage) {
 }
 
 TEST(StoredValues, ArePrinted) {
-  const Compared compared(store() + var("2000", "Gain", "6", "rw"), store() + var("2000", "Gain", "7", "rw"));
+  const ComparedStorage compared(store() + var("2000", "Gain", "6", "rw"), store() + var("2000", "Gain", "7", "rw"));
   EXPECT_NE(stored_values_as_text(compared.values)
                 .find("converted: 2000h:00 \"Gain\": data type UNSIGNED16 becomes UNSIGNED32 (was old.eds:"),
             std::string::npos);

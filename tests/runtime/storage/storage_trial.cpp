@@ -132,7 +132,6 @@ struct Record {
   Type type;
   Bytes bytes;
   std::uint8_t node_id;
-  friend bool operator==(const Record&, const Record&) = default;
 };
 using Image = std::vector<Record>;
 

@@ -254,7 +254,7 @@ void run_late_emergency(Report& report) {
   if (node.set(0x1015, 0, ten) != canopen::ok) std::abort();
   node.emergency(0x1000, canopen::ErrorRegister::generic);
   node.on_time(time());
-  for (const std::uint64_t minutes : {30, 60, 71}) {
+  for (const std::uint64_t minutes : {30U, 60U, 71U}) {
     now = minutes * 60 * second;
     node.on_time(time());
   }

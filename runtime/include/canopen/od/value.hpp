@@ -74,12 +74,17 @@ struct VisibleString : StringStorage<Capacity> {
 };
 
 /// OCTET_STRING: any bytes. A list of constants converts to it; one that is longer than the capacity does not compile.
+/// Clang before 16 ends with a segmentation fault where this constructor is consteval: there, a longer list is cut.
 template <std::size_t Capacity>
 struct OctetString : StringStorage<Capacity> {
   constexpr OctetString() = default;
+#if defined(__clang__) && __clang_major__ < 16
+  constexpr OctetString(std::initializer_list<std::uint8_t> octets) : OctetString{truncated(octets)} {}
+#else
   consteval OctetString(std::initializer_list<std::uint8_t> octets) {
     for (const std::uint8_t octet : octets) this->bytes[this->size++] = octet;
   }
+#endif
 
   /// Returns the string with these bytes; 0607 0012h if they are more than the capacity.
   [[nodiscard]] static constexpr Result<OctetString> from(std::span<const std::uint8_t> octets) {

@@ -239,13 +239,18 @@ class StringOf {
   constexpr StringOf(const StringOf&) = default;
   constexpr StringOf(const type& value) : value_{value} {}  // NOLINT(google-explicit-constructor): a string is one
   template <std::size_t Size, value_for_detail::CharacterFor<type> Character>
-  consteval StringOf(const Character (&literal)[Size]) {  // NOLINT(google-explicit-constructor): a text is one
+  constexpr StringOf(const Character (&literal)[Size]) {  // NOLINT(google-explicit-constructor): a text is one
     static_assert(value_for_detail::has_room_for<ObjectType, Size>,
                   "this text is longer than the string of the object");
     if constexpr (value_for_detail::has_room_for<ObjectType, Size>) value_ = type{literal};
   }
+#if defined(__clang__) && __clang_major__ < 16                    // as OctetString
+  constexpr StringOf(std::initializer_list<std::uint8_t> octets)  // NOLINT(google-explicit-constructor)
+#else
   consteval StringOf(std::initializer_list<std::uint8_t> octets)  // NOLINT(google-explicit-constructor)
-      requires std::constructible_from<type, std::initializer_list<std::uint8_t>> : value_{octets} {}
+#endif
+      requires std::constructible_from<type, std::initializer_list<std::uint8_t>> : value_{octets} {
+  }
   /// A value that is not a string of the object.
   template <class ValueType>
   requires(!std::is_array_v<ValueType>)

@@ -370,7 +370,7 @@ class TpdoService {
   void sample([[maybe_unused]] std::size_t which, [[maybe_unused]] ObjectStore<Device>& store) {
     if constexpr (has_samples) {
       using Times = TpdoSlot::Times;  // whose bytes are written: type 252 does not use them as times
-      static_assert(sizeof(Times) == sizeof(Data) && alignof(Times) % 4 == 0 && std::is_trivially_copyable_v<Times>);
+      static_assert(sizeof(Times) >= sizeof(Data) && alignof(Times) % 4 == 0 && std::is_trivially_copyable_v<Times>);
       slots_[which].times = {};
       pack(which, store, reinterpret_cast<Data&>(slots_[which].times));
     }
