@@ -32,7 +32,7 @@ struct MasterAndDrive : testing::Test {
 };
 
 TEST_F(MasterAndDrive, BootsConfiguresAndListens) {
-  master.run_for(100ms);
+  master.run_for(500ms);
   EXPECT_TRUE(logged("node 5: booted"));
   EXPECT_EQ(drive.node().state(), canopen::NmtState::operational);
   EXPECT_EQ(drive.node().get<cpc_tc1::od::producer_heartbeat_time>(), 150);
@@ -42,7 +42,7 @@ TEST_F(MasterAndDrive, BootsConfiguresAndListens) {
 }
 
 TEST_F(MasterAndDrive, BootsItAgainWhenItIsLostAndBack) {
-  master.run_for(300ms);
+  master.run_for(500ms);
   end.on_frame = nullptr;
   end.next_deadline = [] { return std::optional<canopen::TimePoint>{}; };
   master.run_for(1s);
