@@ -56,7 +56,13 @@ struct Network : SlaveBus {
     VirtualBus::connect(end, master);
   }
 
-  void run(std::chrono::milliseconds span) { bus.run_for(span); }
+  /// Lets time pass. `status` is always the one that the host got last.
+  void run(std::chrono::milliseconds span) {
+    for (; span > 0ms; span -= 1ms) {
+      bus.run_for(1ms);
+      if (!log.results.empty()) ASSERT_EQ(master.status(NodeId{5}), log.results.back().status);
+    }
+  }
   void start() { master.start(bus.now()); }
 
   Log log;

@@ -352,6 +352,7 @@ class NmtMaster {
       slaves_.command(i, NmtCommand::enter_pre_operational);
       finish(i, BootResult{BootStatus::restarted});
     } else if (is_restart) {
+      slaves_.set_status(i, BootStatus::restarted);
       host_.booted(node_id, BootResult{BootStatus::restarted});
     }
     // `done` of the application may call `configured`, which has no effect any more.

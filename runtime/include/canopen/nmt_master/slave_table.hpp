@@ -52,6 +52,7 @@ class SlaveTable {
 
   /// Returns how the last boot-up of a slave ended; empty before that.
   [[nodiscard]] std::optional<BootStatus> status(std::size_t i) const { return entries_[i].status; }
+  void set_status(std::size_t i, BootStatus status) { entries_[i].status = status; }
 
   /// Returns the last state that a slave reported; empty if it is unknown or lost.
   [[nodiscard]] std::optional<NmtState> state(std::size_t i) const { return error_control_.state_of(i, list_[i]); }
