@@ -203,6 +203,29 @@ TEST(SupervisedBoot, MeasuresTheRateOfTheHeartbeats) {
   }
 }
 
+TEST(SupervisedBoot, AMasterThatReadsOneHeartbeatLateStartsTheSlave) {
+  Network network{{listed(5, 200)}};
+  faulty::Slave& slave = network.add({.values = {}});
+  std::optional<canopen::Frame> late;
+  network.end.on_frame = [&, read = network.end.on_frame, is_first = true](const canopen::Frame& frame,
+                                                                           canopen::TimePoint now) mutable {
+    const bool is_heartbeat = frame.id == 0x705 && frame.data[0] == 0x7F;
+    if (is_heartbeat && is_first) {
+      late = frame;
+      is_first = false;
+    } else {
+      read(frame, now);
+    }
+  };
+  network.start();
+  while (!late) network.run(1ms);
+  network.run(90ms);
+  network.master.on_frame(*late, network.bus.now());
+  network.run(5s);
+  EXPECT_TRUE(slave.operational());
+  EXPECT_EQ(network.log.letters(), "0");
+}
+
 TEST(SupervisedBoot, TellsTheHeartbeatTime) {
   Network network{{listed(5, 200)}};
   network.add({.values = {}, .fault = Fault::heartbeat_fast});

@@ -13,7 +13,8 @@ namespace canopen {
 
 /// Heartbeats at twice the rate, or with different states, are those of two nodes with one node-ID. The measurement
 /// begins with the first heartbeat and takes two heartbeat times, which is enough for the heartbeats of a second node,
-/// and at least 200 ms, because frames may be delayed. Heartbeat times of more than a second are not measured.
+/// and at least 200 ms, because frames may be delayed. A wrong rate is measured three times: a heartbeat that a busy
+/// machine reads late shortens one measurement. Heartbeat times of more than a second are not measured.
 class HeartbeatRate {
  public:
   enum class Verdict : std::uint8_t {
@@ -63,6 +64,16 @@ class HeartbeatRate {
     return (last_ - first_).count() / 2 >= span().count() / 3 ? Verdict::right : Verdict::wrong;
   }
 
+  /// Measures a wrong rate again, from the last heartbeat, or from the next one if too few have been received. Returns
+  /// false if this was the last measurement.
+  [[nodiscard]] bool repeat() {
+    if (measurements_ == most_measurements) return false;
+    ++measurements_;
+    heartbeats_ = heartbeats_ > periods() ? 1 : 0;
+    first_ = last_;
+    return true;
+  }
+
   /// Returns the measured distance of two heartbeats in ms.
   [[nodiscard]] std::uint32_t measured_time(TimePoint now) const {
     const bool is_complete = heartbeats_ > periods();
@@ -71,6 +82,8 @@ class HeartbeatRate {
   }
 
  private:
+  static constexpr std::uint8_t most_measurements = 3;
+
   [[nodiscard]] std::uint8_t periods() const {
     constexpr unsigned shortest = 200;  // ms
     const unsigned time = producer_time_ == 0 ? shortest : producer_time_;
@@ -82,7 +95,8 @@ class HeartbeatRate {
   TimePoint last_{};
   std::uint16_t producer_time_ = 0;
   std::uint8_t heartbeats_ = 0;  ///< until the measurement is complete
-  LastState state_{};            ///< of the last one
+  std::uint8_t measurements_ = 1;
+  LastState state_{};  ///< of the last one
   bool is_state_skipped_ = false;
   bool states_differ_ = false;
 };

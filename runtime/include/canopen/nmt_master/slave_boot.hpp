@@ -270,7 +270,12 @@ class SlaveBoot {
       case HeartbeatRate::Verdict::states: return BootResult{BootStatus::heartbeat_states};
       case HeartbeatRate::Verdict::wrong: break;
     }
-    return BootResult{BootStatus::heartbeat_rate, ok, 0x1017, 0, rate_.producer_time(), rate_.measured_time(now)};
+    const std::uint32_t seen = rate_.measured_time(now);
+    if (rate_.repeat()) {
+      deadline_ = rate_.begun() ? rate_.end() : now + from_milliseconds(rate_.producer_time()) * 2u;
+      return std::nullopt;
+    }
+    return BootResult{BootStatus::heartbeat_rate, ok, 0x1017, 0, rate_.producer_time(), seen};
   }
 
  private:
