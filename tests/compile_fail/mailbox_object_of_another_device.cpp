@@ -13,7 +13,7 @@ struct Bus {
 
 namespace other::od {
 struct target_torque : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
-  static constexpr std::uint16_t index = ::od::access_rw::index;
+  static constexpr std::uint16_t index = every_type::od::access_rw::index;
   static constexpr std::uint8_t sub_index = 0;
   static constexpr auto name = "Target torque";
 };
