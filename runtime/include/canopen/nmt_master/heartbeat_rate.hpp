@@ -67,7 +67,7 @@ class HeartbeatRate {
   /// Measures a wrong rate again, from the last heartbeat, or from the next one if too few have been received. Returns
   /// false if this was the last measurement.
   [[nodiscard]] bool repeat() {
-    if (measurements_ == most_measurements) return false;
+    if (measurements_ == max_measurements) return false;
     ++measurements_;
     heartbeats_ = heartbeats_ > periods() ? 1 : 0;
     first_ = last_;
@@ -82,7 +82,7 @@ class HeartbeatRate {
   }
 
  private:
-  static constexpr std::uint8_t most_measurements = 3;
+  static constexpr std::uint8_t max_measurements = 3;
 
   [[nodiscard]] std::uint8_t periods() const {
     constexpr unsigned shortest = 200;  // ms
