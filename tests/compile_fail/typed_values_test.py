@@ -24,7 +24,8 @@ UNUSED_IS_FINE = ("-Wno-unused-variable", "-Wno-unused-but-set-variable", "-Wno-
 COMMON_HEADERS = """#include <canopen/sdo/remote_node.hpp>
 #include <canopen/node.hpp>
 #include <canopen/node/locked.hpp>
-#include <canopen/host/blocking_sdo.hpp>
+#include <canopen/master.hpp>
+#include <canopen/plant/plant.hpp>
 #include <every_type/device.hpp>
 #include "support/omitting.hpp"
 namespace od = every_type::od;
@@ -38,6 +39,30 @@ struct Lock {
   void lock() {}
   void unlock() {}
 };
+/// A network whose master sends one signal to an object of a node.
+template <class Object>
+struct NetworkOf {
+  struct Tpdo : canopen::Tpdo<Object> {
+    static constexpr std::uint16_t number = 1;
+    static constexpr auto parameters = canopen::PdoParameters{.cob_id = 0x201};
+  };
+  struct Rpdo : canopen::Rpdo<Object> {
+    static constexpr std::uint16_t number = 1;
+    static constexpr auto parameters = canopen::PdoParameters{.cob_id = 0x201};
+  };
+  struct Signal : canopen::SentSignal<0, Tpdo, 0, Rpdo, 0> {};
+  using Master = Device;
+  static constexpr canopen::NodeId master_id{std::uint8_t{127}};
+  static constexpr canopen::NmtStartUp start_up{};
+  static constexpr std::array<canopen::PlantNode, 1> nodes{{{"axis", canopen::NodeId{std::uint8_t{1}}}}};
+  static constexpr std::array<canopen::NmtSlave, 1> slaves{{{canopen::NodeId{std::uint8_t{1}}, 0x5}}};
+  using Received = canopen::SignalList<>;
+  using Sent = canopen::SignalList<Signal>;
+  template <class Plant>
+  struct Nodes {
+    explicit Nodes(Plant&) {}
+  };
+};
 enum Setting : std::uint16_t { setting = 7 };
 enum class Mode : std::uint16_t { on = 7 };
 using Node = bench::NodeOf<Device, Bus>;
@@ -45,8 +70,9 @@ using Node = bench::NodeOf<Device, Bus>;
 CASE = """namespace case_{number} {{
 void pass(Node& node, canopen::Locked<Node, Lock>& locked, canopen::Mailbox<{object}>& box,
           canopen::RemoteNode<Device, Bus>& remote,
-          canopen::BlockingObjects<Device, canopen::BlockingSdo<Bus>>& objects, canopen::TimePoint now,
-          canopen::Frame& frame) {{
+          canopen::BlockingObjects<Device, canopen::BlockingSdo<Bus>>& objects,
+          canopen::MasterRemote<Device, Bus>& slave, canopen::Plant<NetworkOf<{object}>, Bus>& plant,
+          canopen::TimePoint now, canopen::Frame& frame, Bus& bus) {{
   {declaration}
   {statement}
 }}
@@ -96,6 +122,12 @@ WAYS = {
     "remote node": ("remote.write<{object}>({value}, now);", (*NUMBERS, *CHECKED)),
     "blocking, tag": ("objects.write({object}{{}}, {value});", NODE),
     "blocking, template": ("objects.write<{object}>({value});", NODE),
+    "slave, tag": ("slave.write({object}{{}}, {value});", NODE),
+    "slave, template": ("slave.write<{object}>({value});", NODE),
+    "slave, later": ("slave.write({object}{{}}, {value}, [](canopen::Result<void>) {{}});", NODE),
+    "plant": ("plant.set(NetworkOf<{object}>::Signal{{}}, {value});", (*NUMBERS, *CHECKED)),
+    "handler result": ("auto handler = canopen::on_read({object}{{}}, [=] {{ return {value}; }}); "
+                       "bench::NodeOf<Device, Bus, decltype(handler)> other{{bus, canopen::NodeId{{std::uint8_t{{5}}}}, handler}};", NUMBERS),
     "PDO, pack": ("(void)canopen::PdoLayout<{object}>::pack({value});", CODEC),
     "PDO, set": ("canopen::PdoLayout<{object}>::set<0>(frame, {value});", CODEC),
     "PDO, put": ("canopen::PdoLayout<{object}>::put<0>(frame, {value});", CODEC),
@@ -104,6 +136,7 @@ WAYS = {
 RIGHT = (Kind("type", PLAIN, "std::uint16_t value = 5;", "value"), Kind("narrower", PLAIN, "std::uint8_t value = 5;", "value"),
          Kind("constant", PLAIN, "", "5"), Kind("limited constant", LIMITED, "", "0xFFFE"),
          Kind("real constant", REAL, "", "0.5"))
+RIGHT_BY_TYPE = ("handler result",)  # a lambda returns a type: a constant is an int
 
 
 @dataclass(frozen=True)
@@ -119,7 +152,7 @@ class Unit:
     def text(self, number: int) -> str:
         way, kind = self.cells[number]
         statement = WAYS[way][0].format(object=kind.object, value=kind.value)
-        if self.is_right and "(void)" not in statement:
+        if self.is_right and "(void)" not in statement and not statement.startswith("auto "):
             statement = f"(void){statement}"
         return CASE.format(number=number, object=kind.object, declaration=kind.declaration, statement=statement)
 
@@ -134,7 +167,8 @@ def units_of(compiler: Compiler, only: list[str]) -> list[Unit]:
         for is_variable in (True, False):
             cells = tuple((way, kind) for kind in chosen if (kind.declaration != "") == is_variable)
             units += [Unit(compiler, cells, False)] if cells else []
-        right += [(way, kind) for kind in RIGHT if len(only) < 2 or kind.name == only[1]]
+        right += [(way, kind) for kind in RIGHT if len(only) < 2 or kind.name == only[1]
+                  if kind.declaration or way not in RIGHT_BY_TYPE]
     return units + ([Unit(compiler, tuple(right), True)] if right else [])
 
 

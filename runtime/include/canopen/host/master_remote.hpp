@@ -61,16 +61,21 @@ class MasterRemote {
   }
   /// Writes an object. A value outside the limits is rejected without sending a frame.
   template <DictionaryObject Object, class ValueType>
-  Result<void> write(const ValueType& value) {
-    if constexpr (remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>())
-      return objects().template write<Object>(value);
-    return AbortCode::general;
+  requires remote_detail::WrittenTo<std::decay_t<const ValueType&>, Object, Device>
+  [[nodiscard]] Result<void> write(const ValueType& value) { return objects().template write<Object>(value); }
+  template <DictionaryObject Object, class ValueType>
+  requires remote_detail::WrittenTo<std::decay_t<const ValueType&>, Object, Device>
+  [[nodiscard]] Result<void> write(Object, const ValueType& value) { return objects().template write<Object>(value); }
+  /// What does not compile.
+  template <DictionaryObject Object, class ValueType>
+  remote_detail::NotWritten write(const ValueType&) {
+    static_cast<void>(remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>());
+    return {};
   }
   template <DictionaryObject Object, class ValueType>
-  Result<void> write(Object, const ValueType& value) {
-    if constexpr (remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>())
-      return objects().template write<Object>(value);
-    return AbortCode::general;
+  remote_detail::NotWritten write(Object, const ValueType&) {
+    static_cast<void>(remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>());
+    return {};
   }
   /// Writes a constant, whose limits the compiler checks.
   template <NumberObject Object, auto Value>
@@ -108,13 +113,15 @@ class MasterRemote {
   /// Starts to write an object and returns; `done(result)` is called from `poll` with a Result<void>, exactly once
   /// unless this call is rejected: 060A 0023h, or a value outside the limits.
   template <DictionaryObject Object, class ValueType, class Done>
-  Result<void> write([[maybe_unused]] Object object, [[maybe_unused]] const ValueType& value,
-                     [[maybe_unused]] Done done) {
-    if constexpr (remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>()) {
-      Begins begins{master_, std::move(done)};
-      return BlockingObjects<Device, Begins>{begins, node_id_}.write(object, value);
-    }
-    return AbortCode::general;
+  requires remote_detail::WrittenTo<std::decay_t<const ValueType&>, Object, Device>
+  [[nodiscard]] Result<void> write(Object object, const ValueType& value, Done done) {
+    Begins begins{master_, std::move(done)};
+    return BlockingObjects<Device, Begins>{begins, node_id_}.write(object, value);
+  }
+  template <DictionaryObject Object, class ValueType, class Done>
+  remote_detail::NotWritten write(Object, const ValueType&, Done) {
+    static_cast<void>(remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>());
+    return {};
   }
 
   /// Calls the handler from now on with the values of each TPDO with this layout: `handler(values...)`. Its COB-ID is
