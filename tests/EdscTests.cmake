@@ -21,24 +21,28 @@ function(edsc_add_test_run name)
   endif()
 endfunction()
 
-# edsc_precompile_test_headers(NAME): the headers of most GoogleTest programs take a quarter of the time of a test; they are
-# compiled once for all programs with the same optimisation.
+# edsc_precompile_test_headers(NAME FLAG...): the headers of most GoogleTest programs, which take a quarter of the time of a
+# test, are compiled once for all programs with the same flags.
 function(edsc_precompile_test_headers name)
-  if(NOT TARGET edsc_test_headers)
-    set(empty ${CMAKE_BINARY_DIR}/test_headers.cpp)
+  string(MAKE_C_IDENTIFIER "edsc_test_headers${ARGN}" headers)
+  if(NOT TARGET ${headers})
+    set(empty ${CMAKE_BINARY_DIR}/${headers}.cpp)
     file(WRITE ${empty} "")
-    add_library(edsc_test_headers OBJECT ${empty})
-    target_link_libraries(edsc_test_headers PRIVATE edsc_runtime GTest::gtest)
-    target_precompile_headers(edsc_test_headers PRIVATE <gtest/gtest.h> <chrono> <deque> <canopen/node.hpp>)
+    add_library(${headers} OBJECT ${empty})
+    target_compile_features(${headers} PRIVATE cxx_std_20)
+    target_compile_options(${headers} PRIVATE ${ARGN})
+    target_link_libraries(${headers} PRIVATE GTest::gtest)
+    target_precompile_headers(${headers} PRIVATE <gtest/gtest.h> <chrono> <deque> <optional> <string> <vector>)
   endif()
-  target_precompile_headers(${name} REUSE_FROM edsc_test_headers)
+  target_precompile_headers(${name} REUSE_FROM ${headers})
 endfunction()
 
-# edsc_add_gtest(NAME SOURCES file... [LIBRARIES target...] [LONG] [NO_COVERAGE]): a GoogleTest program. Its includes are
-# relative to tests/.
+# edsc_add_gtest(NAME SOURCES file... [LIBRARIES target...] [LONG] [NO_COVERAGE] [AS_ON_A_DEVICE]): a GoogleTest program. Its
+# includes are relative to tests/.
+# AS_ON_A_DEVICE: no exceptions, no RTTI, no warnings.
 # NO_COVERAGE: it does not cover the runtime, or covers no more than others that compile faster.
 function(edsc_add_gtest name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;NO_COVERAGE" "" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;NO_COVERAGE;AS_ON_A_DEVICE" "" "SOURCES;LIBRARIES")
   set(long)
   if(arg_LONG)
     set(long LONG)
@@ -46,8 +50,13 @@ function(edsc_add_gtest name)
   edsc_add_test_program(${name} ${long} ${arg_SOURCES})
   target_include_directories(${name} PRIVATE ${EDSC_TESTS_DIR})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gtest_main)
+  set(flags "")
+  if(arg_AS_ON_A_DEVICE)
+    set(flags -fno-exceptions -fno-rtti)
+    target_compile_options(${name} PRIVATE -Werror ${flags})
+  endif()
   if(EDSC_SANITIZE AND NOT arg_LONG)
-    edsc_precompile_test_headers(${name})
+    edsc_precompile_test_headers(${name} ${flags})
   endif()
   if(EDSC_COVERAGE AND NOT arg_NO_COVERAGE)
     target_compile_options(${name} PRIVATE -O0 --coverage)
