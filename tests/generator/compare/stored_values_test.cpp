@@ -18,8 +18,8 @@
 namespace edsc {
 namespace {
 
-std::string var(const std::string& index, const std::string& name, const std::string& type, const std::string& access,
-                const std::string& more = "") {
+std::string entry_text(const std::string& index, const std::string& name, const std::string& type,
+                       const std::string& access, const std::string& more = "") {
   return "[" + index + "]\nParameterName=" + name + "\nObjectType=0x7\nDataType=" + type + "\nAccessType=" + access +
          "\nPDOMapping=0\n" + more;
 }
@@ -27,9 +27,9 @@ std::string var(const std::string& index, const std::string& name, const std::st
 /// 1010h with sub-indices 01h to `highest`.
 std::string store(int highest = 1, const std::string& last_name = "Save") {
   std::string text = "[1010]\nParameterName=Store\nObjectType=0x8\nSubNumber=" + std::to_string(highest + 1) + "\n" +
-                     var("1010sub0", "Highest", "5", "const", "DefaultValue=" + std::to_string(highest) + "\n");
+                     entry_text("1010sub0", "Highest", "5", "const", "DefaultValue=" + std::to_string(highest) + "\n");
   for (int i = 1; i <= highest; ++i) {
-    text += var("1010sub" + std::to_string(i), i == highest ? last_name : "Save", "7", "rw", "DefaultValue=1\n");
+    text += entry_text("1010sub" + std::to_string(i), i == highest ? last_name : "Save", "7", "rw", "DefaultValue=1\n");
   }
   return text;
 }
@@ -62,24 +62,26 @@ Options storing(std::uint16_t index, std::string how) {
 }
 
 TEST(StoredValues, OfTheSameVersionAreKept) {
-  const std::string sheet = store() + var("1017", "Time", "6", "rw") + var("2000", "Gain", "6", "rw") +
-                            var("2001", "Status", "6", "ro") + var("2002", "Output", "6", "rww");
+  const std::string sheet = store() + entry_text("1017", "Time", "6", "rw") + entry_text("2000", "Gain", "6", "rw") +
+                            entry_text("2001", "Status", "6", "ro") + entry_text("2002", "Output", "6", "rww");
   EXPECT_EQ(ComparedStorage(sheet, sheet).list(), (List{"kept 1017h:00", "kept 2000h:00", "kept 2002h:00"}))
       << "2002h cannot be mapped, so that it is not process data";
 }
 
 TEST(StoredValues, OfADeviceWithout1010hDoNotExist) {
-  const std::string sheet = var("2000", "Gain", "6", "rw");
+  const std::string sheet = entry_text("2000", "Gain", "6", "rw");
   EXPECT_EQ(ComparedStorage(sheet, "").list(), List{});
 }
 
 TEST(StoredValues, AreConvertedOrDropped) {
-  const std::string old_sheet = store() + var("2000", "Gain", "6", "rw") + var("2001", "Offset", "6", "rw") +
-                                var("2002", "Limit", "6", "rw") + var("2003", "Range", "6", "rw", "HighLimit=10\n") +
-                                var("2004", "Text", "9", "rw", "DefaultValue=longer\n");
-  const std::string new_sheet = store() + var("2000", "Gain", "7", "rw") + var("2002", "Limit", "6", "ro") +
-                                var("2003", "Range", "6", "rw", "HighLimit=11\n") +
-                                var("2004", "Text", "9", "rw", "DefaultValue=text\n");
+  const std::string old_sheet = store() + entry_text("2000", "Gain", "6", "rw") +
+                                entry_text("2001", "Offset", "6", "rw") + entry_text("2002", "Limit", "6", "rw") +
+                                entry_text("2003", "Range", "6", "rw", "HighLimit=10\n") +
+                                entry_text("2004", "Text", "9", "rw", "DefaultValue=longer\n");
+  const std::string new_sheet = store() + entry_text("2000", "Gain", "7", "rw") +
+                                entry_text("2002", "Limit", "6", "ro") +
+                                entry_text("2003", "Range", "6", "rw", "HighLimit=11\n") +
+                                entry_text("2004", "Text", "9", "rw", "DefaultValue=text\n");
   EXPECT_EQ(
       ComparedStorage(old_sheet, new_sheet).list(),
       (List{"converted 2000h:00 data type UNSIGNED16 becomes UNSIGNED32",
@@ -89,7 +91,7 @@ TEST(StoredValues, AreConvertedOrDropped) {
 }
 
 TEST(StoredValues, FollowTheOptions) {
-  const std::string sheet = store() + var("2000", "Gain", "6", "rw") + var("2001", "Offset", "6", "ro");
+  const std::string sheet = store() + entry_text("2000", "Gain", "6", "rw") + entry_text("2001", "Offset", "6", "ro");
   EXPECT_EQ(ComparedStorage(sheet, sheet, {}, storing(0x2000, "never")).list(),
             (List{"dropped 2000h:00 the entry is not stored any more"}));
   EXPECT_EQ(ComparedStorage(sheet, sheet, storing(0x2001, "always"), storing(0x2001, "always")).list(),
@@ -97,7 +99,7 @@ TEST(StoredValues, FollowTheOptions) {
 }
 
 TEST(StoredValues, ThatAreLostBreakTheStorage) {
-  const std::string sheet = store() + var("2000", "Gain", "6", "rw");
+  const std::string sheet = store() + entry_text("2000", "Gain", "6", "rw");
   const ComparedStorage compared(sheet, sheet, {}, storing(0x2000, "never"));
   Changes changes = compare_devices(compared.before.device, compared.after.device);
   EXPECT_EQ(changes.all().size(), 0U);
@@ -110,7 +112,8 @@ TEST(StoredValues, ThatAreLostBreakTheStorage) {
 }
 
 TEST(StoredValues, ArePrinted) {
-  const ComparedStorage compared(store() + var("2000", "Gain", "6", "rw"), store() + var("2000", "Gain", "7", "rw"));
+  const ComparedStorage compared(store() + entry_text("2000", "Gain", "6", "rw"),
+                                 store() + entry_text("2000", "Gain", "7", "rw"));
   EXPECT_NE(stored_values_as_text(compared.values)
                 .find("converted: 2000h:00 \"Gain\": data type UNSIGNED16 becomes UNSIGNED32 (was old.eds:"),
             std::string::npos);
@@ -123,12 +126,12 @@ TEST(StoredValues, ArePrinted) {
 
 TEST(StorageLocations, BecomeOptions) {
   const std::string text = store(6, "Save PERSIST_APP parameters") +
-                           var("1017", "Time", "6", "rw", ";StorageLocation=PERSIST_COMM\n") +
-                           var("2000", "Counter", "6", "rw", ";StorageLocation=RAM\n") +
-                           var("2001", "Recipe", "6", "rw", ";StorageLocation=PERSIST_APP\n") +
-                           var("2002", "Hours", "6", "rwr", ";StorageLocation=PERSIST_MFR\nPDOMapping=1\n") +
-                           var("2003", "Version", "6", "const", ";StorageLocation=ROM\n") +
-                           var("2004", "Gain", "6", "rw", ";StorageLocation=PERSIST_MFR\n");
+                           entry_text("1017", "Time", "6", "rw", ";StorageLocation=PERSIST_COMM\n") +
+                           entry_text("2000", "Counter", "6", "rw", ";StorageLocation=RAM\n") +
+                           entry_text("2001", "Recipe", "6", "rw", ";StorageLocation=PERSIST_APP\n") +
+                           entry_text("2002", "Hours", "6", "rwr", ";StorageLocation=PERSIST_MFR\nPDOMapping=1\n") +
+                           entry_text("2003", "Version", "6", "const", ";StorageLocation=ROM\n") +
+                           entry_text("2004", "Gain", "6", "rw", ";StorageLocation=PERSIST_MFR\n");
   const SourceFile source{"node.eds", text};
   Diagnostics diagnostics;
   const IniFile ini = parse_ini(source, diagnostics);
@@ -138,7 +141,7 @@ TEST(StorageLocations, BecomeOptions) {
 }
 
 TEST(StorageLocations, AreNullWithoutComments) {
-  const std::string text = store() + var("2000", "Counter", "6", "rw", "; StorageLocation is RAM\n");
+  const std::string text = store() + entry_text("2000", "Counter", "6", "rw", "; StorageLocation is RAM\n");
   const SourceFile source{"node.eds", text};
   Diagnostics diagnostics;
   const DeviceFromText device(text);

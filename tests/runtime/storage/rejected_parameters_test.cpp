@@ -52,6 +52,17 @@ TEST(StoreParameters, TellsThatStoredValuesAreLost) {
   EXPECT_EQ(bus.take(), "705 00 | 085 00 63 01 00 00 00 00 00") << "until the next power-on";
 }
 
+TEST(StoreParameters, ReadsARecordOfAnyType) {  // the sanitizers see what is written beyond the 8 bytes of a number
+  for (unsigned type = 0; type <= 0xFF; ++type) {
+    MemoryStorage storage;
+    storage.image = {'P', 'a', 'r', 2, 0x00, 0x20, 0x00, static_cast<std::uint8_t>(type)};
+    storage.image.resize(storage.image.size() + 300);
+    const auto device = powered(storage);
+    const bool is_gain = ranges(device) == Ranges{0, 0, 1000, 0};  // 2000h, whose stored value is 0
+    EXPECT_TRUE(is_gain || ranges(device) == defaults) << type;
+  }
+}
+
 TEST(StoreParameters, StartsWithDefaultsWhereTheStorageCannotBeRead) {
   MemoryStorage storage;
   {

@@ -234,6 +234,8 @@ class ParameterStorage {
         const std::span<std::uint8_t> length{bytes.data(), stored_format::length_bytes};
         if (!read(storage, at, end, length)) return failure(at, end, length.size());
         record.size = static_cast<std::uint16_t>(number_in(length));
+      } else if (record.size > sizeof(Bytes)) {
+        return ReadResult::invalid;  // no number has this type
       }
       record.position = at;
       if (end - at < record.size) return ReadResult::invalid;
