@@ -39,6 +39,8 @@ def figures(folder: Path) -> dict[tuple[str, str], tuple[str, str, str]]:
         name, flash, ram = REPORT.match(report.read_text(encoding="utf-8")).groups()
         sheet, board = name.rsplit("_", 1)
         stack = folder / f"{name}.stack"
+        if board not in BOARDS:
+            continue  # another image than that of examples/firmware
         found[sheet, board] = flash, ram, stack.read_text(encoding="utf-8").strip() if stack.exists() else "-"
     return found
 

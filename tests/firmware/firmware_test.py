@@ -24,7 +24,7 @@ from sdo import Abort, Silence  # noqa: E402
 from walk import Walk  # noqa: E402
 
 BY_LSS = 9        # the node-ID for a device without one
-LARGEST_STACK, OF_DEVICE = 640, {"cpc-tc1": 560}  # bytes; storing parameters needs most
+LARGEST_STACK, OF_DEVICE = 672, {"cpc-tc1": 656}  # bytes; storing parameters needs most
 PATIENCE = 10.0   # s, timeout for an expected frame
 WHOLE_WALK_ON = "microbit"
 SAVE, LOAD = b"save", b"load"
