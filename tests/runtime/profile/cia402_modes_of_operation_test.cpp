@@ -84,6 +84,25 @@ TEST(ModesOfOperation, AreThoseOf6502hByRpdo) {
       [](auto& device) { return device.node.get(every_mode_static::od::modes_of_operation{}); });
 }
 
+TEST(ModesOfOperation, AreThoseOf6502hByAMappedRpdoThatRepeatsThem) {
+  BareNode<cia402_drive::Device> device;
+  for (const char* request : {"605 23 01 14 01 05 03 00 80", "605 2F 01 14 02 FF 00 00 00", "605 2F 01 16 00 00 00 00 00",
+                              "605 23 01 16 01 08 00 60 60", "605 23 01 16 02 20 00 7A 60", "605 2F 01 16 00 02 00 00 00",
+                              "605 23 01 14 01 05 03 00 00"})
+    EXPECT_EQ(device.ask(request).substr(0, 6), "585 60") << request;
+  std::int8_t expected = device.node.get(cia402_drive::od::modes_of_operation{});
+  std::int32_t position = 0;
+  for (int mode = -128; mode <= 127; ++mode) {
+    if (is_supported(mode, four)) expected = static_cast<std::int8_t>(mode);
+    for (int time = 0; time < 2; ++time) {
+      ++position;
+      device.ask("305 " + byte(mode) + " " + byte(position) + " " + byte(position >> 8) + " 00 00");
+      EXPECT_EQ(device.node.get(cia402_drive::od::modes_of_operation{}), expected) << mode;
+      EXPECT_EQ(device.node.get(cia402_drive::od::target_position{}), position) << mode;
+    }
+  }
+}
+
 TEST(ModesOfOperation, AreThoseOf6502hByTheApplication) {
   using Mode = every_mode::od::modes_of_operation;
   static_assert(canopen::can_be_refused<Mode>, "the result of set must be used");

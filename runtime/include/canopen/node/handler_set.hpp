@@ -62,11 +62,11 @@ class HandlerSet {
       has_written_handlers || has_read_handlers || ((Handled<Handlers>::BeforeWrite::size != 0) || ...);
 
   /// Whether the object with this key has a handler that is called before it is written.
-  [[nodiscard]] static bool handles([[maybe_unused]] std::uint32_t key) {
+  [[nodiscard]] static constexpr bool handles([[maybe_unused]] std::uint32_t key) {
     return (handler_detail::has_key(key, typename Handled<Handlers>::BeforeWrite{}) || ...);
   }
   /// The same for after or before.
-  [[nodiscard]] static bool watches([[maybe_unused]] std::uint32_t key) {
+  [[nodiscard]] static constexpr bool watches([[maybe_unused]] std::uint32_t key) {
     return handles(key) || (handler_detail::has_key(key, typename Handled<Handlers>::AfterWrite{}) || ...);
   }
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/base/optimization.hpp"
 #include "canopen/node/services/drive_modes.hpp"
 #include "canopen/node/value_check.hpp"
 #include "canopen/od/dictionary.hpp"
@@ -58,6 +59,11 @@ inline void take_received(Host& host, std::uint16_t index, std::uint8_t sub_inde
 /// The same for an object that is known at compile time.
 template <DictionaryObject Object, class Host>
 inline void take_received(Host& host, const typename Object::type& value) {
+  // A mode of operation that a master repeats in each frame needs nothing.
+  if constexpr (!prefers_size && requires { Object::accepted; } && !Host::Handlers::template handles_write<Object> &&
+                !Host::Handlers::template handles_written<Object>) {
+    if (value == host.store().template get<Object>()) return;
+  }
   if (check_limits<Object>(value) != ok) return;
   if constexpr (Host::Handlers::template handles_write<Object>) {
     const auto ask = [&] { return host.handlers().template before_write<Object>(host.node(), value); };

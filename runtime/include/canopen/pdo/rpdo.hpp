@@ -45,6 +45,7 @@ enum class RpdoEvent : std::uint8_t {
 ///   take<O>(value)                           a value for an object with static mapping
 ///   take(index, sub_index, bytes)            the same by index and sub-index
 ///   happened(event, number)
+/// and the constant mode_offset: see RpdoHooks.
 template <class Device>
 class RpdoService {
  public:
@@ -353,7 +354,7 @@ class RpdoService {
       if ((*run & Runs::apart) == 0) {
         std::uint8_t* const to = entries.ram(static_cast<entry::Word>(Runs::offset(*run)));
         take_bits_into(to, data.data(), at * Runs::unit, length * Runs::unit);
-      } else if ((*run & Runs::nothing) != Runs::nothing) {
+      } else if ((*run & Runs::nothing) != Runs::nothing && !repeats_mode<Host>(*run, entries, data, at)) {
         take_watched(which, data, at * Runs::unit, host);
         if (Host::may_change_mappings && applied_.looked_up) {
           if (applied_.pdo == 0) return;
@@ -365,6 +366,20 @@ class RpdoService {
       at += length;
     }
     if constexpr (Host::may_change_mappings) applied_ = {};
+  }
+
+  /// Whether a run is the mode of operation that a drive has already, of which nobody needs to know.
+  template <class Host>
+  [[nodiscard]] static bool repeats_mode([[maybe_unused]] typename Mapped::Place run,
+                                         [[maybe_unused]] EntryAccess<Device> entries,
+                                         [[maybe_unused]] const Data& data, [[maybe_unused]] unsigned at) {
+    if constexpr (prefers_size || Host::mode_offset == Host::no_offset) {
+      return false;
+    } else {
+      const unsigned bit = at * Mapped::Runs::unit;
+      const auto offset = static_cast<entry::Word>(Mapped::Runs::offset(run));
+      return offset == Host::mode_offset && bit % 8 == 0 && data[bit / 8] == *entries.ram(offset);
+    }
   }
 
   /// Passes on the value of the object that begins at a bit.

@@ -1,6 +1,7 @@
 /// RPDOs (1400h..17FFh) in a node.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -9,7 +10,10 @@
 #include "canopen/node/functions.hpp"
 #include "canopen/node/received_value.hpp"
 #include "canopen/node/service_set.hpp"
+#include "canopen/node/services/drive_modes.hpp"
 #include "canopen/node/services/sync.hpp"
+#include "canopen/od/accepted_values.hpp"
+#include "canopen/od/dictionary.hpp"
 #include "canopen/pdo/communication_parameters.hpp"
 #include "canopen/pdo/mpdo_service.hpp"
 #include "canopen/pdo/pdo_mapping.hpp"
@@ -37,6 +41,21 @@ struct RpdoHooks {
   /// Whether mappings may change while an RPDO is applied: by a handler, or because the RPDO maps one of them.
   static constexpr bool may_change_mappings =
       Host::Handlers::has_access_handlers || has_mappable_mapping(Host::Device::dictionary);
+
+  /// Where in RAM the mode of operation of a drive is, if it is only checked and stored: a mode that a master repeats in
+  /// each frame needs nothing then. `no_offset`: there is none.
+  static constexpr std::size_t no_offset = ~std::size_t{0};
+  static constexpr std::size_t mode_offset = [] {
+    using Device = typename Host::Device;
+    if constexpr (DriveModes<Device>::exists) {
+      const std::uint16_t index = Device::dictionary.accepted.front().index;
+      const entry::Word word = Device::dictionary.find(index, 0);
+      if (has_one_axis<Device> && !Host::Handlers::watches(object_key(index, 0)) &&
+          entry::place_of(word) == entry::Place::ram)
+        return std::size_t{entry::offset_of(word)};
+    }
+    return no_offset;
+  }();
 
   Host& host;
 
