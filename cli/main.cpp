@@ -1,6 +1,7 @@
 /// edsc: the compiler for CANopen Electronic Data Sheets.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -13,6 +14,7 @@
 #include "commands/commands.hpp"
 #include "commit.hpp"
 #include "diagnostics/quote.hpp"
+#include "shared/command_line.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/output.hpp"
 #include "text/printable.hpp"
@@ -106,7 +108,7 @@ int main(int argc, char** argv) {
   int exit_code = edsc::exit_fine;
   for (const edsc::CommandRow& row : edsc::commands) {
     CLI::App* const command = app.add_subcommand(row.name, row.description);
-    row.add_options(*command, exit_code);
+    row.add_options(edsc::Command{*command}, exit_code);
     command->group(row.group);  // later, because subcommands inherit it
   }
   int output_error = 0;

@@ -117,31 +117,30 @@ std::string check_audit_rule(const std::string& id) {
 
 }  // namespace
 
-void add_audit_options(CLI::App& command, int& exit_code) {
+void add_audit_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, audit_log, exit_code);
   add_log_options(command, settings);
   command
       .add_option("--tolerance", settings.limits.tolerance,
                   "how much a time may differ from the nominal one, in percent; at least 1 ms or half of a short time")
-      ->check(CLI::Range(0, 1000))
-      ->capture_default_str();
+      .range(0, 1000)
+      .show_default();
   command.add_option("--sdo-timeout", settings.sdo_timeout_ms, "time that an SDO server has to respond, in ms")
-      ->check(CLI::Range(1, 3'600'000))
-      ->capture_default_str();
+      .range(1, 3'600'000)
+      .show_default();
   command
       .add_option("--master", settings.nmt_master,
                   "node-ID of the NMT master, which need not obey its own commands (default: bit 0 of 1F80h)")
-      ->check(CLI::Range(1, 127));
-  command.add_option("--bit-rate", settings.bit_rate_kbit, "of the bus, in kbit/s, to compute its load")
-      ->check(CLI::Range(1, 1000));
+      .range(1, 127);
+  command.add_option("--bit-rate", settings.bit_rate_kbit, "of the bus, in kbit/s, to compute its load").range(1, 1000);
   command.add_option("--max-load", settings.limits.max_load, "limit of the load over 100 ms, in percent")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
+      .range(1, 100)
+      .show_default();
   command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
-      ->allow_extra_args(false)
-      ->check(check_audit_rule);
+      .one_value_each()
+      .check(check_audit_rule);
   add_choice(command, "--format", settings.format, {"text", "json", "html"}, "text, json or html");
-  command.add_option("-o,--output", settings.output, "file to write (default: standard output)")->type_name("FILE");
+  command.add_option("-o,--output", settings.output, "file to write (default: standard output)").type_name("FILE");
   command.add_flag("--cycles", settings.cycles,
                    "also print cycle times and jitter of PDOs, SYNC and heartbeats; JSON and HTML always have them");
   command.add_flag("--list-rules", settings.list_rules, "list the rules and end");

@@ -56,15 +56,15 @@ int serve(const Settings& settings) {
 
 }  // namespace
 
-void add_bus_options(CLI::App& command, int& exit_code) {
+void add_bus_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, serve, exit_code);
-  command.add_option("--listen", settings.listen, "HOST:PORT; port 0: any free port")->capture_default_str();
+  command.add_option("--listen", settings.listen, "HOST:PORT; port 0: any free port").show_default();
   command.add_option("--bus", settings.buses, "name of a bus; may be given several times")
-      ->check(bad_bus_name)
-      ->capture_default_str();
+      .check(bad_bus_name)
+      .show_default();
   command.add_option("--clients", settings.limits.clients, "maximum number of connected clients")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+      .range(1, 1000)
+      .show_default();
   command.add_flag("--log", settings.log,
                    "print all frames as lines of candump -L, and the addresses on standard error");
 }

@@ -132,20 +132,20 @@ std::string check_rule(const std::string& id) {
 
 }  // namespace
 
-void add_check_options(CLI::App& command, int& exit_code) {
+void add_check_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, check, exit_code);
   command.add_option("FILE", settings.paths, "EDS, DCF, XDD or XDC files");
   add_choice(command, "--format", settings.format, {"text", "json", "sarif"}, "text, json or sarif");
   add_options_option(command, settings.options_path);
   add_node_id_option(command, settings.node_id);
   command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
-      ->allow_extra_args(false)
-      ->check(check_rule);
+      .one_value_each()
+      .check(check_rule);
   command.add_flag("--keep-going", settings.keep_going, keep_going_help);
   command.add_flag("--strict", settings.strict, "warnings count as errors; notes do not");
   command.add_flag("--list-rules", settings.list_rules, "list the rules and end");
   command.add_flag("--list-options", settings.list_options, "list the members of an options file and end");
-  command.add_option("--explain", settings.explained_rule, "describe a rule and end")->check(check_rule);
+  command.add_option("--explain", settings.explained_rule, "describe a rule and end").check(check_rule);
   settings.color.add_to(command);
 }
 

@@ -1,12 +1,12 @@
 /// The subcommands of edsc, one file each: a new one is declared here and has a row in the table.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "shared/command_line.hpp"
 
 namespace edsc {
 
 /// Each adds the options and examples of its command; when that is chosen, parsing runs it and stores its exit code.
-using AddOptions = void(CLI::App& command, int& exit_code);
+using AddOptions = void(Command command, int& exit_code);
 
 AddOptions add_generate_options;
 AddOptions add_check_options;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 
 #include "commands/commands.hpp"
@@ -16,14 +17,15 @@ constexpr const char* examples = R"(Examples:
   edsc completion man | man -l -               the manual page)";
 
 struct Settings {
-  const CLI::App* program = nullptr;
+  std::optional<Command> program;
   std::string kind;
 };
 
 std::string text_of(const Settings& settings) {
-  if (settings.kind == "bash") return bash_completion(*settings.program);
-  if (settings.kind == "zsh") return zsh_completion(*settings.program);
-  return man_page(*settings.program, EDSC_VERSION);
+  const CommandParts program = parts_of(*settings.program);
+  if (settings.kind == "bash") return bash_completion(program);
+  if (settings.kind == "zsh") return zsh_completion(program);
+  return man_page(program, EDSC_VERSION);
 }
 
 int run_completion(const Settings& settings) {
@@ -33,10 +35,10 @@ int run_completion(const Settings& settings) {
 
 }  // namespace
 
-void add_completion_options(CLI::App& command, int& exit_code) {
+void add_completion_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_completion, exit_code);
-  settings.program = command.get_parent();
-  command.add_option("KIND", settings.kind, "what to print")->required()->check(CLI::IsMember({"bash", "zsh", "man"}));
+  settings.program = command.parent();
+  command.add_option("KIND", settings.kind, "what to print").required().one_of({"bash", "zsh", "man"});
 }
 
 }  // namespace edsc

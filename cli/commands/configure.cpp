@@ -202,14 +202,15 @@ int run_configure(const Settings& settings) {
 
 }  // namespace
 
-void add_configure_options(CLI::App& command, int& exit_code) {
+void add_configure_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_configure, exit_code);
   add_node_arguments(command, settings);
-  command.add_option("FILE", settings.path, "DCF, XDC or, with --concise, concise DCF")->required();
-  auto* concise = command.add_flag("--concise", settings.concise, "FILE is a concise DCF, as object 1F22h holds it");
+  command.add_option("FILE", settings.path, "DCF, XDC or, with --concise, concise DCF").required();
+  const Option concise =
+      command.add_flag("--concise", settings.concise, "FILE is a concise DCF, as object 1F22h holds it");
   command.add_option("--eds", settings.sheet, "EDS for a concise DCF: names, and the identity to check")
-      ->type_name("FILE")
-      ->needs(concise);
+      .type_name("FILE")
+      .needs(concise);
   command.add_flag("--store", settings.store,
                    "store the parameters of the node (1010h) after a successful configuration");
   command.add_flag("--start", settings.start, "start the node after a successful configuration");

@@ -56,7 +56,7 @@ struct Settings : NodeSettings {
   bool quiet = false;
   std::uint32_t seed = 1;
   ColorOption color;
-  std::vector<const CLI::Option*> required;  ///< unless `list`
+  std::vector<Option> required;  ///< unless `list`
 };
 
 /// Tolerance for times on a real bus: half a tick of 100 Hz, and the preceding frames on the bus.
@@ -236,8 +236,8 @@ int run_conform(const Settings& settings) {
     list_cases();
     return exit_fine;
   }
-  for (const CLI::Option* option : settings.required) {
-    if (option->count() == 0) throw CLI::RequiredError(option->get_name());
+  for (const Option& option : settings.required) {
+    if (!option.is_given()) throw_required(option.name());
   }
   conform::SheetFindings findings;
   const auto loaded = load_sheet(settings, findings);
@@ -269,11 +269,12 @@ int run_conform(const Settings& settings) {
 
 }  // namespace
 
-void add_conform_options(CLI::App& command, int& exit_code) {
+void add_conform_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_conform, exit_code);
-  auto* bus = add_bus_argument(command, settings.bus);
-  auto* node = add_node_argument(command, settings.node);
-  auto* sheet = command.add_option("FILE", settings.sheet, "description of the node: EDS, DCF, XDD or XDC")->required();
+  const Option bus = add_bus_argument(command, settings.bus);
+  const Option node = add_node_argument(command, settings.node);
+  const Option sheet =
+      command.add_option("FILE", settings.sheet, "description of the node: EDS, DCF, XDD or XDC").required();
   add_options_option(command, settings.options);
   add_choice(command, "--level", settings.level, {"read", "communication", "all"},
              "what the test may do to the node: read, communication or all");
@@ -282,34 +283,34 @@ void add_conform_options(CLI::App& command, int& exit_code) {
   command.add_flag("--application", settings.application, "write objects from 2000h, then restore the original values");
   command.add_flag("--outputs", settings.outputs, "send RPDOs and SYNC: outputs may move");
   command.add_option("--only", settings.only, "cases to run: 2.5 or 3.*; may be given more than once")
-      ->type_name("CASE")
-      ->allow_extra_args(false)
-      ->check([](const std::string& pattern) {
+      .type_name("CASE")
+      .one_value_each()
+      .check([](const std::string& pattern) {
         const auto rows = conform::all_cases();
         const bool names_one =
             std::ranges::any_of(rows, [&](const CaseRow* row) { return conform::matches(pattern, row->id); });
         return names_one ? std::string{} : "unknown case \"" + pattern + "\"; --list prints the cases";
       });
   command.add_option("--stimulus", settings.stimuli, "command that acts on the node in a case: 5.4=COMMAND")
-      ->type_name("CASE=COMMAND")
-      ->allow_extra_args(false)
-      ->check([](const std::string& text) {
+      .type_name("CASE=COMMAND")
+      .one_value_each()
+      .check([](const std::string& text) {
         return text.find('=') != std::string::npos ? std::string{} : "\"" + text + "\" is not CASE=COMMAND";
       });
   command
       .add_option("--deviations", settings.deviations,
                   "declared deviations of the node, with their reasons: a JSON file")
-      ->type_name("FILE");
-  command.add_option("--html", settings.html, "write the report as one HTML file")->type_name("FILE");
-  command.add_option("--junit", settings.junit, "write it as JUnit XML")->type_name("FILE");
-  command.add_option("--json", settings.json, "write it as JSON")->type_name("FILE");
-  command.add_option("--log", settings.log, "write the frames as a candump log")->type_name("FILE");
-  command.add_option("--seed", settings.seed, "seed of the randomly chosen accesses")->capture_default_str();
+      .type_name("FILE");
+  command.add_option("--html", settings.html, "write the report as one HTML file").type_name("FILE");
+  command.add_option("--junit", settings.junit, "write it as JUnit XML").type_name("FILE");
+  command.add_option("--json", settings.json, "write it as JSON").type_name("FILE");
+  command.add_option("--log", settings.log, "write the frames as a candump log").type_name("FILE");
+  command.add_option("--seed", settings.seed, "seed of the randomly chosen accesses").show_default();
   command.add_flag("--quiet", settings.quiet, "print only failures and the result");
   add_timeout_option(command, settings.sdo.timeout_ms);
   settings.color.add_to(command);
   command.add_flag("--list", settings.list, "list the cases and what they need, and end");
-  for (CLI::Option* option : {bus, node, sheet}) option->required(false);
+  for (const Option& option : {bus, node, sheet}) option.required(false);
   settings.required = {bus, node, sheet};
 }
 

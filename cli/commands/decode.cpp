@@ -86,9 +86,9 @@ int decode(const Settings& settings) {
 
 }  // namespace
 
-void add_decode_options(CLI::App& command, int& exit_code) {
+void add_decode_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, decode, exit_code);
-  add_log_options(command, settings)->capture_default_str();
+  add_log_options(command, settings).show_default();
   std::vector<std::string> names;
   for (const FormatRow& row : formats) names.emplace_back(row.name);
   add_choice(command, "--format", settings.format, names,
@@ -96,7 +96,7 @@ void add_decode_options(CLI::App& command, int& exit_code) {
   command
       .add_option("--filter", settings.filters,
                   "show only matching frames: node=5,service=sdo,id=185h,problem=yes; all frames are evaluated")
-      ->allow_extra_args(false);
+      .one_value_each();
   command.add_flag("--summary", settings.summary,
                    "print a summary at the end: frames by service and node, aborts, EMCY messages and times");
 }

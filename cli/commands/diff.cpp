@@ -116,9 +116,9 @@ void print(Pair& pair, const Settings& settings) {
 
 void check_files(const Settings& settings) {
   if (settings.against.empty() && settings.files.size() != 2) {
-    throw CLI::ValidationError("FILE", "expected two files, OLD and NEW; --against git:REF accepts any number");
+    throw_invalid("FILE", "expected two files, OLD and NEW; --against git:REF accepts any number");
   }
-  if (settings.against.empty() && settings.allow_new) throw CLI::RequiresError("--allow-new", "--against");
+  if (settings.against.empty() && settings.allow_new) throw_requires("--allow-new", "--against");
 }
 
 void compare(Pair& pair) {
@@ -175,12 +175,12 @@ int diff(const Settings& settings) {
 
 }  // namespace
 
-void add_diff_options(CLI::App& command, int& exit_code) {
+void add_diff_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, diff, exit_code);
   command.add_option("FILE", settings.files, "OLD and NEW, each an EDS, DCF, XDD or XDC; with --against NEW files")
-      ->required();
+      .required();
   command.add_option("--against", settings.against, "git:REF: compare each FILE with the one of this git revision")
-      ->check([](const std::string& value) {
+      .check([](const std::string& value) {
         return names_git_revision(value) ? std::string{} : fmt::format("expected git:REF, got {}", value);
       });
   command.add_flag("--allow-new", settings.allow_new, "with --against: a FILE that REF does not have is new");

@@ -69,7 +69,7 @@ std::string name_of_older(const Settings& settings, const LoadedDevice& older) {
 }
 
 int document_device(const Settings& settings) {
-  if (settings.nodes) throw CLI::ValidationError("--nodes", "is for networks, not for devices");
+  if (settings.nodes) throw_invalid("--nodes", "is for networks, not for devices");
   Diagnostics diagnostics;
   const auto loaded = load_device(settings.load, diagnostics);
   if (loaded->device) report_unused_allowances(*loaded, diagnostics);
@@ -94,8 +94,8 @@ int document_device(const Settings& settings) {
 }
 
 int document_network(const Settings& settings) {
-  if (!settings.against.empty()) throw CLI::ValidationError("--against", "is for devices, not for networks");
-  if (settings.load.node_id) throw CLI::ValidationError("--node-id", "is for devices, not for networks");
+  if (!settings.against.empty()) throw_invalid("--against", "is for devices, not for networks");
+  if (settings.load.node_id) throw_invalid("--node-id", "is for devices, not for networks");
   Diagnostics diagnostics;
   const auto loaded = load_network(settings.load.path, diagnostics);
   check_network(loaded->network, diagnostics);
@@ -120,17 +120,16 @@ int document(const Settings& settings) {
 
 }  // namespace
 
-void add_document_options(CLI::App& command, int& exit_code) {
+void add_document_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, document, exit_code);
-  command.add_option("FILE", settings.load.path, "EDS, DCF, XDD, XDC, or network file (*.json)")->required();
-  CLI::Option* const output =
-      command.add_option("-o,--output", settings.output, "file to write (default: standard output)");
+  command.add_option("FILE", settings.load.path, "EDS, DCF, XDD, XDC, or network file (*.json)").required();
+  const Option output = command.add_option("-o,--output", settings.output, "file to write (default: standard output)");
   command.add_option("--format", settings.format, "html or markdown (default: by the name of the output; html)")
-      ->check(CLI::IsMember({"html", "markdown"}));
+      .one_of({"html", "markdown"});
   command.add_option("--against", settings.against, "older version of the device: a file, or git:REF");
   command
       .add_flag("--nodes", settings.nodes, "of a network: also write a page for each node, beside that of the network")
-      ->needs(output);
+      .needs(output);
   add_node_id_option(command, settings.load.node_id);
   add_options_option(command, settings.load.options_path);
   command.add_flag("--keep-going", settings.load.keep_going, keep_going_help);

@@ -191,13 +191,13 @@ int format_file(const Settings& settings, const std::string& path) {
 
 void check_usage(const Settings& settings) {
   if (settings.node_id && !settings.dcf && !settings.concise) {
-    throw CLI::RequiresError("--node-id", "--dcf or --concise");
+    throw_requires("--node-id", "--dcf or --concise");
   }
   if (settings.paths.size() > 1 && !settings.check && !settings.in_place) {
-    throw CLI::ValidationError("FILE", "several files need --check or --in-place");
+    throw_invalid("FILE", "several files need --check or --in-place");
   }
   if (settings.in_place && std::ranges::find(settings.paths, "-") != settings.paths.end()) {
-    throw CLI::ValidationError("--in-place", "standard input cannot be written");
+    throw_invalid("--in-place", "standard input cannot be written");
   }
 }
 
@@ -216,30 +216,31 @@ int format(const Settings& settings) {
 
 }  // namespace
 
-void add_format_options(CLI::App& command, int& exit_code) {
+void add_format_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, format, exit_code);
-  command.add_option("FILE", settings.paths, "EDS, DCF, XDD or XDC; - is standard input")->required();
-  auto* output =
+  command.add_option("FILE", settings.paths, "EDS, DCF, XDD or XDC; - is standard input").required();
+  const Option output =
       command.add_option("-o,--output", settings.output, "file to write; may be FILE (default: standard output)")
-          ->check(xdd_name_problem);
-  auto* in_place = command.add_flag("-i,--in-place", settings.in_place, "write each FILE itself");
-  auto* check = command.add_flag("--check", settings.check,
-                                 "write nothing; list each FILE that is not canonical; exit code 1 if there is one");
-  auto* dcf = command.add_flag("--dcf", settings.dcf,
-                               "make a DCF: [DeviceComissioning], and the ParameterValues that differ from defaults");
-  auto* all = command.add_flag("--all", settings.all, "with --dcf: a ParameterValue for each writable entry");
-  auto* concise = command.add_flag("--concise", settings.concise,
-                                   "write the concise DCF: what differs from the defaults, as object 1F22h holds it");
-  auto* options = command.add_option("--write-options", settings.options,
-                                     "write no EDS, but the options file with the storage groups of its comments "
-                                     ";StorageLocation= (CANopenNode)");
+          .check(xdd_name_problem);
+  const Option in_place = command.add_flag("-i,--in-place", settings.in_place, "write each FILE itself");
+  const Option check = command.add_flag(
+      "--check", settings.check, "write nothing; list each FILE that is not canonical; exit code 1 if there is one");
+  const Option dcf = command.add_flag(
+      "--dcf", settings.dcf, "make a DCF: [DeviceComissioning], and the ParameterValues that differ from defaults");
+  const Option all = command.add_flag("--all", settings.all, "with --dcf: a ParameterValue for each writable entry");
+  const Option concise = command.add_flag(
+      "--concise", settings.concise, "write the concise DCF: what differs from the defaults, as object 1F22h holds it");
+  const Option options =
+      command.add_option("--write-options", settings.options,
+                         "write no EDS, but the options file with the storage groups of its comments "
+                         ";StorageLocation= (CANopenNode)");
   add_node_id_option(command, settings.node_id);
   settings.color.add_to(command);
-  options->excludes(output)->excludes(in_place)->excludes(check)->excludes(dcf)->excludes(concise);
-  check->excludes(output)->excludes(dcf)->excludes(concise)->excludes(in_place);
-  in_place->excludes(output)->excludes(dcf)->excludes(concise);
-  dcf->excludes(concise)->needs("--node-id");
-  all->needs(dcf);
+  options.excludes(output).excludes(in_place).excludes(check).excludes(dcf).excludes(concise);
+  check.excludes(output).excludes(dcf).excludes(concise).excludes(in_place);
+  in_place.excludes(output).excludes(dcf).excludes(concise);
+  dcf.excludes(concise).needs("--node-id");
+  all.needs(dcf);
 }
 
 }  // namespace edsc

@@ -97,7 +97,7 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
 
 /// The DBC file. Prints which PDOs it does not have.
 OutputFile render_dbc(const Settings& settings, const Device& device) {
-  if (!device.node_id) throw CLI::RequiresError("--dbc", "--node-id or a DCF, since CAN-IDs depend on the node-ID");
+  if (!device.node_id) throw_requires("--dbc", "--node-id or a DCF, since CAN-IDs depend on the node-ID");
   Dbc dbc = dbc_of(device);
   for (const std::string& note : dbc.notes) fmt::print(stderr, "edsc: not in the DBC file: {}\n", note);
   return {settings.dbc, std::move(dbc.text)};
@@ -115,8 +115,8 @@ bool lists_all(const Diagnostics& diagnostics) {
 }
 
 int generate(const Settings& settings) {
-  if (settings.output.empty() && settings.dbc.empty()) throw CLI::RequiredError("--output or --dbc");
-  if (settings.output.empty() && !settings.depfile.empty()) throw CLI::RequiresError("--depfile", "--output");
+  if (settings.output.empty() && settings.dbc.empty()) throw_required("--output or --dbc");
+  if (settings.output.empty() && !settings.depfile.empty()) throw_requires("--depfile", "--output");
   Diagnostics diagnostics;
   diagnostics.drop_notes();
   const auto loaded = load_device(settings.load, diagnostics);
@@ -151,13 +151,13 @@ int generate(const Settings& settings) {
 
 }  // namespace
 
-void add_generate_options(CLI::App& command, int& exit_code) {
+void add_generate_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, generate, exit_code);
-  command.add_option("FILE", settings.load.path, "EDS, DCF, XDD or XDC")->required();
+  command.add_option("FILE", settings.load.path, "EDS, DCF, XDD or XDC").required();
   command.add_option("-o,--output", settings.output, "folder; the headers are written to its subfolder NAME");
   command.add_option("--dbc", settings.dbc, "write the PDOs of the device as a DBC file; needs the node-ID");
   command.add_option("--name", settings.load.name, "C++ namespace (default: the file's name)")
-      ->check([](const std::string& name) {
+      .check([](const std::string& name) {
         if (!name.empty() && to_namespace(name) == name) return std::string{};
         return fmt::format("expected a namespace in snake_case, such as \"{1}\", not \"{0}\"", name,
                            to_namespace(name));
@@ -167,7 +167,7 @@ void add_generate_options(CLI::App& command, int& exit_code) {
   command.add_flag("--static-mapping", settings.load.static_mapping,
                    "no PDO can be mapped over the bus, for smaller firmware");
   command.add_option("--templates", settings.templates, "folder with templates that replace the built-in ones")
-      ->check(CLI::ExistingDirectory);
+      .existing_folder();
   command.add_option("--depfile", settings.depfile, "write what the headers depend on, for make and ninja");
   command.add_option("--depfile-target", settings.depfile_target, "target of the dependencies (default: the headers)");
   command.add_flag("--keep-going", settings.load.keep_going, keep_going_help);

@@ -221,37 +221,39 @@ int run_lss(const Settings& settings) {
   });
 }
 
-void add_address_options(CLI::App& command, Settings& settings, bool required) {
-  auto* vendor = add_count_option(command, "--vendor", settings.vendor, "vendor-ID, 1018h:01");
-  auto* product = add_count_option(command, "--product", settings.product, "product code, 1018h:02")->needs(vendor);
-  auto* revision =
-      add_count_option(command, "--revision", settings.revision, "revision number, 1018h:03")->needs(product);
-  auto* serial = add_count_option(command, "--serial", settings.serial, "serial number, 1018h:04")->needs(revision);
-  for (CLI::Option* option : {vendor, product, revision, serial}) option->required(required);
+void add_address_options(Command command, Settings& settings, bool required) {
+  const Option vendor = add_count_option(command, "--vendor", settings.vendor, "vendor-ID, 1018h:01");
+  const Option product =
+      add_count_option(command, "--product", settings.product, "product code, 1018h:02").needs(vendor);
+  const Option revision =
+      add_count_option(command, "--revision", settings.revision, "revision number, 1018h:03").needs(product);
+  const Option serial =
+      add_count_option(command, "--serial", settings.serial, "serial number, 1018h:04").needs(revision);
+  for (const Option& option : {vendor, product, revision, serial}) option.required(required);
 }
 
-void add_bit_rate(CLI::App& command, const std::string& name, Settings& settings, bool required) {
+void add_bit_rate(Command command, const std::string& name, Settings& settings, bool required) {
   command
-      .add_option_function<std::string>(
+      .add_text_option(
           name,
           [&settings](const std::string& text) {
             settings.kbit = text == "auto" ? automatic : parse_count(text).value_or(automatic);
           },
           "1000, 800, 500, 250, 125, 50, 20 or 10 kbit/s, or auto")
-      ->check(CLI::IsMember({"1000", "800", "500", "250", "125", "50", "20", "10", "auto"}))
-      ->required(required);
+      .one_of({"1000", "800", "500", "250", "125", "50", "20", "10", "auto"})
+      .required(required);
 }
 
-void add_new_node_id(CLI::App& command, const std::string& name, Settings& settings) {
+void add_new_node_id(Command command, const std::string& name, Settings& settings) {
   const auto parse = [](const std::string& text) {
     return parse_count(text) == 255 ? std::optional<std::uint8_t>{255} : parse_node(text);
   };
   add_parsed(command, name, settings.node_id, parse, "a node-ID from 1 to 127 or 255",
              "the new node-ID: 1..127, or 255 to remove it")
-      ->required();
+      .required();
 }
 
-void add_assign_options(CLI::App& command, Settings& settings) {
+void add_assign_options(Command command, Settings& settings) {
   add_address_options(command, settings, false);
   add_new_node_id(command, "--node-id", settings);
   add_bit_rate(command, "--bit-rate", settings, false);
@@ -259,23 +261,20 @@ void add_assign_options(CLI::App& command, Settings& settings) {
   add_format_option(command, settings.format);
 }
 
-void add_fastscan_options(CLI::App& command, Settings& settings) {
+void add_fastscan_options(Command command, Settings& settings) {
   add_address_options(command, settings, false);
   add_format_option(command, settings.format);
 }
 
-void add_state_argument(CLI::App& command, Settings& settings) {
+void add_state_argument(Command command, Settings& settings) {
   const auto set = [&settings](const std::string& text) {
     settings.state = text == "waiting" ? LssState::waiting : LssState::configuration;
   };
-  command.add_option_function<std::string>("STATE", set, "waiting or configuration")
-      ->required()
-      ->check(CLI::IsMember({"waiting", "configuration"}));
+  command.add_text_option("STATE", set, "waiting or configuration").required().one_of({"waiting", "configuration"});
 }
 
-void add_delay_option(CLI::App& command, Settings& settings) {
-  command.add_option("--delay", settings.delay_ms, "switch delay in ms, before and after the switch")
-      ->capture_default_str();
+void add_delay_option(Command command, Settings& settings) {
+  command.add_option("--delay", settings.delay_ms, "switch delay in ms, before and after the switch").show_default();
 }
 
 /// A subcommand.
@@ -283,38 +282,37 @@ struct ServiceRow {
   const char* name;
   const char* description;
   std::string (*perform)(LssSession& session, const Settings& settings);  ///< returns an error message, or nothing
-  void (*add_options)(CLI::App& command, Settings& settings);
+  void (*add_options)(Command command, Settings& settings);
 };
 
 constexpr ServiceRow services[] = {
     {"assign", "select or find one device and configure its node-ID", assign, add_assign_options},
     {"fastscan", "find devices without node-ID, all or those with these numbers", fastscan, add_fastscan_options},
     {"select", "switch one device to configuration state", select,
-     [](CLI::App& command, Settings& settings) { add_address_options(command, settings, true); }},
+     [](Command command, Settings& settings) { add_address_options(command, settings, true); }},
     {"state", "switch all devices to a state", switch_state, add_state_argument},
     {"inquire", "inquire the LSS address and node-ID of the device in configuration state", inquire,
-     [](CLI::App& command, Settings& settings) { add_format_option(command, settings.format); }},
+     [](Command command, Settings& settings) { add_format_option(command, settings.format); }},
     {"node-id", "configure the node-ID of the device in configuration state", configure_node_id,
-     [](CLI::App& command, Settings& settings) { add_new_node_id(command, "NODE", settings); }},
+     [](Command command, Settings& settings) { add_new_node_id(command, "NODE", settings); }},
     {"bit-rate", "configure the bit rate of the device in configuration state", configure_bit_rate,
-     [](CLI::App& command, Settings& settings) { add_bit_rate(command, "KBIT", settings, true); }},
+     [](Command command, Settings& settings) { add_bit_rate(command, "KBIT", settings, true); }},
     {"store", "store node-ID and bit rate in the device in configuration state", store, nullptr},
     {"activate", "activate the new bit rate of the devices in configuration state", activate, add_delay_option},
 };
 
 }  // namespace
 
-void add_lss_options(CLI::App& command, int& exit_code) {
+void add_lss_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_lss, exit_code);
-  command.require_subcommand(1);
   add_bus_argument(command, settings.bus);
   add_timeout_option(command, settings.timeout_ms);
   add_step_option(command, settings.step_ms);
   for (const ServiceRow& row : services) {
-    CLI::App* service = command.add_subcommand(row.name, row.description);
-    service->fallthrough();
-    service->callback([&settings, &row] { settings.service = row.perform; });
-    if (row.add_options != nullptr) row.add_options(*service, settings);
+    const Command service = command.add_subcommand(row.name, row.description);
+    service.take_options_of_parent();
+    service.on_chosen([&settings, &row] { settings.service = row.perform; });
+    if (row.add_options != nullptr) row.add_options(service, settings);
   }
 }
 

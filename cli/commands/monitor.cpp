@@ -176,7 +176,7 @@ int serve(Monitor& monitor, const ListenAddress& address) {
 }
 
 int run_monitor(const Settings& settings) {
-  if (settings.format == "json" && !settings.once_seconds) throw CLI::RequiresError("--format json", "--once");
+  if (settings.format == "json" && !settings.once_seconds) throw_requires("--format json", "--once");
   std::vector<std::unique_ptr<LoadedDevice>> devices;
   std::vector<KnownNode> known;
   for (const std::string& text : settings.nodes) {
@@ -197,28 +197,27 @@ int run_monitor(const Settings& settings) {
 
 }  // namespace
 
-void add_monitor_options(CLI::App& command, int& exit_code) {
+void add_monitor_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_monitor, exit_code);
   add_bus_argument(command, settings.bus);
   command.add_option("--node", settings.nodes, "node-ID and its EDS; may be given more than once")
-      ->type_name("ID=FILE")
-      ->allow_extra_args(false)
-      ->check([](const std::string& text) {
+      .type_name("ID=FILE")
+      .one_value_each()
+      .check([](const std::string& text) {
         return parse_node_file(text) ? std::string{} : "\"" + text + "\" is not of the form NODE-ID=FILE";
       });
-  command.add_option("--once", settings.once_seconds, "print one table after this many seconds")
-      ->check(CLI::Range(0.01, 86'400.0));
+  command.add_option("--once", settings.once_seconds, "print one table after this many seconds").range(0.01, 86'400.0);
   command.add_option("--bit-rate", settings.bit_rate, "kbit/s of the bus, for its load (without stuff bits)")
-      ->check(CLI::Range(5, 1000));
+      .range(5, 1000);
   command
-      .add_option_function<std::string>(
+      .add_text_option(
           "--web", [&settings](const std::string& text) { settings.web = parse_listen_address(text); },
           "serve a page with live values and plots, at this address (default: 127.0.0.1:8080; port 0: any)")
-      ->type_name("HOST:PORT")
-      ->expected(0, 1)
-      ->default_str("127.0.0.1:8080")
-      ->excludes("--once")
-      ->check([](const std::string& text) {
+      .type_name("HOST:PORT")
+      .optional_value()
+      .show_default("127.0.0.1:8080")
+      .excludes("--once")
+      .check([](const std::string& text) {
         try {
           static_cast<void>(parse_listen_address(text));
           return std::string{};

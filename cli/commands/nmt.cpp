@@ -54,7 +54,7 @@ void wait_for_state(LiveBus& bus, const Settings& settings, const Reports& repor
 
 int run_nmt(const Settings& settings) {
   if (settings.wait_ms != 0 && settings.node == 0) {
-    throw CLI::ValidationError("--wait", "waits for one node, not for all");
+    throw_invalid("--wait", "waits for one node, not for all");
   }
   return with_bus(settings.bus, [&](LiveBus& bus) {
     Reports reports;
@@ -71,27 +71,26 @@ int run_nmt(const Settings& settings) {
 
 }  // namespace
 
-void add_nmt_options(CLI::App& command, int& exit_code) {
+void add_nmt_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_nmt, exit_code);
   add_bus_argument(command, settings.bus);
   std::vector<std::string> names;
   for (const NmtCommandText& row : nmt_command_texts) names.emplace_back(row.argument);
   command
-      .add_option_function<std::string>(
+      .add_text_option(
           "COMMAND",
           [&settings](const std::string& text) {
             settings.command = find_nmt_command(&NmtCommandText::argument, std::string_view{text});
           },
           "start, stop, pre-operational, reset-node or reset-communication")
-      ->required()
-      ->check(CLI::IsMember(names));
+      .required()
+      .one_of(names);
   const auto parse = [](const std::string& text) {
     return text == "all" ? std::optional<std::uint8_t>{0} : parse_node(text);
   };
   add_parsed(command, "NODE", settings.node, parse, "a node-ID from 1 to 127 or \"all\"", "node-ID, 1..127, or all")
-      ->required();
-  command.add_option("--wait", settings.wait_ms, "ms to wait until the node reports its new state")
-      ->check(CLI::Range(1, 600'000));
+      .required();
+  command.add_option("--wait", settings.wait_ms, "ms to wait until the node reports its new state").range(1, 600'000);
 }
 
 }  // namespace edsc

@@ -191,14 +191,14 @@ int plot(const Settings& settings) {
 
 }  // namespace
 
-void add_plot_options(CLI::App& command, int& exit_code) {
+void add_plot_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, plot, exit_code);
-  add_log_options(command, settings)->required();
+  add_log_options(command, settings).required();
   command
       .add_option("OBJECT", settings.objects,
                   "index or name of an object, of all nodes that have it; NODE/OBJECT: of one node")
-      ->required();
-  command.add_option("-o,--output", settings.output, "SVG file to write (default: standard output)")->type_name("FILE");
+      .required();
+  command.add_option("-o,--output", settings.output, "SVG file to write (default: standard output)").type_name("FILE");
   command.add_option("--title", settings.title, "title of the picture (default: the name of the log)");
 }
 

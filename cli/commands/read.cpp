@@ -171,7 +171,7 @@ int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chose
 }
 
 int run_read(const Settings& settings) {
-  if (!settings.all && settings.objects.empty()) throw CLI::RequiresError("OBJECT or --all", 1);
+  if (!settings.all && settings.objects.empty()) throw_required("OBJECT or --all");
   const auto loaded = settings.sheet.empty() ? nullptr : load_live_device(settings.sheet, settings.node);
   const std::vector<Chosen> entries = choose_entries(settings, device_of(loaded));
   if (!settings.file.empty() && entries.size() != 1) {
@@ -182,25 +182,25 @@ int run_read(const Settings& settings) {
 
 }  // namespace
 
-void add_read_options(CLI::App& command, int& exit_code) {
+void add_read_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_read, exit_code);
   add_node_arguments(command, settings);
-  auto* objects = command.add_option("OBJECT", settings.objects, "6064h, 1018h:02, or a name from the EDS");
-  auto* sheet =
-      command.add_option("--eds", settings.sheet, "description of the node: EDS, DCF, XDD or XDC")->type_name("FILE");
-  auto* all = command.add_flag("--all", settings.all, "all readable entries of the EDS except DOMAINs");
-  all->needs(sheet)->excludes(objects);
+  const Option objects = command.add_option("OBJECT", settings.objects, "6064h, 1018h:02, or a name from the EDS");
+  const Option sheet =
+      command.add_option("--eds", settings.sheet, "description of the node: EDS, DCF, XDD or XDC").type_name("FILE");
+  const Option all = command.add_flag("--all", settings.all, "all readable entries of the EDS except DOMAINs");
+  all.needs(sheet).excludes(objects);
   add_type_option(command, settings.type);
   add_format_option(command, settings.format);
-  auto* raw = command.add_flag("--raw", settings.raw, "values as bytes");
-  auto* file =
-      command.add_option("--file", settings.file, "write the bytes of one entry to this file")->type_name("FILE");
-  file->excludes(all)->excludes(raw);
-  auto* block = command.add_flag("--block", settings.block, "block transfer for all data types");
-  command.add_flag("--segmented", settings.segmented, "no block transfer")->excludes(block);
+  const Option raw = command.add_flag("--raw", settings.raw, "values as bytes");
+  const Option file =
+      command.add_option("--file", settings.file, "write the bytes of one entry to this file").type_name("FILE");
+  file.excludes(all).excludes(raw);
+  const Option block = command.add_flag("--block", settings.block, "block transfer for all data types");
+  command.add_flag("--segmented", settings.segmented, "no block transfer").excludes(block);
   command.add_option("--max-bytes", settings.sdo.max_bytes, "maximum bytes of a variable-length value")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 30))
-      ->capture_default_str();
+      .range(std::size_t{1}, std::size_t{1} << 30)
+      .show_default();
   add_timeout_option(command, settings.sdo.timeout_ms);
 }
 

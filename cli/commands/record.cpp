@@ -139,16 +139,16 @@ int run_record(const Settings& settings) {
 
 }  // namespace
 
-void add_record_options(CLI::App& command, int& exit_code) {
+void add_record_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_record, exit_code);
   add_bus_argument(command, settings.bus);
   command.add_option("-o,--output", settings.output, "file to write; emptied at the start (default: standard output)")
-      ->type_name("FILE");
-  command.add_option("--seconds", settings.seconds, "end after this time")->check(CLI::Range(0.01, 1e9));
+      .type_name("FILE");
+  command.add_option("--seconds", settings.seconds, "end after this time").range(0.01, 1e9);
   command.add_option("--count", settings.count, "end after this number of frames")
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 62));
+      .range(std::uint64_t{1}, std::uint64_t{1} << 62);
   command.add_option("--interface", settings.interface, "name of the interface in the log (default: that of BUS)")
-      ->check(bad_interface);
+      .check(bad_interface);
 }
 
 }  // namespace edsc

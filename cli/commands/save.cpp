@@ -101,7 +101,7 @@ int save(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded) {
 }
 
 int run_save(const Settings& settings) {
-  if (settings.format == "json" && settings.output.empty()) throw CLI::RequiresError("--format json", "--output");
+  if (settings.format == "json" && settings.output.empty()) throw_requires("--format json", "--output");
   const auto loaded = load_live_device(settings.path, settings.node);
   Diagnostics ignored;
   if (parse_ini(*loaded->source, ignored).sections.empty()) {
@@ -112,16 +112,15 @@ int run_save(const Settings& settings) {
 
 }  // namespace
 
-void add_save_options(CLI::App& command, int& exit_code) {
+void add_save_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_save, exit_code);
   add_node_arguments(command, settings);
-  command.add_option("FILE", settings.path, "EDS of the node, or a DCF")->required();
+  command.add_option("FILE", settings.path, "EDS of the node, or a DCF").required();
   command.add_option("-o,--output", settings.output, "DCF to write (default: standard output)")
-      ->type_name("FILE")
-      ->check(xdd_name_problem);
+      .type_name("FILE")
+      .check(xdd_name_problem);
   command.add_flag("--all", settings.all, "all values, not only those that differ from the EDS");
-  command.add_option("--bit-rate", settings.bit_rate, "kbit/s of the bus, for [DeviceComissioning]")
-      ->check(CLI::Range(5, 1000));
+  command.add_option("--bit-rate", settings.bit_rate, "kbit/s of the bus, for [DeviceComissioning]").range(5, 1000);
   command.add_flag("--force", settings.force, "save even if the device does not match FILE");
   add_format_option(command, settings.format);
   add_timeout_option(command, settings.sdo.timeout_ms);

@@ -229,15 +229,15 @@ int run_scan(const Settings& settings) {
 
 }  // namespace
 
-void add_scan_options(CLI::App& command, int& exit_code) {
+void add_scan_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_scan, exit_code);
   add_bus_argument(command, settings.bus);
   add_scanned_nodes(command, settings.scan);
   command.add_option("--eds", settings.sheets, "EDS to compare with; may be given more than once")
-      ->allow_extra_args(false)
-      ->type_name("FILE");
-  auto* lss = command.add_flag("--lss", settings.lss, "also find devices without node-ID, by LSS Fastscan");
-  add_step_option(command, settings.lss_step_ms)->needs(lss);
+      .one_value_each()
+      .type_name("FILE");
+  const Option lss = command.add_flag("--lss", settings.lss, "also find devices without node-ID, by LSS Fastscan");
+  add_step_option(command, settings.lss_step_ms).needs(lss);
   add_format_option(command, settings.format);
   settings.color.add_to(command);
 }

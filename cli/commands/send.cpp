@@ -124,7 +124,7 @@ int run_send(const Settings& settings) {
   return with_bus(settings.bus, [&](LiveBus& bus) { return send_frames(bus, settings, first); });
 }
 
-void add_can_id_option(CLI::App& command, Settings& settings) {
+void add_can_id_option(Command command, Settings& settings) {
   const auto parse = [](const std::string& text) {
     const auto can_id = parse_count(text, 0x1FFF'FFFF);
     return can_id && !canopen::is_restricted(*can_id) ? can_id : std::nullopt;
@@ -133,7 +133,7 @@ void add_can_id_option(CLI::App& command, Settings& settings) {
              "another CAN-ID, such as 81h; above 7FFh an extended one");
 }
 
-void add_sync_options(CLI::App& command, Settings& settings) {
+void add_sync_options(Command command, Settings& settings) {
   const auto parse = [](const std::string& text) {
     const auto number = parse_count(text, 240);
     return number && *number >= 2 ? number : std::nullopt;
@@ -143,7 +143,7 @@ void add_sync_options(CLI::App& command, Settings& settings) {
   add_can_id_option(command, settings);
 }
 
-void add_time_options(CLI::App& command, Settings& settings) {
+void add_time_options(Command command, Settings& settings) {
   const auto parse = [](const std::string& text) -> std::optional<std::vector<std::uint8_t>> {
     const ParsedValue parsed = parse_value_text(*find_type("TIME_OF_DAY"), text);
     return parsed.ok() ? std::optional{parsed.bytes} : std::nullopt;
@@ -153,19 +153,19 @@ void add_time_options(CLI::App& command, Settings& settings) {
   add_can_id_option(command, settings);
 }
 
-void add_pdo_options(CLI::App& command, Settings& settings) {
+void add_pdo_options(Command command, Settings& settings) {
   add_parsed(command, "NODE=FILE", settings.node, parse_node_file, "of the form NODE-ID=FILE",
              "node-ID of the PDO, and its EDS, DCF, XDD or XDC")
-      ->required();
+      .required();
   add_parsed(
       command, "NUMBER", settings.number, [](const std::string& text) { return parse_count(text, 512); },
       "a number from 1 to 512", "number of the RPDO: 1 is 1400h")
-      ->required();
+      .required();
   command.add_option("OBJECT=VALUE", settings.values, "a value for each mapped object, by name or address");
   command.add_flag("--tpdo", settings.transmit, "send a TPDO of the node in its place");
 }
 
-void add_frame_options(CLI::App& command, Settings& settings) {
+void add_frame_options(Command command, Settings& settings) {
   const auto parse = [](const std::string& text) -> std::optional<canopen::Frame> {
     const LogLine line = parse_log_line(text);
     if (line.kind != LogLineKind::frame || text.find('#') == std::string::npos) return std::nullopt;
@@ -173,7 +173,7 @@ void add_frame_options(CLI::App& command, Settings& settings) {
   };
   add_parsed(command, "FRAME", settings.frame, parse, "a frame such as 181#0102",
              "CAN-ID of 3 or 8 digits, # and bytes, or R and the length of a remote frame: 181#0102, 705#R1")
-      ->required();
+      .required();
 }
 
 /// A subcommand.
@@ -181,7 +181,7 @@ struct KindRow {
   const char* name;
   const char* description;
   canopen::Frame (*compose)(const Settings& settings, std::uint32_t sent);  ///< ends the command if it is impossible
-  void (*add_options)(CLI::App& command, Settings& settings);
+  void (*add_options)(Command command, Settings& settings);
 };
 
 constexpr KindRow kinds[] = {
@@ -204,9 +204,8 @@ std::optional<std::uint32_t> parse_period(const std::string& text) {
 
 }  // namespace
 
-void add_send_options(CLI::App& command, int& exit_code) {
+void add_send_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_send, exit_code);
-  command.require_subcommand(1);
   add_bus_argument(command, settings.bus);
   add_parsed(command, "--every", settings.every_ms, parse_period, "a time from 1 ms to 600 s",
              "ms between two frames; without --count until Ctrl-C");
@@ -216,10 +215,10 @@ void add_send_options(CLI::App& command, int& exit_code) {
   };
   add_parsed(command, "--count", settings.count, parse_positive, "a number from 1", "number of frames (default: 1)");
   for (const KindRow& row : kinds) {
-    CLI::App* kind = command.add_subcommand(row.name, row.description);
-    kind->fallthrough();
-    kind->callback([&settings, &row] { settings.compose = row.compose; });
-    row.add_options(*kind, settings);
+    const Command kind = command.add_subcommand(row.name, row.description);
+    kind.take_options_of_parent();
+    kind.on_chosen([&settings, &row] { settings.compose = row.compose; });
+    row.add_options(kind, settings);
   }
 }
 

@@ -99,7 +99,7 @@ int write_entry(LiveBus& bus, const Settings& settings, const LiveEntry& entry,
 }
 
 int run_write(const Settings& settings) {
-  if (settings.file.empty() && settings.value.empty()) throw CLI::RequiresError("VALUE or --file", 1);
+  if (settings.file.empty() && settings.value.empty()) throw_required("VALUE or --file");
   const auto loaded = settings.sheet.empty() ? nullptr : load_live_device(settings.sheet, settings.node);
   LiveEntry entry = name_entry(device_of(loaded), settings.object);
   if (settings.type != nullptr) set_type(entry, *settings.type);
@@ -111,22 +111,22 @@ int run_write(const Settings& settings) {
 
 }  // namespace
 
-void add_write_options(CLI::App& command, int& exit_code) {
+void add_write_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_write, exit_code);
   add_node_arguments(command, settings);
-  command.add_option("OBJECT", settings.object, "6064h, 1018h:02, or a name from the EDS")->required();
-  auto* value = command.add_option("VALUE", settings.value, "1500, 5DCh, \"500 ms\", text; with --raw bytes");
-  command.add_option("--eds", settings.sheet, "description of the node: EDS, DCF, XDD or XDC")->type_name("FILE");
+  command.add_option("OBJECT", settings.object, "6064h, 1018h:02, or a name from the EDS").required();
+  const Option value = command.add_option("VALUE", settings.value, "1500, 5DCh, \"500 ms\", text; with --raw bytes");
+  command.add_option("--eds", settings.sheet, "description of the node: EDS, DCF, XDD or XDC").type_name("FILE");
   add_type_option(command, settings.type);
-  auto* raw = command.add_flag("--raw", settings.raw, "VALUE is bytes, as hexadecimal digits");
+  const Option raw = command.add_flag("--raw", settings.raw, "VALUE is bytes, as hexadecimal digits");
   command.add_option("--file", settings.file, "write the bytes of this file")
-      ->type_name("FILE")
-      ->excludes(value)
-      ->excludes(raw);
+      .type_name("FILE")
+      .excludes(value)
+      .excludes(raw);
   command.add_flag("--force", settings.force, "write regardless of access type and limits");
   command.add_flag("--verify", settings.verify, "read the value back and compare it");
-  auto* block = command.add_flag("--block", settings.block, "block transfer also for short values");
-  command.add_flag("--segmented", settings.segmented, "no block transfer")->excludes(block);
+  const Option block = command.add_flag("--block", settings.block, "block transfer also for short values");
+  command.add_flag("--segmented", settings.segmented, "no block transfer").excludes(block);
   add_timeout_option(command, settings.sdo.timeout_ms);
 }
 

@@ -40,62 +40,53 @@ complete -F _edsc edsc
 )";
 
 /// The command and its subcommands, each before its own.
-CommandList all_below(const CLI::App& command) {
-  CommandList all{&command};
-  for (const CLI::App* sub : subcommands_of(command)) {
-    const CommandList below = all_below(*sub);
-    all.insert(all.end(), below.begin(), below.end());
-  }
-  return all;
-}
-
-std::string names_of_all(const CommandList& commands) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : commands) names.push_back(command->get_name());
-  return fmt::format("{}", fmt::join(names, " "));
+void append_all_below(std::vector<const CommandParts*>& all, const CommandParts& command) {
+  all.push_back(&command);
+  for (const CommandParts& sub : command.subcommands) append_all_below(all, sub);
 }
 
 /// `_edsc_words "..."` after the command, or what completes its first argument.
-std::string first_word(const CLI::App& command) {
-  const CommandList subcommands = subcommands_of(command);
-  if (!subcommands.empty()) return fmt::format("_edsc_words \"{}\"", names_of_all(subcommands));
-  const OptionList arguments = arguments_of(command);
-  return arguments.empty() ? ":" : value_of(*arguments.front()).bash;
+std::string first_word(const CommandParts& command) {
+  if (command.subcommands.empty()) return command.arguments.empty() ? ":" : command.arguments.front().value.bash;
+  std::vector<std::string> names;
+  for (const CommandParts& sub : command.subcommands) names.push_back(sub.name);
+  return fmt::format("_edsc_words \"{}\"", fmt::join(names, " "));
 }
 
 }  // namespace
 
-std::string bash_completion(const CLI::App& program) {
-  const CommandList commands = all_below(program);
+std::string bash_completion(const CommandParts& program) {
+  std::vector<const CommandParts*> commands;
+  append_all_below(commands, program);
   std::string out = head;
   const auto put = std::back_inserter(out);
-  for (const CLI::App* command : commands) {
-    for (const CLI::App* sub : subcommands_of(*command)) {
-      fmt::format_to(put, "      \"{}/{}\") command=\"{}\" ;;\n", path_of(*command), sub->get_name(), path_of(*sub));
+  for (const CommandParts* command : commands) {
+    for (const CommandParts& sub : command->subcommands) {
+      fmt::format_to(put, "      \"{}/{}\") command=\"{}\" ;;\n", command->path_with(" "), sub.name,
+                     sub.path_with(" "));
     }
   }
   out += "    esac\n  done\n  case \"$command/$previous\" in\n";
-  for (const CLI::App* command : commands) {
-    for (const CLI::Option* option : options_of(*command)) {
-      const OptionValue value = value_of(*option);
-      if (value.name.empty()) continue;
+  for (const CommandParts* command : commands) {
+    for (const OptionParts& option : command->options) {
+      if (option.value.name.empty()) continue;
       std::vector<std::string> patterns;
-      for (const std::string& name : names_of(*option)) {
-        patterns.push_back(fmt::format("\"{}/{}\"", path_of(*command), name));
+      for (const std::string& name : option.names) {
+        patterns.push_back(fmt::format("\"{}/{}\"", command->path_with(" "), name));
       }
-      fmt::format_to(put, "    {}) {}; return ;;\n", fmt::join(patterns, " | "), value.bash);
+      fmt::format_to(put, "    {}) {}; return ;;\n", fmt::join(patterns, " | "), option.value.bash);
     }
   }
   out += "  esac\n  case \"$command\" in\n";
-  for (const CLI::App* command : commands) {
+  for (const CommandParts* command : commands) {
     std::vector<std::string> options;
-    for (const CLI::Option* option : options_of(*command)) {
-      for (std::string& name : names_of(*option)) options.push_back(std::move(name));
+    for (const OptionParts& option : command->options) {
+      options.insert(options.end(), option.names.begin(), option.names.end());
     }
     fmt::format_to(put,
                    "    \"{}\")\n      if [[ $current == -* ]]; then\n        _edsc_words \"{}\"\n      else\n        "
                    "{}\n      fi\n      ;;\n",
-                   path_of(*command), fmt::join(options, " "), first_word(*command));
+                   command->path_with(" "), fmt::join(options, " "), first_word(*command));
   }
   return out + tail;
 }

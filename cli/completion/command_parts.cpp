@@ -1,8 +1,11 @@
 #include "completion/command_parts.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <string_view>
 
 namespace edsc {
 namespace {
@@ -13,40 +16,10 @@ std::string with_commas_as(std::string_view separator, std::string_view words) {
   return text;
 }
 
-}  // namespace
-
-CommandList subcommands_of(const CLI::App& command) {
-  return command.get_subcommands([](const CLI::App* one) { return !one->get_name().empty(); });
-}
-
-std::vector<std::pair<std::string, CommandList>> groups_of(const CLI::App& command) {
-  std::vector<std::pair<std::string, CommandList>> groups;
-  for (const CLI::App* sub : subcommands_of(command)) {
-    auto group = std::ranges::find(groups, sub->get_group(), &std::pair<std::string, CommandList>::first);
-    if (group == groups.end()) group = groups.insert(group, {sub->get_group(), {}});
-    group->second.push_back(sub);
-  }
-  return groups;
-}
-
-std::string path_of(const CLI::App& command, std::string_view separator) {
-  if (command.get_parent() == nullptr) return "";
-  const std::string parent = path_of(*command.get_parent(), separator);
-  return parent.empty() ? command.get_name() : fmt::format("{}{}{}", parent, separator, command.get_name());
-}
-
 std::string examples_of(const CLI::App& command) {
   constexpr std::string_view heading = "Examples:\n";
   const std::string footer = command.get_footer();
   return footer.starts_with(heading) ? footer.substr(heading.size()) : footer;
-}
-
-OptionList options_of(const CLI::App& command) {
-  return command.get_options([](const CLI::Option* one) { return !one->get_positional(); });
-}
-
-OptionList arguments_of(const CLI::App& command) {
-  return command.get_options([](const CLI::Option* one) { return one->get_positional(); });
 }
 
 std::vector<std::string> names_of(const CLI::Option& option) {
@@ -56,8 +29,6 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
   return names;
 }
-
-bool repeats(const CLI::Option& option) { return option.get_items_expected_max() > 1; }
 
 /// CLI11 appends the values that a check accepts to the type: `TEXT:{text,json}`, `UINT:INT in [1 - 127]`, `TEXT:DIR`.
 OptionValue value_of(const CLI::Option& option) {
@@ -73,5 +44,43 @@ OptionValue value_of(const CLI::Option& option) {
   if (is_number("UINT") || is_number("INT") || is_number("FLOAT")) return {"NUMBER", ":", " "};
   return {"TEXT", "_edsc_files -f", "_edsc_file"};
 }
+
+CommandParts parts_below(const CLI::App& command, std::vector<std::string> path) {
+  CommandParts parts;
+  parts.name = path.empty() ? std::string{} : path.back();
+  parts.group = command.get_group();
+  parts.description = command.get_description();
+  parts.examples = examples_of(command);
+  for (const CLI::Option* option : command.get_options()) {
+    OptionParts one{names_of(*option),        option->get_description(), value_of(*option),
+                    option->get_positional(), option->get_required(),    option->get_items_expected_max() > 1};
+    (one.is_argument ? parts.arguments : parts.options).push_back(std::move(one));
+  }
+  for (const CLI::App* sub : command.get_subcommands([](const CLI::App* one) { return !one->get_name().empty(); })) {
+    path.push_back(sub->get_name());
+    parts.subcommands.push_back(parts_below(*sub, path));
+    path.pop_back();
+  }
+  parts.path = std::move(path);
+  return parts;
+}
+
+}  // namespace
+
+std::string CommandParts::path_with(const char* separator) const {
+  return fmt::format("{}", fmt::join(path, separator));
+}
+
+std::vector<std::pair<std::string, std::vector<const CommandParts*>>> CommandParts::groups() const {
+  std::vector<std::pair<std::string, std::vector<const CommandParts*>>> found;
+  for (const CommandParts& sub : subcommands) {
+    auto row = std::ranges::find(found, sub.group, [](const auto& one) { return one.first; });
+    if (row == found.end()) row = found.insert(row, {sub.group, {}});
+    row->second.push_back(&sub);
+  }
+  return found;
+}
+
+CommandParts parts_of(Command program) { return parts_below(program.cli11(), {}); }
 
 }  // namespace edsc

@@ -1,36 +1,13 @@
-/// The parts of a command of CLI11 that completions and the manual page show.
+/// The commands and options of the program, as completions and the manual page show them.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "shared/command_line.hpp"
+
 namespace edsc {
-
-using CommandList = std::vector<const CLI::App*>;
-using OptionList = std::vector<const CLI::Option*>;
-
-[[nodiscard]] CommandList subcommands_of(const CLI::App& command);
-
-/// The subcommands by their heading in the help, in order.
-[[nodiscard]] std::vector<std::pair<std::string, CommandList>> groups_of(const CLI::App& command);
-
-/// `lss inquire`; empty for the program.
-[[nodiscard]] std::string path_of(const CLI::App& command, std::string_view separator = " ");
-
-/// The lines after `Examples:`.
-[[nodiscard]] std::string examples_of(const CLI::App& command);
-
-[[nodiscard]] OptionList options_of(const CLI::App& command);
-[[nodiscard]] OptionList arguments_of(const CLI::App& command);
-
-/// `--output`, `-o`; of an argument its name, `FILE`.
-[[nodiscard]] std::vector<std::string> names_of(const CLI::Option& option);
-
-/// Whether it may be given more than once.
-[[nodiscard]] bool repeats(const CLI::Option& option);
 
 /// The value of an option or argument: how the manual page names it, and what completes it in each shell.
 struct OptionValue {
@@ -40,11 +17,36 @@ struct OptionValue {
   bool is_choice = false;  ///< one of the words in `name`
 };
 
-[[nodiscard]] OptionValue value_of(const CLI::Option& option);
+struct OptionParts {
+  std::vector<std::string> names;  ///< `--output`, `-o`; of an argument its name, `FILE`
+  std::string description;
+  OptionValue value;
+  bool is_argument = false;
+  bool is_required = false;
+  bool repeats = false;  ///< it may be given more than once
+};
 
-[[nodiscard]] std::string bash_completion(const CLI::App& program);
-[[nodiscard]] std::string zsh_completion(const CLI::App& program);
+struct CommandParts {
+  std::string name;               ///< empty for the program
+  std::vector<std::string> path;  ///< `lss`, `inquire`; empty for the program
+  std::string group;              ///< its heading in the help
+  std::string description;
+  std::string examples;  ///< the lines after `Examples:`
+  std::vector<OptionParts> options;
+  std::vector<OptionParts> arguments;
+  std::vector<CommandParts> subcommands;
+
+  /// `lss inquire`
+  [[nodiscard]] std::string path_with(const char* separator) const;
+  /// The subcommands by their heading in the help, in order.
+  [[nodiscard]] std::vector<std::pair<std::string, std::vector<const CommandParts*>>> groups() const;
+};
+
+[[nodiscard]] CommandParts parts_of(Command program);
+
+[[nodiscard]] std::string bash_completion(const CommandParts& program);
+[[nodiscard]] std::string zsh_completion(const CommandParts& program);
 /// edsc(1) for man, of this version.
-[[nodiscard]] std::string man_page(const CLI::App& program, const std::string& version);
+[[nodiscard]] std::string man_page(const CommandParts& program, const std::string& version);
 
 }  // namespace edsc

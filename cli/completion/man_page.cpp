@@ -58,57 +58,52 @@ std::string sentence(const std::string& text) {
   return upper_case(text.substr(0, 1)) + text.substr(1) + (text.ends_with('.') ? "" : ".");
 }
 
-std::string name_of(const CLI::App& command) { return escaped("edsc " + path_of(command)); }
+std::string name_of(const CommandParts& command) { return escaped("edsc " + command.path_with(" ")); }
 
 /// The commands without subcommands, which are those that a user calls.
-void append_synopsis(std::string& out, const CLI::App& command) {
-  for (const CLI::App* sub : subcommands_of(command)) append_synopsis(out, *sub);
-  if (!subcommands_of(command).empty()) return;
+void append_synopsis(std::string& out, const CommandParts& command) {
+  for (const CommandParts& sub : command.subcommands) append_synopsis(out, sub);
+  if (!command.subcommands.empty()) return;
   if (!out.ends_with(".ad l\n")) out += ".br\n";
   out += fmt::format(".B {}\n[\\fIoptions\\fR]\n", name_of(command));
-  for (const CLI::Option* argument : arguments_of(command)) {
-    const std::string name = escaped(argument->get_name()) + (repeats(*argument) ? "..." : "");
-    const bool required = argument->get_required();
-    out += fmt::format("{}\\fI{}\\fR{}\n", required ? "" : "[", name, required ? "" : "]");
+  for (const OptionParts& argument : command.arguments) {
+    const std::string name = escaped(argument.names.front()) + (argument.repeats ? "..." : "");
+    out += fmt::format("{}\\fI{}\\fR{}\n", argument.is_required ? "" : "[", name, argument.is_required ? "" : "]");
   }
 }
 
-void append_option(std::string& out, const CLI::Option& option) {
-  const bool is_argument = option.get_positional();
+void append_option(std::string& out, const OptionParts& option) {
   std::vector<std::string> names;
-  for (const std::string& name : names_of(option)) {
-    names.push_back(fmt::format("\\f{}{}\\fR", is_argument ? 'I' : 'B', escaped(name)));
+  for (const std::string& name : option.names) {
+    names.push_back(fmt::format("\\f{}{}\\fR", option.is_argument ? 'I' : 'B', escaped(name)));
   }
-  const OptionValue value = value_of(option);
-  std::string text = option.get_description();
+  std::string text = option.description;
   std::string type;
-  if (is_argument && value.is_choice) text += ": " + value.name;
-  if (!is_argument && !value.name.empty()) type = fmt::format(" \\fI{}\\fR", escaped(value.name));
+  if (option.is_argument && option.value.is_choice) text += ": " + option.value.name;
+  if (!option.is_argument && !option.value.name.empty()) type = fmt::format(" \\fI{}\\fR", escaped(option.value.name));
   out += fmt::format(".TP\n{}{}\n{}\n", fmt::join(names, ", "), type, escaped(text));
 }
 
-void append_command(std::string& out, const CLI::App& command) {
-  const CommandList subcommands = subcommands_of(command);
-  for (const CLI::App* sub : subcommands) append_command(out, *sub);
-  if (subcommands.empty()) {
-    out += fmt::format(".SS {}\n{}\n", name_of(command), escaped(sentence(command.get_description())));
-    for (const CLI::Option* argument : arguments_of(command)) append_option(out, *argument);
-    for (const CLI::Option* option : options_of(command)) append_option(out, *option);
+void append_command(std::string& out, const CommandParts& command) {
+  for (const CommandParts& sub : command.subcommands) append_command(out, sub);
+  if (command.subcommands.empty()) {
+    out += fmt::format(".SS {}\n{}\n", name_of(command), escaped(sentence(command.description)));
+    for (const OptionParts& argument : command.arguments) append_option(out, argument);
+    for (const OptionParts& option : command.options) append_option(out, option);
   }
-  const std::string examples = examples_of(command);
-  if (!examples.empty()) out += fmt::format(".PP\n.nf\n{}\n.fi\n", escaped(examples));
+  if (!command.examples.empty()) out += fmt::format(".PP\n.nf\n{}\n.fi\n", escaped(command.examples));
 }
 
 }  // namespace
 
-std::string man_page(const CLI::App& program, const std::string& version) {
+std::string man_page(const CommandParts& program, const std::string& version) {
   std::string out = fmt::format(".TH EDSC 1 \"\" \"edsc {}\" \"User Commands\"\n", escaped(version));
   out += ".SH NAME\nedsc \\- compiler for CANopen Electronic Data Sheets\n.SH SYNOPSIS\n.nh\n.ad l\n";
   append_synopsis(out, program);
-  out += fmt::format(".ad b\n.hy\n.SH DESCRIPTION\n{}\n", escaped(program.get_description()));
-  for (const auto& [group, commands] : groups_of(program)) {
+  out += fmt::format(".ad b\n.hy\n.SH DESCRIPTION\n{}\n", escaped(program.description));
+  for (const auto& [group, commands] : program.groups()) {
     out += fmt::format(".SH COMMANDS: {}\n", escaped(upper_case(group)));
-    for (const CLI::App* command : commands) append_command(out, *command);
+    for (const CommandParts* command : commands) append_command(out, *command);
   }
   return out + tail;
 }

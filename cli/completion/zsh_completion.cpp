@@ -33,60 +33,60 @@ std::string quoted(const std::string& text) {
 }
 
 /// `'*--filter[show only ...]:TEXT:_edsc_file'`, one for each of its names.
-void append_option(std::string& out, const CLI::Option& option) {
-  const OptionValue value = value_of(option);
-  for (const std::string& name : names_of(option)) {
-    fmt::format_to(std::back_inserter(out), " \\\n    '{}{}[{}]", repeats(option) ? "*" : "", name,
-                   quoted(option.get_description()));
-    if (!value.name.empty()) fmt::format_to(std::back_inserter(out), ":{}:{}", quoted(value.name), value.zsh);
+void append_option(std::string& out, const OptionParts& option) {
+  for (const std::string& name : option.names) {
+    fmt::format_to(std::back_inserter(out), " \\\n    '{}{}[{}]", option.repeats ? "*" : "", name,
+                   quoted(option.description));
+    if (!option.value.name.empty()) {
+      fmt::format_to(std::back_inserter(out), ":{}:{}", quoted(option.value.name), option.value.zsh);
+    }
     out += '\'';
   }
 }
 
-void append_argument(std::string& out, const CLI::Option& argument) {
-  const char* count = repeats(argument) ? "*" : argument.get_required() ? "" : ":";
-  fmt::format_to(std::back_inserter(out), " \\\n    '{}:{}:{}'", count, quoted(argument.get_name()),
-                 value_of(argument).zsh);
+void append_argument(std::string& out, const OptionParts& argument) {
+  const char* count = argument.repeats ? "*" : argument.is_required ? "" : ":";
+  fmt::format_to(std::back_inserter(out), " \\\n    '{}:{}:{}'", count, quoted(argument.names.front()),
+                 argument.value.zsh);
 }
 
 /// `_edsc_lss_inquire`
-std::string function_of(const CLI::App& command) {
-  return command.get_parent() == nullptr ? "_edsc" : "_edsc_" + path_of(command, "_");
+std::string function_of(const CommandParts& command) {
+  return command.path.empty() ? "_edsc" : "_edsc_" + command.path_with("_");
 }
 
 /// The subcommands of a command, each group under its name.
-void append_choices(std::string& out, const CLI::App& command) {
+void append_choices(std::string& out, const CommandParts& command) {
   const auto put = std::back_inserter(out);
   out += "      local -a commands\n";
-  for (const auto& [group, commands] : groups_of(command)) {
+  for (const auto& [group, commands] : command.groups()) {
     out += "      commands=(\n";
-    for (const CLI::App* sub : commands) {
-      fmt::format_to(put, "        '{}:{}'\n", sub->get_name(), quoted(sub->get_description()));
+    for (const CommandParts* sub : commands) {
+      fmt::format_to(put, "        '{}:{}'\n", sub->name, quoted(sub->description));
     }
     fmt::format_to(put, "      )\n      _describe '{}' commands && ret=0\n",
                    group == "Subcommands" ? "command" : quoted(group));
   }
 }
 
-void append_function(std::string& out, const CLI::App& command) {
+void append_function(std::string& out, const CommandParts& command) {
   const auto put = std::back_inserter(out);
-  const CommandList subcommands = subcommands_of(command);
-  for (const CLI::App* sub : subcommands) append_function(out, *sub);
-  const bool chooses = !subcommands.empty();
+  for (const CommandParts& sub : command.subcommands) append_function(out, sub);
+  const bool chooses = !command.subcommands.empty();
   fmt::format_to(put, "{}() {{\n", function_of(command));
   if (chooses) out += "  local state line ret=1\n";
   fmt::format_to(put, "  _arguments -S{}", chooses ? " -C" : "");
-  for (const CLI::Option* option : options_of(command)) append_option(out, *option);
+  for (const OptionParts& option : command.options) append_option(out, option);
   if (chooses) {
     out += " \\\n    '1: :->command' \\\n    '*:: :->arguments' && ret=0\n  case $state in\n    command)\n";
     append_choices(out, command);
     out += "      ;;\n    arguments)\n      case $line[1] in\n";
-    for (const CLI::App* sub : subcommands) {
-      fmt::format_to(put, "        {}) {} && ret=0 ;;\n", sub->get_name(), function_of(*sub));
+    for (const CommandParts& sub : command.subcommands) {
+      fmt::format_to(put, "        {}) {} && ret=0 ;;\n", sub.name, function_of(sub));
     }
     out += "      esac\n      ;;\n  esac\n  return ret\n";
   } else {
-    for (const CLI::Option* argument : arguments_of(command)) append_argument(out, *argument);
+    for (const OptionParts& argument : command.arguments) append_argument(out, argument);
     out += '\n';
   }
   out += "}\n\n";
@@ -94,7 +94,7 @@ void append_function(std::string& out, const CLI::App& command) {
 
 }  // namespace
 
-std::string zsh_completion(const CLI::App& program) {
+std::string zsh_completion(const CommandParts& program) {
   std::string out = head;
   append_function(out, program);
   return out + "_edsc \"$@\"\n";

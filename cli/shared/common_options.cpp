@@ -8,12 +8,12 @@
 
 namespace edsc {
 
-CLI::Option* add_choice(CLI::App& command, const char* name, std::string& value, const std::vector<std::string>& words,
-                        const char* description) {
-  return command.add_option(name, value, description)->check(CLI::IsMember(words))->capture_default_str();
+Option add_choice(Command command, const char* name, std::string& value, const std::vector<std::string>& words,
+                  const char* description) {
+  return command.add_option(name, value, description).one_of(words).show_default();
 }
 
-void ColorOption::add_to(CLI::App& command) {
+void ColorOption::add_to(Command command) {
   add_choice(command, "--color", when, {"auto", "always", "never"},
              "colour the findings: auto (on a terminal, NO_COLOR unset), always, never");
 }
@@ -27,16 +27,16 @@ void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const Col
   print_text(stream, diagnostics, color.on(stream), with_allowed);
 }
 
-void add_options_option(CLI::App& command, std::string& path) {
+void add_options_option(Command command, std::string& path) {
   command.add_option("--options", path, "options file (default: FILE's name with .options.json, if there)");
 }
 
-void add_node_id_option(CLI::App& command, std::optional<std::uint8_t>& node_id) {
+void add_node_id_option(Command command, std::optional<std::uint8_t>& node_id) {
   command
-      .add_option_function<unsigned>(
+      .add_number_option(
           "--node-id", [&node_id](unsigned value) { node_id = static_cast<std::uint8_t>(value); },
           "evaluate $NODEID formulas for this node-ID (1..127)")
-      ->check(CLI::Range(1, 127));
+      .range(1, 127);
 }
 
 }  // namespace edsc

@@ -1,18 +1,19 @@
 /// What all commands have in common.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
+
+#include "shared/command_line.hpp"
 
 namespace edsc {
 
 /// Gives a command its examples and its settings, which the options fill in. When the command is chosen, `run` gets
 /// them and returns the exit code. The settings live as long as the command.
 template <class Settings>
-Settings& define_command(CLI::App& command, const char* examples, int (*run)(const Settings&), int& exit_code) {
+Settings& define_command(Command command, const char* examples, int (*run)(const Settings&), int& exit_code) {
   command.footer(examples);
   const auto settings = std::make_shared<Settings>();
-  command.callback([settings, run, &exit_code] { exit_code = run(*settings); });
+  command.on_chosen([settings, run, &exit_code] { exit_code = run(*settings); });
   return *settings;
 }
 

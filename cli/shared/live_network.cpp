@@ -32,12 +32,12 @@ bool is_skipped(const LiveNetworkSettings& settings, const NetworkNode& node) {
 
 }  // namespace
 
-void add_live_network_options(CLI::App& command, LiveNetworkSettings& settings) {
+void add_live_network_options(Command command, LiveNetworkSettings& settings) {
   add_bus_argument(command, settings.bus);
-  command.add_option("FILE", settings.path, "network file (JSON)")->required();
+  command.add_option("FILE", settings.path, "network file (JSON)").required();
   command.add_option("--skip", settings.skip, "node to ignore; may be given more than once")
-      ->allow_extra_args(false)
-      ->type_name("NAME");
+      .one_value_each()
+      .type_name("NAME");
   add_format_option(command, settings.format);
   add_timeout_option(command, settings.sdo.timeout_ms);
 }

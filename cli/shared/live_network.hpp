@@ -1,7 +1,6 @@
 /// The nodes of a network file for the commands at a live bus.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "monitor/progress_line.hpp"
 #include "network/network.hpp"
 #include "network/network_session.hpp"
+#include "shared/command_line.hpp"
 
 namespace edsc {
 
@@ -22,7 +22,7 @@ struct LiveNetworkSettings {
 };
 
 /// `BUS FILE`, `--skip`, `--format` and `--timeout`.
-void add_live_network_options(CLI::App& command, LiveNetworkSettings& settings);
+void add_live_network_options(Command command, LiveNetworkSettings& settings);
 
 struct LiveNetwork {
   std::unique_ptr<LoadedNetwork> loaded;

@@ -9,40 +9,40 @@
 
 namespace edsc {
 
-CLI::Option* add_bus_argument(CLI::App& command, std::string& bus) {
+Option add_bus_argument(Command command, std::string& bus) {
   return command
       .add_option("BUS", bus,
                   "socketcan:can0, slcan:/dev/ttyACM0, socketcand:127.0.0.1:29536/vcan0, or "
                   "simulated:PROGRAM@NODE-ID for a device in simulated time")
-      ->required();
+      .required();
 }
 
-CLI::Option* add_node_argument(CLI::App& command, std::uint8_t& node) {
-  return add_parsed(command, "NODE", node, parse_node, "a node-ID from 1 to 127", "node-ID, 1..127")->required();
+Option add_node_argument(Command command, std::uint8_t& node) {
+  return add_parsed(command, "NODE", node, parse_node, "a node-ID from 1 to 127", "node-ID, 1..127").required();
 }
 
-void add_node_arguments(CLI::App& command, NodeSettings& settings) {
+void add_node_arguments(Command command, NodeSettings& settings) {
   add_bus_argument(command, settings.bus);
   add_node_argument(command, settings.node);
 }
 
-CLI::Option* add_timeout_option(CLI::App& command, unsigned& milliseconds) {
+Option add_timeout_option(Command command, unsigned& milliseconds) {
   return command.add_option("--timeout", milliseconds, "ms to wait for a response of a device")
-      ->check(CLI::Range(1, 600'000))
-      ->capture_default_str();
+      .range(1, 600'000)
+      .show_default();
 }
 
-CLI::Option* add_step_option(CLI::App& command, unsigned& milliseconds) {
+Option add_step_option(Command command, unsigned& milliseconds) {
   return command.add_option("--step", milliseconds, "ms to wait in each step of Fastscan; more on a slow bus")
-      ->check(CLI::Range(1, 10'000))
-      ->capture_default_str();
+      .range(1, 10'000)
+      .show_default();
 }
 
-CLI::Option* add_format_option(CLI::App& command, std::string& format) {
+Option add_format_option(Command command, std::string& format) {
   return add_choice(command, "--format", format, {"text", "json"}, "text or json");
 }
 
-CLI::Option* add_type_option(CLI::App& command, const canopen::DataTypeRow*& type) {
+Option add_type_option(Command command, const canopen::DataTypeRow*& type) {
   const auto parse = [](const std::string& text) -> std::optional<const canopen::DataTypeRow*> {
     const canopen::DataTypeRow* const found = find_type(text);
     return found != nullptr ? std::optional{found} : std::nullopt;
@@ -103,20 +103,20 @@ ScanSettings ScanOptions::parsed() const {
   return settings;
 }
 
-void add_scanned_nodes(CLI::App& command, ScanOptions& options) {
+void add_scanned_nodes(Command command, ScanOptions& options) {
   command.add_option("--nodes", options.nodes, "node-IDs to scan: 1..127, or a list such as 1,3,8..20")
-      ->check([](const std::string& text) {
+      .check([](const std::string& text) {
         return parse_node_list(text).empty() ? "\"" + text + "\" is not a list of node-IDs" : std::string{};
       })
-      ->capture_default_str();
+      .show_default();
   add_timeout_option(command, options.times.timeout_ms);
   command.add_option("--listen", options.times.listen_ms, "minimum ms to listen for heartbeats")
-      ->check(CLI::Range(0, 600'000))
-      ->capture_default_str();
+      .range(0, 600'000)
+      .show_default();
 }
 
-CLI::Option* add_count_option(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& number,
-                              const std::string& description) {
+Option add_count_option(Command command, const std::string& name, std::optional<std::uint32_t>& number,
+                        const std::string& description) {
   const auto parse = [](const std::string& text) { return parse_count(text); };
   return add_parsed(command, name, number, parse, "a number; expected 31, 0x1F or 1Fh", description);
 }

@@ -1,7 +1,6 @@
 /// Common arguments of the commands at a live bus.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <optional>
@@ -10,6 +9,7 @@
 
 #include "online/scan.hpp"
 #include "online/sdo_access.hpp"
+#include "shared/command_line.hpp"
 
 namespace edsc {
 
@@ -21,25 +21,25 @@ struct NodeSettings {
 };
 
 /// `BUS`
-CLI::Option* add_bus_argument(CLI::App& command, std::string& bus);
+Option add_bus_argument(Command command, std::string& bus);
 
 /// `NODE`: 1..127.
-CLI::Option* add_node_argument(CLI::App& command, std::uint8_t& node);
+Option add_node_argument(Command command, std::uint8_t& node);
 
 /// `BUS NODE`
-void add_node_arguments(CLI::App& command, NodeSettings& settings);
+void add_node_arguments(Command command, NodeSettings& settings);
 
 /// `--timeout MS`
-CLI::Option* add_timeout_option(CLI::App& command, unsigned& milliseconds);
+Option add_timeout_option(Command command, unsigned& milliseconds);
 
 /// `--step MS` of Fastscan
-CLI::Option* add_step_option(CLI::App& command, unsigned& milliseconds);
+Option add_step_option(Command command, unsigned& milliseconds);
 
 /// `--format text|json`
-CLI::Option* add_format_option(CLI::App& command, std::string& format);
+Option add_format_option(Command command, std::string& format);
 
 /// `--type TYPE`
-CLI::Option* add_type_option(CLI::App& command, const canopen::DataTypeRow*& type);
+Option add_type_option(Command command, const canopen::DataTypeRow*& type);
 
 /// Parses a number: 31, 0x1F or 1Fh. Nothing if it is invalid, or above `most`.
 [[nodiscard]] std::optional<std::uint32_t> parse_count(const std::string& text, std::uint32_t most = 0xFFFF'FFFF);
@@ -69,10 +69,10 @@ struct ScanOptions {
 };
 
 /// `--nodes`, `--timeout` and `--listen`.
-void add_scanned_nodes(CLI::App& command, ScanOptions& options);
+void add_scanned_nodes(Command command, ScanOptions& options);
 
 /// Adds an option or argument with such a number.
-CLI::Option* add_count_option(CLI::App& command, const std::string& name, std::optional<std::uint32_t>& number,
-                              const std::string& description);
+Option add_count_option(Command command, const std::string& name, std::optional<std::uint32_t>& number,
+                        const std::string& description);
 
 }  // namespace edsc

@@ -98,8 +98,8 @@ std::ptrdiff_t read_some(int descriptor, char* to, std::size_t most) {
 
 }  // namespace
 
-CLI::Option* add_log_options(CLI::App& command, LogSettings& settings) {
-  CLI::Option* const log = command.add_option(
+Option add_log_options(Command command, LogSettings& settings) {
+  const Option log = command.add_option(
       "LOG", settings.log,
       "log of candump, CANoe (asc), PCAN-View (trc), tcpdump or Wireshark; \"-\" for standard input");
   std::vector<std::string> formats{automatic};
@@ -112,7 +112,7 @@ CLI::Option* add_log_options(CLI::App& command, LogSettings& settings) {
   command
       .add_option("--node", settings.nodes,
                   "ID=FILE: EDS of a node, or FILE: a DCF with its node-ID; may be given more than once")
-      ->allow_extra_args(false);
+      .one_value_each();
   command.add_option("--interface", settings.interface, "frames of this interface or channel only, such as can0");
   settings.color.add_to(command);
   return log;

@@ -1,7 +1,6 @@
 /// What the commands that read logs share: options, EDS files of the nodes, and input.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -13,6 +12,7 @@
 #include "decode/log/log_line.hpp"
 #include "decode/log/print_message.hpp"
 #include "load/load_device.hpp"
+#include "shared/command_line.hpp"
 #include "shared/common_options.hpp"
 
 namespace edsc {
@@ -29,7 +29,7 @@ struct LogSettings {
 };
 
 /// LOG, --log-format, --node, --interface, --color.
-CLI::Option* add_log_options(CLI::App& command, LogSettings& settings);
+Option add_log_options(Command command, LogSettings& settings);
 
 struct LogNodes {
   std::map<std::uint8_t, std::unique_ptr<LoadedDevice>> loaded;  ///< by node-ID

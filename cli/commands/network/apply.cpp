@@ -111,7 +111,7 @@ int run_apply(const Settings& settings) {
 
 }  // namespace
 
-void add_network_apply_options(CLI::App& command, int& exit_code) {
+void add_network_apply_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_apply, exit_code);
   add_live_network_options(command, settings);
   command.add_flag("--store", settings.apply.store, "store the parameters of the nodes (1010h) after success");
@@ -119,8 +119,8 @@ void add_network_apply_options(CLI::App& command, int& exit_code) {
   add_choice(command, "--on-error", settings.on_error, {"abort", "continue", "retry"},
              "after a node that cannot be configured: abort, continue with the others, or retry");
   command.add_option("--retries", settings.apply.retries, "of --on-error retry, for each node")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
+      .range(1, 100)
+      .show_default();
 }
 
 }  // namespace edsc

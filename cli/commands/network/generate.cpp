@@ -56,14 +56,14 @@ int generate(const Settings& settings) {
 
 }  // namespace
 
-void add_network_generate_options(CLI::App& command, int& exit_code) {
+void add_network_generate_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, "", generate, exit_code);
-  command.add_option("FILE", settings.path, "network file (JSON)")->required();
-  command.add_option("-o,--output", settings.output, "folder for the files")->required();
-  auto* depfile =
+  command.add_option("FILE", settings.path, "network file (JSON)").required();
+  command.add_option("-o,--output", settings.output, "folder for the files").required();
+  const Option depfile =
       command.add_option("--depfile", settings.depfile, "write what the files depend on, for make and ninja");
   command.add_option("--depfile-target", settings.depfile_target, "target of the dependencies (default: the files)")
-      ->needs(depfile);
+      .needs(depfile);
   command.add_flag("-v,--verbose", settings.verbose, "print the names of the files that are written");
   settings.color.add_to(command);
 }

@@ -79,13 +79,13 @@ std::string check_rule(const std::string& id) {
   return fmt::format("{} (see edsc check --list-rules)", unknown_rule(id));
 }
 
-void add_network_check_options(CLI::App& command, int& exit_code) {
+void add_network_check_options(Command command, int& exit_code) {
   CheckSettings& settings = define_command(command, "", check, exit_code);
-  command.add_option("FILE", settings.paths, "network files (JSON)")->required();
+  command.add_option("FILE", settings.paths, "network files (JSON)").required();
   add_choice(command, "--format", settings.format, {"text", "json", "sarif"}, "text, json or sarif");
   command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
-      ->allow_extra_args(false)
-      ->check(check_rule);
+      .one_value_each()
+      .check(check_rule);
   command.add_flag("--strict", settings.strict, "warnings count as errors; notes do not");
   command.add_flag("--times", settings.times, "print period, worst-case response time and deadline of each message");
   settings.color.add_to(command);
@@ -127,7 +127,7 @@ int members(const MembersSettings& settings) {
   return exit_fine;
 }
 
-void add_members_options(CLI::App& command, int& exit_code) {
+void add_members_options(Command command, int& exit_code) {
   MembersSettings& settings = define_command(command, "", members, exit_code);
   add_choice(command, "--format", settings.format, {"text", "json"}, "text or json");
 }
@@ -152,11 +152,10 @@ constexpr ActionRow actions[] = {
 
 }  // namespace
 
-void add_network_options(CLI::App& command, int& exit_code) {
+void add_network_options(Command command, int& exit_code) {
   command.footer(examples);
-  command.require_subcommand(1);
   for (const ActionRow& row : actions) {
-    row.add_options(*command.add_subcommand(row.name, row.description), exit_code);
+    row.add_options(command.add_subcommand(row.name, row.description), exit_code);
   }
 }
 

@@ -58,15 +58,15 @@ int run_scan(const Settings& settings) {
 
 }  // namespace
 
-void add_network_scan_options(CLI::App& command, int& exit_code) {
+void add_network_scan_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_scan, exit_code);
   add_bus_argument(command, settings.bus);
   command.add_option("--sheets", settings.folder, "folder with EDS, DCF and XDD files, and its subfolders")
-      ->required()
-      ->type_name("FOLDER");
+      .required()
+      .type_name("FOLDER");
   command.add_option("-o,--output", settings.output, "network file to write (default: standard output)")
-      ->type_name("FILE");
-  command.add_option("--bit-rate", settings.bit_rate, "kbit/s of the bus")->check(CLI::Range(10, 1000));
+      .type_name("FILE");
+  command.add_option("--bit-rate", settings.bit_rate, "kbit/s of the bus").range(10, 1000);
   add_scanned_nodes(command, settings.scan);
 }
 

@@ -160,19 +160,19 @@ int simulate(const Settings& settings) {
 
 }  // namespace
 
-void add_network_simulate_options(CLI::App& command, int& exit_code) {
+void add_network_simulate_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, simulate, exit_code);
-  command.add_option("FILE", settings.path, "network file (JSON)")->required();
+  command.add_option("FILE", settings.path, "network file (JSON)").required();
   add_parsed(command, "--for", settings.duration_us, parse_simulated_time, "a time, such as 10s, 500ms or 1h",
              "simulated time (default: 1min)");
   command.add_option("--fault", settings.faults, "fault to inject: " + fault_forms() + "; may be given more than once")
-      ->allow_extra_args(false);
+      .one_value_each();
   command.add_option("--seed", settings.seed, "of the phases and values; the same seed has the same result")
-      ->check(CLI::Range(std::uint32_t{1}, std::numeric_limits<std::uint32_t>::max()))
-      ->capture_default_str();
+      .range(std::uint32_t{1}, std::numeric_limits<std::uint32_t>::max())
+      .show_default();
   command.add_option("-o,--output", settings.output, "folder for the program (default: a temporary one)");
   command.add_option("--runtime", settings.include_folder, "include folder of the runtime (default: that of edsc)")
-      ->check(CLI::ExistingDirectory);
+      .existing_folder();
   add_choice(command, "--format", settings.format, {"text", "json"}, "text or json");
   settings.color.add_to(command);
 }

@@ -45,7 +45,7 @@ int run_verify(const LiveNetworkSettings& settings) {
 
 }  // namespace
 
-void add_network_verify_options(CLI::App& command, int& exit_code) {
+void add_network_verify_options(Command command, int& exit_code) {
   add_live_network_options(command, define_command(command, examples, run_verify, exit_code));
 }
 

@@ -86,9 +86,10 @@ TEST(ModesOfOperation, AreThoseOf6502hByRpdo) {
 
 TEST(ModesOfOperation, AreThoseOf6502hByAMappedRpdoThatRepeatsThem) {
   BareNode<cia402_drive::Device> device;
-  for (const char* request : {"605 23 01 14 01 05 03 00 80", "605 2F 01 14 02 FF 00 00 00", "605 2F 01 16 00 00 00 00 00",
-                              "605 23 01 16 01 08 00 60 60", "605 23 01 16 02 20 00 7A 60", "605 2F 01 16 00 02 00 00 00",
-                              "605 23 01 14 01 05 03 00 00"})
+  for (const char* request :
+       {"605 23 01 14 01 05 03 00 80", "605 2F 01 14 02 FF 00 00 00", "605 2F 01 16 00 00 00 00 00",
+        "605 23 01 16 01 08 00 60 60", "605 23 01 16 02 20 00 7A 60", "605 2F 01 16 00 02 00 00 00",
+        "605 23 01 14 01 05 03 00 00"})
     EXPECT_EQ(device.ask(request).substr(0, 6), "585 60") << request;
   std::int8_t expected = device.node.get(cia402_drive::od::modes_of_operation{});
   std::int32_t position = 0;
