@@ -50,7 +50,7 @@ CommandParts parts_below(const CLI::App& command, std::vector<std::string> path)
   parts.name = path.empty() ? std::string{} : path.back();
   parts.group = command.get_group();
   parts.description = command.get_description();
-  parts.examples = examples_of(command);
+  parts.example_lines = examples_of(command);
   for (const CLI::Option* option : command.get_options()) {
     OptionParts one{names_of(*option),        option->get_description(), value_of(*option),
                     option->get_positional(), option->get_required(),    option->get_items_expected_max() > 1};

@@ -31,7 +31,7 @@ struct CommandParts {
   std::vector<std::string> path;  ///< `lss`, `inquire`; empty for the program
   std::string group;              ///< its heading in the help
   std::string description;
-  std::string examples;  ///< the lines after `Examples:`
+  std::string example_lines;  ///< the lines after `Examples:`
   std::vector<OptionParts> options;
   std::vector<OptionParts> arguments;
   std::vector<CommandParts> subcommands;

@@ -91,7 +91,7 @@ void append_command(std::string& out, const CommandParts& command) {
     for (const OptionParts& argument : command.arguments) append_option(out, argument);
     for (const OptionParts& option : command.options) append_option(out, option);
   }
-  if (!command.examples.empty()) out += fmt::format(".PP\n.nf\n{}\n.fi\n", escaped(command.examples));
+  if (!command.example_lines.empty()) out += fmt::format(".PP\n.nf\n{}\n.fi\n", escaped(command.example_lines));
 }
 
 }  // namespace

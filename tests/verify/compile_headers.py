@@ -3,9 +3,9 @@
 
     compile_headers.py SOURCE_DIR EDSC
 
-Tests the headers of the runtime and those that edsc generates for the reference devices and the fixtures. Whether a generated
-header includes all that it needs is tested with g++, where it is the main file. The other compilers read all headers of a device
-twice, after those of the runtime, which they compile once. All headers also compile after `using namespace std;`: g++ reads those
+Tests the headers of the runtime and those that edsc generates for the reference devices and the fixtures. Whether a header
+includes all that it needs is tested with g++, where it is alone or the main file. The other compilers read all headers of the
+runtime, and all of a device, in one file. All headers also compile after `using namespace std;`: g++ reads those
 of the runtime and of all devices in one file, the other compilers those of each device. g++ also reads all headers in a project whose macros have one capital letter.
 """
 
@@ -78,12 +78,23 @@ def source_of(headers: list[str], path: Path, first: str = "") -> Path:
 
 
 def jobs_of_the_runtime(runtime: Path, compilers: list[Compiler], scratch: Path) -> list[Job]:
+    """Each header alone with g++; the other compilers read all headers in one file, where none is missing any more."""
+    headers = headers_below(runtime)
+    hosted = [header for header in headers if header.endswith(HOSTED_ONLY)]
+    of_devices = [header for header in headers if header not in hosted]
     jobs = []
-    for header in headers_below(runtime):
-        hosted = header.endswith(HOSTED_ONLY)
-        source = source_of([header], scratch / (header.replace("/", "-") + ".cpp"))
-        jobs += [Job(compiler, f"{header}, included twice", source, (runtime,), ("-fexceptions",) if hosted else ())
-                 for compiler in compilers if not (compiler == ARM_GCC and hosted)]
+    for compiler in compilers:
+        if compiler == GCC:
+            files = [[header] for header in headers]
+        elif compiler == ARM_GCC:
+            files = [of_devices]
+        else:
+            files = [of_devices, hosted]
+        for included in files:
+            source = source_of(included, scratch / f"{compiler.name}-{included[0].replace('/', '-')}.cpp")
+            extra = ("-fexceptions",) if set(included) & set(hosted) else ()
+            what = included[0] if len(included) == 1 else f"{len(included)} headers of the runtime"
+            jobs.append(Job(compiler, f"{what}, included twice", source, (runtime,), extra))
     return jobs
 
 
