@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds edsc and the demo, and runs it: generates eight devices and runs five of them with a master on a simulated bus.
+# Builds the demo and runs it: generates eight devices and runs five of them with a master on a simulated bus.
 set -euo pipefail
 cd "$(dirname "$0")"
 

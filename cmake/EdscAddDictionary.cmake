@@ -60,13 +60,17 @@ function(edsc_add_dictionary target)
     endif()
   endif()
 
+  set(generator edsc::edsc)
+  if(TARGET edsc_generator)
+    set(generator edsc_generator)
+  endif()
   # edsc does not write unchanged headers, to avoid needless recompilation; ninja compares the stamp.
   add_custom_command(
     OUTPUT ${stamp}
     BYPRODUCTS ${headers}
-    COMMAND edsc::edsc generate ${arguments}
+    COMMAND ${generator} generate ${arguments}
     COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
-    DEPENDS ${dependencies} edsc::edsc $<TARGET_FILE:edsc::edsc>
+    DEPENDS ${dependencies} ${generator} $<TARGET_FILE:${generator}>
     DEPFILE ${depfile}
     COMMENT "Generating ${arg_NAMESPACE} from ${arg_EDS}"
     VERBATIM)

@@ -1,0 +1,14 @@
+/// The program: it reads the command line, runs the chosen command and reports what failed.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "commands/commands.hpp"
+
+namespace edsc {
+
+/// Returns the exit code.
+int run_program(std::span<const CommandRow> commands, const std::string& version, int argc, char** argv);
+
+}  // namespace edsc
