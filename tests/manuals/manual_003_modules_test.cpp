@@ -123,7 +123,7 @@ TEST(Manual003Modules, UseTheFunctionCodesOfTheTable) {
   for (const unsigned node_id : {1u, 32u, 99u}) {
     SCOPED_TRACE(node_id);
     const auto can_id = [node_id](unsigned function_code) {
-      char text[8];
+      char text[16];
       std::snprintf(text, sizeof text, "%03X", function_code << 7 | node_id);
       return std::string{text};
     };
