@@ -196,6 +196,14 @@ TEST(Manual003Modules, StoreAndRestoreTheirIoSettings) {
   expect_stored(inputs, {{0x1800, 5, 2, 0, 1000}, {0x1017, 0, 2, 0, 250}});
 }
 
+// shows 003.72
+TYPED_TEST(EveryRunnableModule, ReportsThatItsMemoryCannotBeWritten) {
+  TypeParam failing{canopen::NodeId{5}, "no such folder/module.parameters"};
+  EXPECT_EQ(failing.ask(save), refused(0x1010, 1, 0x0606'0000));
+  EXPECT_EQ(failing.pass(0s), "085 00 50 81 02 00 00 00 00");
+  EXPECT_EQ(read(failing, 0x1003, 1), value_of(0x1003, 1, 4, 0x0002'5000));
+}
+
 // Digital and analog channels
 
 // shows 003.59, 003.134, 003.159

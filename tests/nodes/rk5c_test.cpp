@@ -309,6 +309,14 @@ TEST(Rk5cNode, KeepsWhatLssHasStoredBeyondPowerOff) {
   EXPECT_EQ(sensor.app->node().node_id(), canopen::NodeId{5});
 }
 
+// shows 004.19
+TEST(Rk5cNode, TellsThatItsMemoryCannotBeWritten) {
+  Sensor sensor{canopen::NodeId{5}, "no such folder/rk5c.parameters"};
+  sensor.ask("7E5 04 01 00 00 00 00 00 00");
+  EXPECT_EQ(sensor.ask("7E5 17 00 00 00 00 00 00 00"), "7E4 17 02 00 00 00 00 00 00");
+  EXPECT_EQ(sensor.ask(save), "585 80 10 10 01 00 00 06 06");
+}
+
 // shows 004.6
 TEST(Rk5cNode, TellsRevisionAndSerialNumberByLssAndIn1018h) {
   Sensor sensor;
