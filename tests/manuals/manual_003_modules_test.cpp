@@ -394,6 +394,23 @@ TEST(Manual003Modules, ShowTheMostSevereError) {
   EXPECT_TRUE(module.logged("ERR off"));
 }
 
+// shows 003.87, 003.88
+TEST(Manual003Modules, SetTheErrorValueOfEachAnalogOutputWhoseModeIs1) {
+  AnalogOutputs module;
+  constexpr std::uint32_t values[] = {0x1000, 0x2000, 0x3000, 0x4000};
+  for (std::uint8_t channel = 1; channel <= 4; ++channel) {
+    write(module, 0x6444, channel, 4, values[channel - 1]);
+  }
+  write(module, 0x6443, 3, 1, 0);
+  write(module, 0x100C, 0, 2, 100);
+  write(module, 0x100D, 0, 1, 1);
+  module.ask("705 R 1");
+  EXPECT_EQ(module.pass(100ms), "085 30 81 11 07 00 00 00 00");
+  for (std::uint8_t channel = 1; channel <= 4; ++channel) {
+    EXPECT_EQ(read(module, 0x6411, channel), value_of(0x6411, channel, 2, channel == 3 ? 0 : values[channel - 1]));
+  }
+}
+
 // shows 003.148, 003.149
 TEST(Manual003Modules, SetTheirErrorValuesAfterTheNodeLifeTimeOnly) {
   DigitalOutputs module;
