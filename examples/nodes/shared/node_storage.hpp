@@ -33,10 +33,13 @@ class NodeStorage {
     return true;
   }
   [[nodiscard]] bool begin(std::uint32_t size) {
+    if (fails_) return false;
     if (file_) return file_->begin(size);
     fresh_.clear();
     return true;
   }
+  /// Whether the memory cannot be written.
+  void fail(bool fails) { fails_ = fails; }
   [[nodiscard]] bool write(std::span<const std::uint8_t> bytes) {
     if (file_) return file_->write(bytes);
     fresh_.insert(fresh_.end(), bytes.begin(), bytes.end());
@@ -51,6 +54,7 @@ class NodeStorage {
  private:
   std::optional<canopen::FileStorage> file_;
   canopen::StorageState state_ = canopen::StorageState::empty;
+  bool fails_ = false;
   std::vector<std::uint8_t> image_;  ///< without a file
   std::vector<std::uint8_t> fresh_;  ///< the next image, until `commit`
 };
