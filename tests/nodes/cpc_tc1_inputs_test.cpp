@@ -115,7 +115,7 @@ TEST(CpcTc1Inputs, FollowsNmtCommandsByLocalControl) {
   EXPECT_EQ(drive.input("nmt sleep"), "?");
 }
 
-// shows 000.151
+// shows 000.151, 000.333, 000.349
 TEST(CpcTc1Inputs, TheVendorsSoftwareSetsThePersistentNodeIdAndBitRate) {
   QuietServo drive;
   EXPECT_EQ(drive.input("node-id 42"), "");

@@ -13,6 +13,7 @@
 namespace {
 
 using namespace cpc_tc1_bench;
+using namespace std::chrono_literals;
 
 constexpr std::uint32_t hardware_error = 0x0606'0000;
 constexpr std::uint32_t device_state = 0x0800'0022;
@@ -61,7 +62,7 @@ constexpr Row rows[] = {
 constexpr Parts all{true, true, true, true, true};
 constexpr Parts none{};
 
-// shows 000.137, 000.138, 000.158
+// shows 000.137, 000.138, 000.158, 000.266, 000.352
 TEST(CpcTc1Storage, EachSubIndexSavesItsParameters) {
   for (const auto& [sub_index, stored] : rows) {
     SCOPED_TRACE(sub_index);
@@ -74,7 +75,7 @@ TEST(CpcTc1Storage, EachSubIndexSavesItsParameters) {
   }
 }
 
-// shows 000.137, 000.139, 000.140
+// shows 000.137, 000.139, 000.140, 000.270
 TEST(CpcTc1Storage, EachSubIndexRestoresItsParametersWithTheNextReset) {
   for (const auto& [sub_index, restored] : rows) {
     SCOPED_TRACE(sub_index);
@@ -89,6 +90,17 @@ TEST(CpcTc1Storage, EachSubIndexRestoresItsParametersWithTheNextReset) {
     EXPECT_EQ(changed(drive), kept);
     drive.power_cycle();
     EXPECT_EQ(changed(drive), kept);
+  }
+}
+
+// shows 000.141, 000.266, 000.270
+TEST(CpcTc1Storage, EachSubIndexReads1) {
+  QuietServo drive;
+  for (std::uint8_t sub_index = 1; sub_index <= 6; ++sub_index) {
+    for (const std::uint16_t index : {std::uint16_t{0x1010}, std::uint16_t{0x1011}}) {
+      EXPECT_EQ(drive.ask(manual::sdo("605", 0x40, index, sub_index, 0)),
+                manual::sdo("585", 0x43, index, sub_index, 0x0000'0001));
+    }
   }
 }
 
@@ -132,6 +144,7 @@ TEST(CpcTc1Storage, EachSubIndexIsRejectedWhileTheMotorIsOn) {
   }
 }
 
+// shows 000.352
 TEST(CpcTc1Storage, TheControlwordIsACommandAndNotStored) {
   QuietServo drive;
   EXPECT_EQ(drive.ask("605 2B 40 60 00 06 00 00 00"), "585 60 40 60 00 00 00 00 00");
@@ -167,6 +180,29 @@ TEST(CpcTc1Storage, AnotherProcessFindsTheStoredData) {
   EXPECT_EQ(again.app->vendor_values().program, (std::vector<std::uint8_t>{1, 2, 3, 4}));
   EXPECT_TRUE(again.logged("RS-232 19200 bit/s, program 4 bytes, error mapping off, 0 bytes"));
   remove();
+}
+
+// shows 000.41
+TEST(CpcTc1Storage, AStoredHeartbeatTimeStartsTheHeartbeatWithTheBootUpMessage) {
+  QuietServo drive;
+  EXPECT_EQ(drive.ask("605 2B 17 10 00 F4 01 00 00"), "585 60 17 10 00 00 00 00 00 | 705 7F");
+  EXPECT_EQ(drive.save(2), manual::taken(0x1010, 2));
+  EXPECT_EQ(drive.power_cycle(), "705 00");
+  EXPECT_EQ(drive.pass(499ms), "");
+  EXPECT_EQ(drive.pass(1ms), "705 7F");
+}
+
+// shows 000.106, 000.144, 000.219
+TEST(CpcTc1Storage, APowerCycleRestartsTheDrive) {
+  Servo drive;
+  drive.enable();
+  drive.input("fault 0x2310 0x02");
+  EXPECT_EQ(drive.power_cycle(), "705 00");
+  EXPECT_EQ(drive.app->node().state(), canopen::NmtState::pre_operational);
+  EXPECT_EQ(drive.pass(1s), "");
+  EXPECT_EQ(drive.ask("605 40 01 10 00 00 00 00 00"), "585 4F 01 10 00 00 00 00 00");
+  EXPECT_EQ(drive.ask("605 40 00 12 01 00 00 00 00"), "585 43 00 12 01 05 06 00 00");
+  EXPECT_EQ(drive.ask("605 40 00 12 02 00 00 00 00"), "585 43 00 12 02 85 05 00 00");
 }
 
 }  // namespace

@@ -150,7 +150,19 @@ TEST(CpcTc1Node, GetsItsNodeIdAndItsBitRateByLssAndKeepsThem) {  // chapter 13; 
   for (const char* suffix : {"", ".application", ".lss"}) std::filesystem::remove(store + suffix);
 }
 
-// shows 000.150
+// shows 000.286
+TEST(CpcTc1Node, TheMasterSelectsItByItsIdentityAndAssignsANodeId) {
+  bench::NodeBench<cpc_tc1_node::CpcTc1> drive;
+  EXPECT_EQ(drive.ask("7E5 40 F5 03 00 00 00 00 00"), "");                             // 1018h:01
+  EXPECT_EQ(drive.ask("7E5 41 01 00 00 00 00 00 00"), "");                             // 1018h:02
+  EXPECT_EQ(drive.ask("7E5 42 01 00 00 00 00 00 00"), "");                             // 1018h:03
+  EXPECT_EQ(drive.ask("7E5 43 34 12 01 15 00 00 00"), "7E4 44 00 00 00 00 00 00 00");  // 1018h:04
+  EXPECT_EQ(drive.ask("7E5 11 2A 00 00 00 00 00 00"), "7E4 11 00 00 00 00 00 00 00");
+  EXPECT_EQ(drive.ask(lss_waiting), "");
+  EXPECT_EQ(drive.ask("000 82 05"), "72A 00");
+}
+
+// shows 000.150, 000.350
 TEST(CpcTc1Node, TakesTheBitRatesOfChapter13AndNoOther) {
   bench::NodeBench<cpc_tc1_node::CpcTc1> drive;
   drive.ask(lss_configuration);
