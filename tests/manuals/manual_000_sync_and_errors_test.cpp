@@ -136,7 +136,7 @@ TEST(Manual000, SetsTheGenericErrorWithEveryOther) {
 
 // SYNC
 
-// shows 000.118, 000.121..000.123, 000.156, 000.157, 000.234, 000.237
+// shows 000.118, 000.121..000.123, 000.156, 000.157, 000.234, 000.237, 000.353
 TEST(Manual000, ProducesSyncEvery1006hMicroseconds) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 2F 19 10 00 03 00 00 00"), "585 60 19 10 00 00 00 00 00");
@@ -191,7 +191,7 @@ TEST(Manual000, HasReservedCounterOverflowValues) {
   }
 }
 
-// shows 000.126, 000.127, 000.165
+// shows 000.126, 000.127, 000.165, 000.353
 TEST(Manual000, LooksAtTheLengthOfSyncNotAtItsCounter) {
   Drive drive;
   start_with(drive, 0x1800, 1);
