@@ -87,6 +87,22 @@ TEST(CpcTc1Inputs, ExternalEnableIsBit16Of1002h) {
   EXPECT_EQ(drive.ask(read_status), "585 43 02 10 00 50 02 01 01");
 }
 
+// shows 000.354
+TEST(CpcTc1Inputs, Bit24Of1002hIsSpeedIsZeroOfProfileVelocityMode) {
+  Servo drive;
+  drive.input("mode 3");
+  drive.enable();
+  for (const char* target : {"E8 03 00 00", "00 00 00 00", "18 FC FF FF", "00 00 00 00"}) {  // 1000, 0, -1000, 0
+    drive.ask("405 0F 00 " + std::string{target});
+    drive.pass(1s);
+    const bool rests = drive.app->axis().velocity() == 0;
+    EXPECT_EQ(rests, std::string{target} == "00 00 00 00");
+    EXPECT_EQ((drive.statusword() & 0x1000) != 0, rests);
+    EXPECT_EQ((drive.status() & 0x0100'0000) != 0, rests);
+    EXPECT_EQ(drive.status() & 0xFEC0'0000, 0u);  // reserved bits
+  }
+}
+
 // shows 000.103, 000.105, 000.108
 TEST(CpcTc1Inputs, AnErrorThatIsGoneLeavesTheRegisterAndTheBytesOfTheOther) {
   QuietServo drive;
