@@ -197,6 +197,11 @@ class CpcTc1 : private BeforeNode, public Base<CpcTc1<B>, B> {
 
   // Inputs. Call `on_time` after them.
 
+  /// The mode of the vendor's software: 1, 3 or 8. Returns false if the drive does not have it.
+  [[nodiscard]] bool select_mode(std::int8_t wanted) {
+    drive_.select(wanted);
+    return drive_.supports(wanted);
+  }
   /// The digital input External Enable.
   void set_external_enable(bool on) {
     external_enable_ = on;
@@ -282,8 +287,7 @@ class CpcTc1 : private BeforeNode, public Base<CpcTc1<B>, B> {
   [[nodiscard]] bool take_motion(const nodes::InputLine& line) {
     if (line.is("mode", 1)) {
       const auto wanted = line.number<std::int8_t>(1);
-      if (wanted) drive_.select(*wanted);
-      return wanted && drive_.supports(*wanted);
+      return wanted && select_mode(*wanted);
     }
     if (line.is("enable", 1)) {
       const auto on = line.on_or_off(1);
