@@ -39,7 +39,7 @@ namespace nodes {
 ///     void abort_connection(std::int16_t code)     the same
 ///     void restarted()                             power-on, or an NMT reset
 ///     void on_state(canopen::NmtState state)       an NMT state is entered
-///     bool take_line(const InputLine& line)        its own inputs
+///     bool take_line(const InputLine& line)        its own inputs, or with the time as second argument
 /// `node_id` is the node-ID at power-on; the handlers are passed to the node. The surroundings must outlive it.
 template <class Self, class Device, canopen::Bus B, canopen::cia402::Options options, class... Handlers>
 class DriveNode {
@@ -94,6 +94,7 @@ class DriveNode {
   bool input(const InputLine& line, canopen::TimePoint now) {
     bool taken = take(line);
     if constexpr (requires { self().take_line(line); }) taken = taken || self().take_line(line);
+    if constexpr (requires { self().take_line(line, now); }) taken = taken || self().take_line(line, now);
     on_time(now);
     return taken;
   }

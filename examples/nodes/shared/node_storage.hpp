@@ -33,10 +33,13 @@ class NodeStorage {
     return true;
   }
   [[nodiscard]] bool begin(std::uint32_t size) {
+    if (fails_) return noted(false);
     if (file_) return noted(file_->begin(size));
     fresh_.clear();
     return true;
   }
+  /// Whether the memory cannot be written.
+  void fail(bool fails) { fails_ = fails; }
   [[nodiscard]] bool write(std::span<const std::uint8_t> bytes) {
     if (file_) return noted(file_->write(bytes));
     fresh_.insert(fresh_.end(), bytes.begin(), bytes.end());
@@ -57,7 +60,8 @@ class NodeStorage {
     return succeeded;
   }
 
-  bool failed_ = false;
+  bool fails_ = false;   ///< now
+  bool failed_ = false;  ///< since the last `take_failure`
   std::optional<canopen::FileStorage> file_;
   canopen::StorageState state_ = canopen::StorageState::empty;
   std::vector<std::uint8_t> image_;  ///< without a file

@@ -33,12 +33,13 @@ class SimulatedAxis {
     if (on == enabled_) return;
     enabled_ = on;
     demand_ = position_;
+    added_ = 0;
     course_ = Course::stop;
     deceleration_ = data_.highest_acceleration;
   }
   void move_to(std::int32_t position, const canopen::cia402::Profile& profile) {
     course_ = Course::position;
-    target_ = position;
+    target_ = position + added_;
     take(profile);
     wanted_ = std::min(profile.velocity * data_.velocity_unit, data_.highest_velocity);
   }
@@ -53,7 +54,7 @@ class SimulatedAxis {
   }
   void follow(std::int32_t position) {
     course_ = Course::follow;
-    target_ = position;
+    target_ = position + added_;
   }
   void apply_torque(std::int16_t torque) {
     course_ = Course::torque;
@@ -89,6 +90,7 @@ class SimulatedAxis {
     if (enabled_) {
       if (blocked_ && course_ == Course::torque) demand_velocity_ = 0;
       advance(seconds);
+      add_motion(seconds);
     } else {
       demand_velocity_ = blocked_ ? 0 : towards(demand_velocity_, 0, coasting * seconds);
       demand_ = position_ + demand_velocity_ * seconds;
@@ -107,8 +109,11 @@ class SimulatedAxis {
     return (enabled_ && on_its_way) || demand_velocity_ != 0 || velocity_ != 0;
   }
   [[nodiscard]] std::int32_t position() const { return rounded(position_); }
-  [[nodiscard]] std::int32_t velocity() const { return rounded(velocity_ / data_.velocity_unit); }
-  [[nodiscard]] std::int32_t position_demand() const { return rounded(demand_); }
+  [[nodiscard]] std::int32_t velocity() const {
+    const double added = enabled_ && !blocked_ ? added_velocity_ : 0;
+    return rounded((velocity_ + added) / data_.velocity_unit);
+  }
+  [[nodiscard]] std::int32_t position_demand() const { return rounded(demand_ - added_); }
   [[nodiscard]] std::int32_t velocity_demand() const {
     const double units = demand_velocity_ / data_.velocity_unit;
     return rounded(units > 0 ? std::ceil(units) : std::floor(units));
@@ -145,6 +150,8 @@ class SimulatedAxis {
   void probe(unsigned number, bool on) { probed_[number == 2][on] = position(); }
   /// Blocks or releases the shaft.
   void block(bool blocked) { blocked_ = blocked; }
+  /// Adds a velocity to the commanded motion of a motor with power, in increments per second.
+  void add_velocity(double velocity) { added_velocity_ = velocity; }
   /// Holds or releases switches.
   void hold(std::uint32_t inputs, bool down) { held_ = down ? held_ | inputs : held_ & ~inputs; }
 
@@ -203,6 +210,13 @@ class SimulatedAxis {
     demand_ += demand_velocity_ * seconds;
   }
 
+  void add_motion(double seconds) {
+    const double way = added_velocity_ * seconds;
+    demand_ += way;
+    target_ += way;
+    added_ += way;
+  }
+
   /// Advances with the highest velocity that can still stop at the target, limited by the profile.
   void advance_to_target(double seconds) {
     const double way = target_ - demand_;
@@ -233,7 +247,9 @@ class SimulatedAxis {
   double demand_ = 0;
   double demand_velocity_ = 0;
   double target_ = 0;
-  double wanted_ = 0;  ///< target velocity
+  double added_ = 0;           ///< position demand that `add_velocity` has added since the motor has power
+  double added_velocity_ = 0;  ///< increments per second
+  double wanted_ = 0;          ///< target velocity
   double acceleration_ = 0;
   double deceleration_ = 0;
   std::int64_t turns_ = 0;

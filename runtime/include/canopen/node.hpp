@@ -252,6 +252,10 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// error of the application sets, none for an error without bits. EMCY 0000h is sent with the remaining bits, unless
   /// no error had set `bits`.
   void emergency_over(ErrorRegister bits) { emergencies().end(host(), bits); }
+  /// The same, with the manufacturer-specific bytes of EMCY 0000h for the errors that remain.
+  void emergency_over(ErrorRegister bits, const EmergencyInfo& remaining) {
+    emergencies().end(host(), bits, remaining);
+  }
 
   /// Returns the number of EMCYs lost since power-on because too many were waiting while the bus had no room, the
   /// inhibit time 1015h ran or the node was Stopped. 1003h, if it exists, records them nevertheless. At most 65,535.

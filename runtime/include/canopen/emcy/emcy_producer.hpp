@@ -57,6 +57,14 @@ class EmergencyProducer {
     note_reset(store);
     return true;
   }
+  /// The same, with manufacturer-specific bytes of the errors that remain.
+  bool gone(ObjectStore<Device>& store, ErrorRegister bits, const EmergencyInfo& remaining) {
+    const std::uint8_t held = held_by(bits);
+    if ((application_bits_ & (held == unnamed ? 0xFF : held)) == 0) return false;
+    application_bits_ &= static_cast<std::uint8_t>(~unsigned{held});
+    note(store, emergency_code::reset, remaining);
+    return true;
+  }
 
   /// Reports an error that a service has detected.
   void appeared(ObjectStore<Device>& store, ServiceError error) {

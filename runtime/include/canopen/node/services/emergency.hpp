@@ -89,6 +89,10 @@ class Emergency : public ServiceDefaults<Emergency<Device>> {
   void end(Host& host, ErrorRegister bits) {
     if (producer_.gone(host.store(), bits)) host.attend();
   }
+  template <class Host>
+  void end(Host& host, ErrorRegister bits, const EmergencyInfo& remaining) {
+    if (producer_.gone(host.store(), bits, remaining)) host.attend();
+  }
   /// Ends an error that a service has detected.
   template <class Host>
   void end(Host& host, ServiceError error) {
