@@ -51,7 +51,7 @@ TEST(Ezd1136Node, MovesInPulsesHundredthsOfATurnPerSecondAndTurnsPerSecondSquare
   EXPECT_EQ(drive.get<od::velocity_actual_value>(), 1'000);
   const std::int32_t from = drive.app->axis().position();
   drive.pass(1s);
-  EXPECT_EQ(drive.app->axis().position() - from, 100'000);  // pulses: 10 turns
+  EXPECT_EQ(drive.app->axis().position() - from, 40'000);  // pulses of 20F2h: 10 turns
 }
 
 // shows 001.75
