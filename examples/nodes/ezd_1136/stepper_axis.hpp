@@ -64,7 +64,7 @@ class StepperAxis : public nodes::SimulatedAxis {
     if (on != powered_) {
       powered_ = on;
       torque_demand_ = 0;
-      rests_for_ = presses_for_ = {};
+      rests_for_ = locked_for_ = presses_for_ = {};
       command_.reset();
       take_position_as_demand();
     }
