@@ -235,6 +235,35 @@ TEST(Manual001, StatesItsOrderCodeVersionAndProfile) {
   EXPECT_EQ(drive.ask("605 40 00 10 00 00 00 00 00").substr(16), "92 01 04 00");       // profile 402
 }
 
+// shows 001.136, 001.137
+TEST(Manual001, MapsOneObjectAsInTheFigures) {
+  struct Figure {
+    std::uint16_t communication;
+    std::uint16_t mapping;
+    std::uint32_t cob_id;
+    std::uint32_t object;
+  };
+  constexpr Figure figures[] = {{0x1400, 0x1600, 0x205, 0x6040'0010}, {0x1800, 0x1A00, 0x185, 0x6041'0010}};
+  Drive drive;
+  for (const auto& [communication, mapping, cob_id, object] : figures) {
+    write(drive, communication, 1, 4, 0x8000'0000 | cob_id);
+    EXPECT_EQ(write(drive, mapping, 0, 1, 0), taken(mapping, 0));
+    EXPECT_EQ(write(drive, mapping, 1, 4, object), taken(mapping, 1));
+    for (std::uint8_t sub_index = 2; sub_index <= 4; ++sub_index) {
+      EXPECT_EQ(write(drive, mapping, sub_index, 4, 0), taken(mapping, sub_index));
+    }
+    EXPECT_EQ(write(drive, mapping, 0, 1, 1), taken(mapping, 0));
+    write(drive, communication, 1, 4, cob_id);
+    EXPECT_EQ(drive.ask(sdo("605", 0x40, mapping, 0, 0)), sdo("585", 0x4F, mapping, 0, 1));
+    EXPECT_EQ(drive.ask(sdo("605", 0x40, mapping, 1, 0)), sdo("585", 0x43, mapping, 1, object));
+    EXPECT_EQ(drive.ask(sdo("605", 0x40, mapping, 4, 0)), sdo("585", 0x43, mapping, 4, 0));
+  }
+  drive.node.set<ezd_1136::od::statusword>(0x00F3);
+  EXPECT_EQ(drive.ask(bench::start).substr(0, 9), "185 F3 00");
+  EXPECT_EQ(drive.ask("205 11 22"), "");
+  EXPECT_EQ(drive.node.get<ezd_1136::od::controlword>(), 0x2211);
+}
+
 // shows 001.190
 TEST(Manual001, KeepsTheValuesOfItsGlobalVariables) {
   constexpr std::uint16_t variables[] = {0x21E0, 0x21E2, 0x21E4, 0x21E6, 0x21E8};
