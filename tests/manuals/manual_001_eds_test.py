@@ -3,8 +3,8 @@
 
     manual_001_eds_test.py SOURCE_DIR
 
-The tables are typed from the manual. A unit with a number, such as 0.01 RPS, is Unit and Factor. 6082h and 609Ah have units of
-the other table, P/S and P/S^2, which are those of the same list.
+The tables are typed from the manual. A unit with a number, such as 0.01 RPS, is Unit and Factor. 6082h and 609Ah have a unit
+in the mode table only, which prints P/S and P/S^2 for all speeds and accelerations.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ CONFIGURATION_PARAMETERS = {
 }
 MOTION_PARAMETERS = {
     "6064": "pulse", "606C": "0.01 RPS", "607A": "pulse", "607C": "pulse", "607Dsub1": "pulse", "607Dsub2": "pulse",
-    "6081": "0.01 RPS", "6082": "0.01 RPS", "6083": "RPS^2", "6084": "RPS^2", "6085": "RPS^2", "6099sub1": "0.01 RPS", "6099sub2": "0.01 RPS",
+    "6081": "0.01 RPS", "6082": "0.01 RPS", "6083": "RPS^2", "6084": "RPS^2", "6085": "RPS^2", "6099sub1": "0.01 RPS",
+    "6099sub2": "0.01 RPS",
     "609A": "RPS^2", "60FF": "0.01 RPS",
 }
 CHAPTERS = {"100C": "ms", "1017": "ms", "1800sub3": "100 us", "1801sub3": "100 us", "1802sub3": "100 us",

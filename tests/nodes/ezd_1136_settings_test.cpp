@@ -218,6 +218,29 @@ TEST(Ezd1136Settings, AppliesTheTorqueOf6071hWith20CEh5) {
   EXPECT_EQ(drive.read(0x6078), 0);
 }
 
+// shows 001.199
+TEST(Ezd1136Settings, KeepsItsLimitsInEachControlMode) {
+  for (const std::uint32_t control : {0u, 1u, 5u}) {
+    SCOPED_TRACE(control);
+    Runner drive;
+    drive.put(0x607D, 2, 4, 1'000);
+    drive.put(0x20CE, 0, 2, control);
+    drive.put(0x6071, 0, 2, 500);
+    drive.run(500);
+    drive.input("pulses 4000");
+    drive.pass(1s);
+    EXPECT_NEAR(drive.read(0x6064), 1'000, 300);  // it brakes at the limit
+    EXPECT_EQ(drive.read(0x606C), 0);
+    EXPECT_EQ(drive.read(0x206C), 2'048);
+    drive.put(0x607D, 2, 4, 2'000'000'000);
+    drive.input("limit positive on");
+    const std::int32_t held = drive.read(0x6064);
+    drive.input("pulses 4000");
+    drive.pass(1s);
+    EXPECT_NEAR(drive.read(0x6064), held, 100);
+  }
+}
+
 // shows 001.167, 001.182, 001.219
 TEST(Ezd1136Settings, PressesUntilTheTorqueIs2103hWith20CEh6) {
   Stepper drive;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <ezd_1136/device.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -158,7 +159,8 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
       "  block on|off                     something keeps the shaft from turning\n"
       "  current AMPERES|off              a measured current for 2064h, instead of the simulated one\n"
       "  analogue VOLTS                   at the analogue input, for 2090h\n"
-      "  position N                       the shaft is turned by hand, without power\n"};
+      "  position N                       the shaft is turned by hand, without power\n"
+      "  fault CODE [BITS]                another error: 603Fh, EMCY; BITS of 1001h\n"};
 
   Ezd1136(B& bus, nodes::Surroundings& around)
       : Node{
@@ -332,6 +334,9 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
   void configure_axis() {
     axis_.terminals.configure(input_functions(), value<od::digital_input_logic>());
     const auto direction = value<od::running_direction>();
+    const auto lowest = value<od::software_position_limit<1>>();
+    const auto highest = value<od::software_position_limit<2>>();
+    const bool limited = lowest < highest;  // otherwise there is no limit, as in the modes of operation
     axis_.configure({.resolution = value<od::resolution_setting>(),
                      .motor_reversed = (direction & 1) != 0,
                      .encoder_reversed = (direction & 2) != 0,
@@ -343,7 +348,9 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
                      .reference_torque = value<od::reference_torque>(),
                      .check_torque = value<od::check_torque_timer>(),
                      .locked_above = value<od::lrd_threshold_speed>(),
-                     .locked_count = value<od::lrd_maximum_count>()});
+                     .locked_count = value<od::lrd_maximum_count>(),
+                     .lowest = limited ? lowest : std::numeric_limits<std::int32_t>::min(),
+                     .highest = limited ? highest : std::numeric_limits<std::int32_t>::max()});
     axis_.select(control_);
     axis_.operate(drive_.operates());
   }

@@ -25,18 +25,20 @@ enum class Control : std::uint16_t {
 
 /// The settings of the axis, in the units of their objects.
 struct StepperSettings {
-  std::uint32_t resolution = 4'000;   ///< 20F2h, pulses per turn
-  bool motor_reversed = false;        ///< bit 0 of 20C9h
-  bool encoder_reversed = false;      ///< bit 1 of 20C9h
-  bool closed_loop = true;            ///< 20D9h
-  std::uint32_t jump_speed = 0;       ///< 6082h, 0.01 turns per second
-  std::int16_t target_torque = 0;     ///< 6071h
-  std::uint32_t torque_slope = 0;     ///< 6087h, per second; 0: at once
-  std::int16_t torque_speed = 0;      ///< 211Fh, 0.01 turns per second
-  std::int16_t reference_torque = 0;  ///< 2103h; 0: pressing does not end a motion
-  std::int16_t check_torque = 0;      ///< 211Eh, ms
-  std::uint16_t locked_above = 0;     ///< 20DBh, 0.01 turns per second
-  std::uint16_t locked_count = 0;     ///< 20DDh, ms
+  std::uint32_t resolution = 4'000;                                 ///< 20F2h, pulses per turn
+  bool motor_reversed = false;                                      ///< bit 0 of 20C9h
+  bool encoder_reversed = false;                                    ///< bit 1 of 20C9h
+  bool closed_loop = true;                                          ///< 20D9h
+  std::uint32_t jump_speed = 0;                                     ///< 6082h, 0.01 turns per second
+  std::int16_t target_torque = 0;                                   ///< 6071h
+  std::uint32_t torque_slope = 0;                                   ///< 6087h, per second; 0: at once
+  std::int16_t torque_speed = 0;                                    ///< 211Fh, 0.01 turns per second
+  std::int16_t reference_torque = 0;                                ///< 2103h; 0: pressing does not end a motion
+  std::int16_t check_torque = 0;                                    ///< 211Eh, ms
+  std::uint16_t locked_above = 0;                                   ///< 20DBh, 0.01 turns per second
+  std::uint16_t locked_count = 0;                                   ///< 20DDh, ms
+  std::int32_t lowest = std::numeric_limits<std::int32_t>::min();   ///< 607Dh:01
+  std::int32_t highest = std::numeric_limits<std::int32_t>::max();  ///< 607Dh:02
 };
 
 /// Positions are pulses, velocities 0.01 turns per second, ramps turns per second squared.
@@ -211,6 +213,12 @@ class StepperAxis : public nodes::SimulatedAxis {
   [[nodiscard]] bool follows_modes() const { return control_ == Control::software || control_ == Control::pressing; }
   [[nodiscard]] bool is_stalled() const { return blocked_ || overloaded(); }
 
+  /// Whether a limit switch or a software limit blocks motion in this direction.
+  [[nodiscard]] bool is_limited(std::int32_t direction) const {
+    return canopen::cia402::limit_switch_blocks(inputs(), direction) ||
+           (direction > 0 && position() >= settings_.highest) || (direction < 0 && position() <= settings_.lowest);
+  }
+
   /// Whether the motor is to turn, faster than 20DBh, and stands.
   [[nodiscard]] bool is_held_up() const {
     if (!powered_) return false;
@@ -234,7 +242,7 @@ class StepperAxis : public nodes::SimulatedAxis {
     const double way = settings_.target_torque - torque_demand_;
     torque_demand_ += settings_.torque_slope == 0 ? way : std::clamp(way, -slope, slope);
     const std::int32_t free = std::abs(torque_demand()) - load_;
-    if (is_stalled() || canopen::cia402::limit_switch_blocks(inputs(), torque_demand())) {
+    if (is_stalled() || is_limited(torque_demand())) {
       Base::stop(0);
       if (Base::velocity_demand() == 0) give_up_the_way();
     } else if (free <= 0) {
@@ -247,9 +255,8 @@ class StepperAxis : public nodes::SimulatedAxis {
   }
 
   void step_pulses() {
-    if (!canopen::cia402::limit_switch_blocks(inputs(), pulse_target_ - Base::position_demand())) {
-      Base::follow(pulse_target_);
-    }
+    const std::int32_t target = std::clamp(pulse_target_, settings_.lowest, settings_.highest);
+    if (!is_limited(target - Base::position_demand())) Base::follow(target);
   }
 
   /// Makes the present position the demand.
