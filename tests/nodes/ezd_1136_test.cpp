@@ -70,7 +70,7 @@ struct QuickStop {
   State then;
 };
 
-// shows 001.51
+// shows 001.51, 001.228
 TEST(Ezd1136Node, StopsQuicklyAsItsOptionSays) {
   constexpr QuickStop rows[] = {
       {1, 100ms, State::switch_on_disabled},
@@ -138,7 +138,7 @@ TEST(Ezd1136Node, TakesItsModesAndNoOther) {
   EXPECT_EQ(drive.ask("605 40 02 65 00 00 00 00 00"), "585 43 02 65 00 25 00 00 00");
 }
 
-// shows 001.54, 001.57, 001.58, 001.59, 001.65, 001.104
+// shows 001.54, 001.57, 001.58, 001.59, 001.65, 001.104, 001.228
 TEST(Ezd1136Node, FollowsTheControlword) {
   Stepper drive;
   EXPECT_EQ(drive.statusword(), 0x0250);  // bit 4: voltage enabled; bit 5 is 0
@@ -195,7 +195,7 @@ TEST(Ezd1136Node, RunsWhenItIsEnabledInProfileVelocity) {
   EXPECT_EQ(drive.get<od::velocity_actual_value>(), -500);
 }
 
-// shows 001.56, 001.63, 001.68, 001.107, 001.152
+// shows 001.56, 001.63, 001.68, 001.107, 001.152, 001.228
 TEST(Ezd1136Node, HomesWithBit4AndTellsAnErrorInBit13) {
   Stepper drive;
   drive.set<od::homing_speeds<1>>(200);

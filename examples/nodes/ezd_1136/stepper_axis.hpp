@@ -219,13 +219,13 @@ class StepperAxis : public nodes::SimulatedAxis {
            (direction > 0 && position() >= settings_.highest) || (direction < 0 && position() <= settings_.lowest);
   }
 
-  /// Whether the motor is to turn, faster than 20DBh, and stands.
+  /// Whether the motor is to turn, faster than 20DBh, and does not.
   [[nodiscard]] bool is_held_up() const {
     if (!powered_) return false;
     const std::int32_t limit = settings_.locked_above;
     if (control_ == Control::torque) {
-      const bool stands = is_stalled() || (torque_demand() != 0 && std::abs(torque_demand()) <= load_);
-      return stands && torque_demand() != 0 && std::abs(settings_.torque_speed) > limit;
+      const bool is_at_rest = is_stalled() || (torque_demand() != 0 && std::abs(torque_demand()) <= load_);
+      return is_at_rest && torque_demand() != 0 && std::abs(settings_.torque_speed) > limit;
     }
     if (!is_stalled()) return false;
     const bool behind = Base::position_demand() != Base::position();
