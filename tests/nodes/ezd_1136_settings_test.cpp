@@ -457,6 +457,51 @@ TEST(Ezd1136Settings, BeginsAndEndsAMotionAtTheJumpingSpeed) {
   EXPECT_LT(seconds_at_10(300), seconds_at_10(0) - 200);  // ms
 }
 
+// shows 001.171, 001.229
+TEST(Ezd1136Settings, SmoothsTheMotionWithASmallerFilterCoefficient) {
+  struct Run {
+    std::int32_t velocity;  ///< 20 ms after a step of 5 turns per second
+    int behind;             ///< at constant speed, pulses
+    int end;                ///< ms until the position is reached
+  };
+  const auto run_with = [](std::uint32_t filter) {
+    Run run{};
+    Runner drive;
+    drive.put(0x20E0, 0, 2, filter);
+    drive.put(0x6083, 0, 4, 2'000);
+    drive.put(0x60FF, 0, 4, 500);
+    drive.enable();
+    drive.pass(20ms);
+    run.velocity = drive.app->axis().velocity();
+    drive.pass(1s);
+    EXPECT_NEAR(drive.app->axis().velocity(), 500, 2);
+    run.behind = drive.app->axis().position_demand() - drive.app->axis().position();
+    Stepper mover;
+    mover.put(0x20E0, 0, 2, filter);
+    mover.enable();
+    mover.put(0x607A, 0, 4, 4'000);
+    mover.control(0x3F);
+    while ((mover.read(0x6041) & 0x0400) == 0 && run.end < 5'000) {
+      mover.pass(1ms);
+      ++run.end;
+    }
+    EXPECT_EQ(mover.read(0x6064), 4'000);
+    return run;
+  };
+  const Run usual = run_with(50);
+  const Run smooth = run_with(30);
+  const Run smoothest = run_with(0);
+  EXPECT_EQ(usual.velocity, 500);
+  EXPECT_GT(usual.velocity, smooth.velocity);
+  EXPECT_GT(smooth.velocity, smoothest.velocity);
+  EXPECT_NEAR(usual.behind, 20, 5);
+  EXPECT_NEAR(smooth.behind, 420, 10);  // 20 ms more
+  EXPECT_NEAR(smoothest.behind, 1'020, 10);
+  EXPECT_LT(usual.end, smooth.end);
+  EXPECT_LT(smooth.end, smoothest.end);
+  EXPECT_EQ(run_with(700).end, usual.end);
+}
+
 // shows 001.147
 TEST(Ezd1136Settings, RaisesAlarm11WhileTheMotorIsNotConnected) {
   Stepper drive;

@@ -342,6 +342,7 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
                      .encoder_reversed = (direction & 2) != 0,
                      .closed_loop = value<od::motor_mode_setting>() == 1,
                      .jump_speed = value<od::end_velocity>(),
+                     .filter = value<od::filter_coefficient>(),
                      .target_torque = value<od::target_torque>(),
                      .torque_slope = value<od::torque_slope>(),
                      .torque_speed = value<od::torque_speed>(),

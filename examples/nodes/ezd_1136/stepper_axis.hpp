@@ -30,6 +30,7 @@ struct StepperSettings {
   bool encoder_reversed = false;                                    ///< bit 1 of 20C9h
   bool closed_loop = true;                                          ///< 20D9h
   std::uint32_t jump_speed = 0;                                     ///< 6082h, 0.01 turns per second
+  std::uint16_t filter = 50;                                        ///< 20E0h
   std::int16_t target_torque = 0;                                   ///< 6071h
   std::uint32_t torque_slope = 0;                                   ///< 6087h, per second; 0: at once
   std::int16_t torque_speed = 0;                                    ///< 211Fh, 0.01 turns per second
@@ -90,33 +91,37 @@ class StepperAxis : public nodes::SimulatedAxis {
     Base::stop(deceleration);
   }
   void set_position(std::int32_t position) {
+    const double behind = Base::position() - filtered_;
     Base::set_position(settings_.closed_loop ? position : position - (Base::position_demand() - Base::position()));
-    encoder_offset_ = std::int64_t{position} - encoder_sign_ * std::int64_t{Base::position()};
+    filtered_ = Base::position() - behind;
+    encoder_offset_ = std::int64_t{position} - encoder_sign_ * std::int64_t{motor_position()};
     pulse_target_ = position;
   }
 
   void step(canopen::Duration span) {
-    const std::int32_t before = Base::position();
+    const std::int32_t before = motor_position();
     if (powered_ && operates_) {
       if (control_ == Control::torque) step_torque(span);
       if (control_ == Control::pulses) step_pulses();
     }
     Base::step(span);
-    const double turned = (std::int64_t{Base::position()} - before) / turn_;
+    step_filter(span);
+    const double turned = (std::int64_t{motor_position()} - before) / turn_;
     shaft_ += settings_.motor_reversed ? -turned : turned;
-    rests_for_ = Base::moving() ? canopen::Duration{0} : std::min(rests_for_ + span, longest);
+    rests_for_ = moving() ? canopen::Duration{0} : std::min(rests_for_ + span, longest);
     locked_for_ = is_held_up() ? std::min(locked_for_ + span, longest) : canopen::Duration{0};
     step_pressing(span);
   }
 
+  [[nodiscard]] bool moving() const { return Base::moving() || (!is_stalled() && is_behind()); }
   [[nodiscard]] std::int32_t position() const {
     if (!settings_.closed_loop) return Base::position_demand();
-    const std::int64_t count = encoder_offset_ + encoder_sign_ * std::int64_t{Base::position()};
+    const std::int64_t count = encoder_offset_ + encoder_sign_ * std::int64_t{motor_position()};
     return static_cast<std::int32_t>(std::clamp<std::int64_t>(count, std::numeric_limits<std::int32_t>::min(),
                                                               std::numeric_limits<std::int32_t>::max()));
   }
   [[nodiscard]] std::int32_t velocity() const {
-    return settings_.closed_loop ? encoder_sign_ * Base::velocity() : Base::velocity_demand();
+    return settings_.closed_loop ? encoder_sign_ * motor_velocity() : Base::velocity_demand();
   }
   [[nodiscard]] std::uint32_t inputs() const { return terminals.bits() | (Base::inputs() & machine_switches); }
 
@@ -129,13 +134,14 @@ class StepperAxis : public nodes::SimulatedAxis {
     settings_ = settings;
     if (settings.resolution != before.resolution) {
       Base::set_data(axis_data(settings.resolution));
+      filtered_ = Base::position();
       turn_ = settings.resolution;
     }
     Base::jump_velocity = settings.jump_speed * (turn_ / 100);
     const int sign = settings.motor_reversed == settings.encoder_reversed ? 1 : -1;
     if (sign != encoder_sign_ || settings.closed_loop != before.closed_loop) {
       encoder_sign_ = sign;
-      encoder_offset_ = std::int64_t{place} - sign * std::int64_t{Base::position()};
+      encoder_offset_ = std::int64_t{place} - sign * std::int64_t{motor_position()};
     }
   }
   /// Selects what commands the motor; it stops first.
@@ -179,7 +185,9 @@ class StepperAxis : public nodes::SimulatedAxis {
   void hold(std::uint32_t switches, bool down) { terminals.set_switches(switches, down); }
   bool turn_to(std::int32_t position) {
     const std::int64_t place = settings_.closed_loop ? encoder_sign_ * (position - encoder_offset_) : position;
-    return Base::turn_to(static_cast<std::int32_t>(place));
+    const bool turned = Base::turn_to(static_cast<std::int32_t>(place));
+    if (turned) filtered_ = Base::position();
+    return turned;
   }
   void block(bool blocked) {
     blocked_ = blocked;
@@ -193,7 +201,10 @@ class StepperAxis : public nodes::SimulatedAxis {
   [[nodiscard]] bool overloaded() const { return load_ > rated_torque; }
   /// Pulses at the pulse input, negative in the other direction.
   void add_pulses(std::int32_t count) {
-    if (control_ == Control::pulses && powered_ && operates_) pulse_target_ += count;
+    if (control_ != Control::pulses || !powered_ || !operates_) return;
+    const std::int64_t target = std::int64_t{pulse_target_} + count;
+    pulse_target_ = static_cast<std::int32_t>(std::clamp<std::int64_t>(target, std::numeric_limits<std::int32_t>::min(),
+                                                                       std::numeric_limits<std::int32_t>::max()));
   }
   /// Turns of the shaft since power-on, positive for the direction without 20C9h.
   [[nodiscard]] double shaft_turns() const { return shaft_; }
@@ -209,6 +220,7 @@ class StepperAxis : public nodes::SimulatedAxis {
   static constexpr canopen::Duration longest = std::chrono::minutes{2};
   static constexpr std::uint32_t braking = 50;  ///< of a motor whose load exceeds its torque, turns per second squared
   static constexpr std::uint32_t machine_switches = 0x7;
+  static constexpr int no_delay = 50;  ///< value of 20E0h, from which on the filter does not delay the motor
 
   [[nodiscard]] bool follows_modes() const { return control_ == Control::software || control_ == Control::pressing; }
   [[nodiscard]] bool is_stalled() const { return blocked_ || overloaded(); }
@@ -235,6 +247,33 @@ class StepperAxis : public nodes::SimulatedAxis {
   void take_position_as_demand() {
     if (encoder_sign_ != 1 || encoder_offset_ != 0) set_position(position());
     pulse_target_ = Base::position();
+  }
+
+  /// The time constant of the filter: a smaller value is a longer delay. The default value does not delay.
+  [[nodiscard]] canopen::Duration delay() const {
+    const int below = no_delay - settings_.filter;
+    return std::chrono::milliseconds{std::max(below, 0)};
+  }
+  /// Whether the motor is behind its trajectory.
+  [[nodiscard]] bool is_behind() const { return motor_position() != Base::position(); }
+  /// The position of the motor in commanded pulses: its trajectory after the filter.
+  [[nodiscard]] std::int32_t motor_position() const {
+    return delay() == canopen::Duration{0} ? Base::position() : static_cast<std::int32_t>(std::lround(filtered_));
+  }
+  [[nodiscard]] std::int32_t motor_velocity() const {
+    return delay() == canopen::Duration{0} ? Base::velocity()
+                                           : static_cast<std::int32_t>(std::lround(filtered_velocity_));
+  }
+  void step_filter(canopen::Duration span) {
+    if (delay() == canopen::Duration{0}) {
+      filtered_ = Base::position();
+      return;
+    }
+    const double share =
+        std::min(1.0, static_cast<double>(span.count()) / static_cast<double>((delay() + span).count()));
+    const double way = is_stalled() ? 0 : (Base::position() - filtered_) * share;
+    filtered_ += way;
+    filtered_velocity_ = way / (static_cast<double>(span.count()) / 1e6) / (turn_ / 100);
   }
 
   void step_torque(canopen::Duration span) {
@@ -268,7 +307,7 @@ class StepperAxis : public nodes::SimulatedAxis {
   /// Ends a motion whose torque has been that of 2103h for 211Eh.
   void step_pressing(canopen::Duration span) {
     const bool presses = control_ == Control::pressing && powered_ && settings_.reference_torque > 0 &&
-                         torque() >= settings_.reference_torque && Base::moving();
+                         torque() >= settings_.reference_torque && moving();
     presses_for_ = presses ? presses_for_ + span : canopen::Duration{0};
     if (!presses || presses_for_ < std::chrono::milliseconds{settings_.check_torque}) return;
     give_up_the_way();
@@ -279,6 +318,8 @@ class StepperAxis : public nodes::SimulatedAxis {
   double turn_;
   int encoder_sign_ = 1;  ///< -1: the encoder counts against the commanded pulses
   std::int64_t encoder_offset_ = 0;
+  double filtered_ = 0;           ///< position of the motor, in commanded pulses
+  double filtered_velocity_ = 0;  ///< 0.01 turns per second
   double shaft_ = 0;
   bool powered_ = false;
   bool operates_ = false;
