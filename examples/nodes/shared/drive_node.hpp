@@ -32,6 +32,12 @@ namespace nodes {
   return "unknown";
 }
 
+/// The axis of a device: a class with the functions of SimulatedAxis. A drive with its own axis specializes it.
+template <class Device>
+struct AxisOf {
+  using type = SimulatedAxis;
+};
+
 /// The common part of the drives. `Self` derives from it and may have:
 ///     void operate(std::int8_t mode)               see canopen::cia402::NoApplication
 ///     std::uint16_t statusword(std::uint16_t)      the same
@@ -99,8 +105,10 @@ class DriveNode {
     return taken;
   }
 
-  [[nodiscard]] SimulatedAxis& axis() { return axis_; }
-  [[nodiscard]] const SimulatedAxis& axis() const { return axis_; }
+  using MotorAxis = typename AxisOf<Device>::type;
+
+  [[nodiscard]] MotorAxis& axis() { return axis_; }
+  [[nodiscard]] const MotorAxis& axis() const { return axis_; }
   [[nodiscard]] const Panel& panel() const { return panel_; }
   [[nodiscard]] const auto& drive() const { return drive_; }
   [[nodiscard]] auto& node() { return node_; }
@@ -144,8 +152,8 @@ class DriveNode {
 
   Surroundings& around_;
   Panel panel_;
-  SimulatedAxis axis_;
-  using DeviceControl = canopen::cia402::Drive<Device, SimulatedAxis, options>;
+  MotorAxis axis_;
+  using DeviceControl = canopen::cia402::Drive<Device, MotorAxis, options>;
   DeviceControl drive_{axis_};
   canopen::Node<Device, B, canopen::StateHandler<StateTeller>, canopen::LifeGuardingHandler<GuardTeller>,
                 canopen::HeartbeatHandler<HeartbeatTeller>, canopen::ErrorHandler<typename DeviceControl::ErrorTaker>,

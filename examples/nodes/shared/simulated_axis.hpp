@@ -27,6 +27,18 @@ class SimulatedAxis {
  public:
   explicit SimulatedAxis(const AxisData& data) : data_{data} {}
 
+  /// Changes the units. The position keeps its number; the motor turns as fast as before.
+  void set_data(const AxisData& data) {
+    const double ratio = data.increments_per_turn / data_.increments_per_turn;
+    for (double* const value : {&velocity_, &demand_velocity_, &wanted_, &acceleration_, &deceleration_})
+      *value *= ratio;
+    data_ = data;
+    turns_ = turns();
+  }
+
+  /// The velocity at which a motion to a position begins and ends without a ramp, in increments per second.
+  double jump_velocity = 0;
+
   // canopen::cia402::Axis
 
   void enable(bool on) {
@@ -222,9 +234,13 @@ class SimulatedAxis {
     const double way = target_ - demand_;
     const double step = deceleration_ * seconds;
     const double can_stop = step * (std::sqrt(0.25 + 2 * std::abs(way) / (step * seconds)) - 0.5);
-    demand_velocity_ = ramped(demand_velocity_, std::copysign(std::min(wanted_, can_stop), way), seconds);
+    const double goal = std::copysign(std::min(wanted_, std::max(can_stop, jump_velocity)), way);
+    const double jump = std::min(jump_velocity, std::abs(goal));
+    if (demand_velocity_ * goal >= 0 && std::abs(demand_velocity_) < jump) demand_velocity_ = std::copysign(jump, goal);
+    demand_velocity_ = ramped(demand_velocity_, goal, seconds);
     const double ahead = demand_velocity_ * seconds;
-    if (std::abs(way) <= std::abs(ahead) + arrived && std::abs(demand_velocity_) <= 2 * step && wanted_ != 0) {
+    if (std::abs(way) <= std::abs(ahead) + arrived && std::abs(demand_velocity_) <= std::max(2 * step, jump_velocity) &&
+        wanted_ != 0) {
       demand_ = target_;
       demand_velocity_ = 0;
       course_ = Course::stop;
