@@ -131,14 +131,17 @@ TEST(Manual002, TellsTheKindOfAnErrorInTheErrorRegister) {
 }
 
 // shows 002.30, 002.31, 002.121, 002.122, 002.189
-TEST(Manual002, KeepsTheLastErrorUntil0IsWritten) {
+TEST(Manual002, KeepsFiveErrorsUntil0IsWritten) {
   Drive drive;
-  drive.node.emergency(0x2310, ErrorRegister::current);
-  drive.pass(0s);
-  drive.node.emergency(0x3210, ErrorRegister::voltage);
-  drive.pass(0s);
-  EXPECT_EQ(drive.ask("605 40 03 10 00 00 00 00 00"), "585 4F 03 10 00 01 00 00 00");
-  EXPECT_EQ(drive.ask("605 40 03 10 01 00 00 00 00"), "585 43 03 10 01 10 32 00 00");
+  for (std::uint16_t code = 0x1001; code <= 0x1006; ++code) {
+    drive.node.emergency(code, ErrorRegister::current);
+    drive.pass(0s);
+  }
+  EXPECT_EQ(drive.ask("605 40 03 10 00 00 00 00 00"), "585 4F 03 10 00 05 00 00 00");
+  EXPECT_EQ(drive.ask("605 40 03 10 01 00 00 00 00"), "585 43 03 10 01 06 10 00 00");
+  EXPECT_EQ(drive.ask("605 40 03 10 02 00 00 00 00"), "585 43 03 10 02 05 10 00 00");
+  EXPECT_EQ(drive.ask("605 40 03 10 05 00 00 00 00"), "585 43 03 10 05 02 10 00 00");
+  EXPECT_EQ(drive.ask("605 2F 03 10 00 01 00 00 00"), "585 80 03 10 00 30 00 09 06");
   EXPECT_EQ(drive.ask("605 2F 03 10 00 00 00 00 00"), "585 60 03 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 40 03 10 00 00 00 00 00"), "585 4F 03 10 00 00 00 00 00");
 }

@@ -1,45 +1,21 @@
 /// The runnable servo drive with its own modes: the statements of manual 002 about its application.
-#include "cpd/cpd.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <string>
 
-#include "node_bench.hpp"
+#include "cpd_bench.hpp"
 
 namespace {
 
 using namespace std::chrono_literals;
+using bench::Servo;
 using canopen::cia402::State;
 namespace od = cpd::od;
 
 constexpr auto next_error = "605 40 3C 30 01 00 00 00 00";
 constexpr auto oldest_error = "605 2B 3B 30 05 01 00 00 00";
-
-/// Operational: T_PDO1 with the statusword.
-struct Servo : bench::NodeBench<cpd_node::Cpd> {
-  explicit Servo(const std::string& store = {}) : NodeBench{canopen::NodeId{5}, store} { ask(bench::start); }
-
-  void enable(int mode) {
-    set<od::modes_of_operation>(static_cast<std::int8_t>(mode));
-    ask("205 0F 00");
-    EXPECT_EQ(app->drive().state(), State::operation_enabled);
-  }
-  template <class O>
-  void set(typename O::type value) {
-    EXPECT_EQ(app->node().template set<O>(value), canopen::ok);
-    app->on_time(now);
-    bus.take();
-  }
-  template <class O>
-  [[nodiscard]] typename O::type get() {
-    return app->node().template get<O>();
-  }
-  [[nodiscard]] State state() const { return app->drive().state(); }
-  [[nodiscard]] std::uint16_t statusword() { return get<od::statusword>(); }
-};
 
 std::string error_number(unsigned code) {
   return bench::text(
