@@ -80,14 +80,14 @@ struct guard_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr auto name = "Guard time";
 };
 
-/// Life time factor.  100Dh:00  UNSIGNED8  rw                                      cpd.eds:331
+/// Life time factor.  100Dh:00  UNSIGNED8  rw                                      cpd.eds:332
 struct life_time_factor : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x100D;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Life time factor";
 };
 
-/// Store parameters.  1010h:01..03  UNSIGNED32  rw                                 cpd.eds:354
+/// Store parameters.  1010h:01..03  UNSIGNED32  rw                                 cpd.eds:355
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 3 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..3");
@@ -100,16 +100,16 @@ struct store_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access:
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  cpd.eds:354
+/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  cpd.eds:355
 using store_parameters_save_all_parameters = store_parameters<1>;
 
-/// Save communication parameters.  1010h:02  UNSIGNED32  rw                        cpd.eds:362
+/// Save communication parameters.  1010h:02  UNSIGNED32  rw                        cpd.eds:363
 using store_parameters_save_communication_parameters = store_parameters<2>;
 
-/// Save application parameters.  1010h:03  UNSIGNED32  rw                          cpd.eds:370
+/// Save application parameters.  1010h:03  UNSIGNED32  rw                          cpd.eds:371
 using store_parameters_save_application_parameters = store_parameters<3>;
 
-/// Restore default parameters.  1011h:01..03  UNSIGNED32  rw                       cpd.eds:393
+/// Restore default parameters.  1011h:01..03  UNSIGNED32  rw                       cpd.eds:394
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 3 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..3");
@@ -122,30 +122,30 @@ struct restore_default_parameters<0> : canopen::TypedObject<std::uint8_t, canope
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       cpd.eds:393
+/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       cpd.eds:394
 using restore_default_parameters_restore_all_default_parameters = restore_default_parameters<1>;
 
-/// Restore communication default parameters.  1011h:02  UNSIGNED32  rw             cpd.eds:401
+/// Restore communication default parameters.  1011h:02  UNSIGNED32  rw             cpd.eds:402
 using restore_default_parameters_restore_communication_default_parameters = restore_default_parameters<2>;
 
-/// Restore application default parameters.  1011h:03  UNSIGNED32  rw               cpd.eds:409
+/// Restore application default parameters.  1011h:03  UNSIGNED32  rw               cpd.eds:410
 using restore_default_parameters_restore_application_default_parameters = restore_default_parameters<3>;
 
-/// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          cpd.eds:422
+/// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          cpd.eds:423
 struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1014;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
-/// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    cpd.eds:431
+/// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    cpd.eds:432
 struct inhibit_time_emcy : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1015;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Inhibit time EMCY";
 };
 
-/// Consumer heartbeat time.  1016h:01..03  UNSIGNED32  rw                          cpd.eds:455
+/// Consumer heartbeat time.  1016h:01..03  UNSIGNED32  rw                          cpd.eds:458
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 3 || SubIndex == canopen::whole_array, "consumer_heartbeat_time has the sub-indices 0..3");
@@ -158,7 +158,7 @@ struct consumer_heartbeat_time<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              cpd.eds:481
+/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              cpd.eds:484
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -199,7 +199,7 @@ struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> 
 };
 }  // namespace identity_object
 
-/// Verify configuration.  1020h:01..02  UNSIGNED32  rw                             cpd.eds:505
+/// Verify configuration.  1020h:01..02  UNSIGNED32  rw                             cpd.eds:509
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct verify_configuration : canopen::Object<0x1020, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "verify_configuration has the sub-indices 0..2");
@@ -212,13 +212,13 @@ struct verify_configuration<0> : canopen::TypedObject<std::uint8_t, canopen::Acc
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Configuration date.  1020h:01  UNSIGNED32  rw                                   cpd.eds:505
+/// Configuration date.  1020h:01  UNSIGNED32  rw                                   cpd.eds:509
 using verify_configuration_configuration_date = verify_configuration<1>;
 
-/// Configuration time.  1020h:02  UNSIGNED32  rw                                   cpd.eds:513
+/// Configuration time.  1020h:02  UNSIGNED32  rw                                   cpd.eds:517
 using verify_configuration_configuration_time = verify_configuration<2>;
 
-/// Error behaviour.  1029h:01..01  UNSIGNED8  rw                                   cpd.eds:537
+/// Error behaviour.  1029h:01..01  UNSIGNED8  rw                                   cpd.eds:541
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct error_behaviour : canopen::Object<0x1029, SubIndex, std::uint8_t, canopen::Access::rw> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "error_behaviour has the sub-indices 0..1");
@@ -231,24 +231,24 @@ struct error_behaviour<0> : canopen::TypedObject<std::uint8_t, canopen::Access::
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Communication error.  1029h:01  UNSIGNED8  rw                                   cpd.eds:537
+/// Communication error.  1029h:01  UNSIGNED8  rw                                   cpd.eds:541
 using error_behaviour_communication_error = error_behaviour<1>;
 
 /// SDO server parameter 1.  1200h
 namespace sdo_server_parameter_1 {
-/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           cpd.eds:551
+/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           cpd.eds:555
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              cpd.eds:559
+/// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              cpd.eds:563
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
-/// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              cpd.eds:567
+/// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              cpd.eds:571
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -258,25 +258,25 @@ struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Ac
 
 /// SDO server parameter 2.  1201h
 namespace sdo_server_parameter_2 {
-/// Highest sub-index supported.  1201h:00  UNSIGNED8  ro                           cpd.eds:581
+/// Highest sub-index supported.  1201h:00  UNSIGNED8  ro                           cpd.eds:585
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1201;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID client to server.  1201h:01  UNSIGNED32  rw                              cpd.eds:589
+/// COB-ID client to server.  1201h:01  UNSIGNED32  rw                              cpd.eds:593
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1201;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
-/// COB-ID server to client.  1201h:02  UNSIGNED32  rw                              cpd.eds:597
+/// COB-ID server to client.  1201h:02  UNSIGNED32  rw                              cpd.eds:601
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1201;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client";
 };
-/// Node-ID of the SDO client.  1201h:03  UNSIGNED8  rw                             cpd.eds:607
+/// Node-ID of the SDO client.  1201h:03  UNSIGNED8  rw                             cpd.eds:611
 struct node_id_of_the_sdo_client : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1201;
   static constexpr std::uint8_t sub_index = 0x03;
@@ -288,19 +288,19 @@ struct node_id_of_the_sdo_client : canopen::TypedObject<std::uint8_t, canopen::A
 
 /// RPDO communication parameter 1.  1400h
 namespace rpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           cpd.eds:625
+/// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           cpd.eds:629
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  cpd.eds:633
+/// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  cpd.eds:637
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1400h:02  UNSIGNED8  rw                                     cpd.eds:641
+/// Transmission type.  1400h:02  UNSIGNED8  rw                                     cpd.eds:645
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -310,19 +310,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 2.  1401h
 namespace rpdo_communication_parameter_2 {
-/// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           cpd.eds:664
+/// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           cpd.eds:668
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  cpd.eds:672
+/// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  cpd.eds:676
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1401h:02  UNSIGNED8  rw                                     cpd.eds:680
+/// Transmission type.  1401h:02  UNSIGNED8  rw                                     cpd.eds:684
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -332,19 +332,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 3.  1402h
 namespace rpdo_communication_parameter_3 {
-/// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           cpd.eds:703
+/// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           cpd.eds:707
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  cpd.eds:711
+/// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  cpd.eds:715
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1402h:02  UNSIGNED8  rw                                     cpd.eds:719
+/// Transmission type.  1402h:02  UNSIGNED8  rw                                     cpd.eds:723
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -354,19 +354,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 4.  1403h
 namespace rpdo_communication_parameter_4 {
-/// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           cpd.eds:739
+/// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           cpd.eds:743
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  cpd.eds:747
+/// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  cpd.eds:751
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1403h:02  UNSIGNED8  ro                                     cpd.eds:755
+/// Transmission type.  1403h:02  UNSIGNED8  ro                                     cpd.eds:759
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -376,7 +376,7 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO mapping parameter 1.  1600h
 namespace rpdo_mapping_parameter_1 {
-/// Number of mapped objects.  1600h:00  UNSIGNED8  ro                              cpd.eds:773
+/// Number of mapped objects.  1600h:00  UNSIGNED8  ro                              cpd.eds:777
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -384,7 +384,7 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1600h:01  UNSIGNED32  ro                                      cpd.eds:783
+/// Mapping entry 1.  1600h:01  UNSIGNED32  ro                                      cpd.eds:787
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x01;
@@ -394,7 +394,7 @@ struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 
 /// RPDO mapping parameter 2.  1601h
 namespace rpdo_mapping_parameter_2 {
-/// Number of mapped objects.  1601h:00  UNSIGNED8  ro                              cpd.eds:802
+/// Number of mapped objects.  1601h:00  UNSIGNED8  ro                              cpd.eds:806
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -402,25 +402,25 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1601h:01  UNSIGNED32  ro                                      cpd.eds:812
+/// Mapping entry 1.  1601h:01  UNSIGNED32  ro                                      cpd.eds:816
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1601h:02  UNSIGNED32  ro                                      cpd.eds:820
+/// Mapping entry 2.  1601h:02  UNSIGNED32  ro                                      cpd.eds:824
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1601h:03  UNSIGNED32  ro                                      cpd.eds:828
+/// Mapping entry 3.  1601h:03  UNSIGNED32  ro                                      cpd.eds:832
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1601h:04  UNSIGNED32  ro                                      cpd.eds:836
+/// Mapping entry 4.  1601h:04  UNSIGNED32  ro                                      cpd.eds:840
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -430,7 +430,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 
 /// RPDO mapping parameter 3.  1602h
 namespace rpdo_mapping_parameter_3 {
-/// Number of mapped objects.  1602h:00  UNSIGNED8  ro                              cpd.eds:853
+/// Number of mapped objects.  1602h:00  UNSIGNED8  ro                              cpd.eds:857
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -438,25 +438,25 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1602h:01  UNSIGNED32  ro                                      cpd.eds:863
+/// Mapping entry 1.  1602h:01  UNSIGNED32  ro                                      cpd.eds:867
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1602h:02  UNSIGNED32  ro                                      cpd.eds:871
+/// Mapping entry 2.  1602h:02  UNSIGNED32  ro                                      cpd.eds:875
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1602h:03  UNSIGNED32  ro                                      cpd.eds:879
+/// Mapping entry 3.  1602h:03  UNSIGNED32  ro                                      cpd.eds:883
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1602h:04  UNSIGNED32  ro                                      cpd.eds:887
+/// Mapping entry 4.  1602h:04  UNSIGNED32  ro                                      cpd.eds:891
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -466,31 +466,31 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 
 /// RPDO mapping parameter 4.  1603h
 namespace rpdo_mapping_parameter_4 {
-/// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              cpd.eds:904
+/// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              cpd.eds:908
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      cpd.eds:912
+/// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      cpd.eds:916
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      cpd.eds:920
+/// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      cpd.eds:924
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      cpd.eds:928
+/// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      cpd.eds:932
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      cpd.eds:936
+/// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      cpd.eds:940
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -500,31 +500,31 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           cpd.eds:952
+/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           cpd.eds:956
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  cpd.eds:960
+/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  cpd.eds:964
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1800h:02  UNSIGNED8  rw                                     cpd.eds:968
+/// Transmission type.  1800h:02  UNSIGNED8  rw                                     cpd.eds:972
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1800h:03  UNSIGNED16  rw                                         cpd.eds:976
+/// Inhibit time.  1800h:03  UNSIGNED16  rw                                         cpd.eds:980
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1800h:05  UNSIGNED16  rw                                          cpd.eds:984
+/// Event timer.  1800h:05  UNSIGNED16  rw                                          cpd.eds:990
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -534,31 +534,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 2.  1801h
 namespace tpdo_communication_parameter_2 {
-/// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           cpd.eds:1005
+/// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           cpd.eds:1012
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  cpd.eds:1013
+/// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  cpd.eds:1020
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1801h:02  UNSIGNED8  rw                                     cpd.eds:1021
+/// Transmission type.  1801h:02  UNSIGNED8  rw                                     cpd.eds:1028
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1801h:03  UNSIGNED16  rw                                         cpd.eds:1029
+/// Inhibit time.  1801h:03  UNSIGNED16  rw                                         cpd.eds:1036
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1801h:05  UNSIGNED16  rw                                          cpd.eds:1037
+/// Event timer.  1801h:05  UNSIGNED16  rw                                          cpd.eds:1046
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -568,31 +568,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 3.  1802h
 namespace tpdo_communication_parameter_3 {
-/// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           cpd.eds:1058
+/// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           cpd.eds:1068
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  cpd.eds:1066
+/// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  cpd.eds:1076
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1802h:02  UNSIGNED8  rw                                     cpd.eds:1074
+/// Transmission type.  1802h:02  UNSIGNED8  rw                                     cpd.eds:1084
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1802h:03  UNSIGNED16  rw                                         cpd.eds:1082
+/// Inhibit time.  1802h:03  UNSIGNED16  rw                                         cpd.eds:1092
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1802h:05  UNSIGNED16  rw                                          cpd.eds:1090
+/// Event timer.  1802h:05  UNSIGNED16  rw                                          cpd.eds:1102
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -602,31 +602,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 4.  1803h
 namespace tpdo_communication_parameter_4 {
-/// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           cpd.eds:1110
+/// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           cpd.eds:1123
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  cpd.eds:1118
+/// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  cpd.eds:1131
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1803h:02  UNSIGNED8  ro                                     cpd.eds:1126
+/// Transmission type.  1803h:02  UNSIGNED8  ro                                     cpd.eds:1139
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1803h:03  UNSIGNED16  rw                                         cpd.eds:1134
+/// Inhibit time.  1803h:03  UNSIGNED16  rw                                         cpd.eds:1147
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1803h:05  UNSIGNED16  rw                                          cpd.eds:1142
+/// Event timer.  1803h:05  UNSIGNED16  rw                                          cpd.eds:1157
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -636,7 +636,7 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
-/// Number of mapped objects.  1A00h:00  UNSIGNED8  ro                              cpd.eds:1158
+/// Number of mapped objects.  1A00h:00  UNSIGNED8  ro                              cpd.eds:1174
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -644,7 +644,7 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1A00h:01  UNSIGNED32  ro                                      cpd.eds:1168
+/// Mapping entry 1.  1A00h:01  UNSIGNED32  ro                                      cpd.eds:1184
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
@@ -654,7 +654,7 @@ struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 
 /// TPDO mapping parameter 2.  1A01h
 namespace tpdo_mapping_parameter_2 {
-/// Number of mapped objects.  1A01h:00  UNSIGNED8  ro                              cpd.eds:1186
+/// Number of mapped objects.  1A01h:00  UNSIGNED8  ro                              cpd.eds:1202
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -662,25 +662,25 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1A01h:01  UNSIGNED32  ro                                      cpd.eds:1196
+/// Mapping entry 1.  1A01h:01  UNSIGNED32  ro                                      cpd.eds:1212
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A01h:02  UNSIGNED32  ro                                      cpd.eds:1204
+/// Mapping entry 2.  1A01h:02  UNSIGNED32  ro                                      cpd.eds:1220
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A01h:03  UNSIGNED32  ro                                      cpd.eds:1212
+/// Mapping entry 3.  1A01h:03  UNSIGNED32  ro                                      cpd.eds:1228
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A01h:04  UNSIGNED32  ro                                      cpd.eds:1220
+/// Mapping entry 4.  1A01h:04  UNSIGNED32  ro                                      cpd.eds:1236
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -690,7 +690,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 
 /// TPDO mapping parameter 3.  1A02h
 namespace tpdo_mapping_parameter_3 {
-/// Number of mapped objects.  1A02h:00  UNSIGNED8  ro                              cpd.eds:1237
+/// Number of mapped objects.  1A02h:00  UNSIGNED8  ro                              cpd.eds:1253
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -698,25 +698,25 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1A02h:01  UNSIGNED32  ro                                      cpd.eds:1247
+/// Mapping entry 1.  1A02h:01  UNSIGNED32  ro                                      cpd.eds:1263
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A02h:02  UNSIGNED32  ro                                      cpd.eds:1255
+/// Mapping entry 2.  1A02h:02  UNSIGNED32  ro                                      cpd.eds:1271
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A02h:03  UNSIGNED32  ro                                      cpd.eds:1263
+/// Mapping entry 3.  1A02h:03  UNSIGNED32  ro                                      cpd.eds:1279
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A02h:04  UNSIGNED32  ro                                      cpd.eds:1271
+/// Mapping entry 4.  1A02h:04  UNSIGNED32  ro                                      cpd.eds:1287
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -726,31 +726,31 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 
 /// TPDO mapping parameter 4.  1A03h
 namespace tpdo_mapping_parameter_4 {
-/// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              cpd.eds:1287
+/// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              cpd.eds:1303
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      cpd.eds:1295
+/// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      cpd.eds:1311
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      cpd.eds:1303
+/// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      cpd.eds:1319
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      cpd.eds:1311
+/// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      cpd.eds:1327
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      cpd.eds:1319
+/// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      cpd.eds:1335
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -758,7 +758,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 };
 }  // namespace tpdo_mapping_parameter_4
 
-/// Drive status.  2041h:00  UNSIGNED16  ro                                         cpd.eds:1609
+/// Drive status.  2041h:00  UNSIGNED16  ro                                         cpd.eds:1660
 struct drive_status : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x2041;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -767,19 +767,19 @@ struct drive_status : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
 
 /// Parameter storage.  3004h
 namespace parameter_storage {
-/// Highest sub-index supported.  3004h:00  UNSIGNED8  ro                           cpd.eds:1625
+/// Highest sub-index supported.  3004h:00  UNSIGNED8  ro                           cpd.eds:1677
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3004;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Save settings to EEPROM.  3004h:01  UNSIGNED16  rw                              cpd.eds:1633
+/// Save settings to EEPROM.  3004h:01  UNSIGNED16  rw                              cpd.eds:1685
 struct save_settings_to_eeprom : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3004;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Save settings to EEPROM";
 };
-/// Reset user settings.  3004h:08  UNSIGNED16  rw                                  cpd.eds:1641
+/// Reset user settings.  3004h:08  UNSIGNED16  rw                                  cpd.eds:1694
 struct reset_user_settings : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3004;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -789,13 +789,13 @@ struct reset_user_settings : canopen::TypedObject<std::uint16_t, canopen::Access
 
 /// Position interface.  3005h
 namespace position_interface {
-/// Highest sub-index supported.  3005h:00  UNSIGNED8  ro                           cpd.eds:1655
+/// Highest sub-index supported.  3005h:00  UNSIGNED8  ro                           cpd.eds:1709
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3005;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Signal selection.  3005h:02  UNSIGNED16  rw                                     cpd.eds:1663
+/// Signal selection.  3005h:02  UNSIGNED16  rw                                     cpd.eds:1717
 struct signal_selection : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3005;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -805,13 +805,13 @@ struct signal_selection : canopen::TypedObject<std::uint16_t, canopen::Access::r
 
 /// Motion settings.  3006h
 namespace motion_settings {
-/// Highest sub-index supported.  3006h:00  UNSIGNED8  ro                           cpd.eds:1680
+/// Highest sub-index supported.  3006h:00  UNSIGNED8  ro                           cpd.eds:1734
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3006;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Negative limit switch contact.  3006h:0F  UNSIGNED16  rw                        cpd.eds:1688
+/// Negative limit switch contact.  3006h:0F  UNSIGNED16  rw                        cpd.eds:1742
 struct negative_limit_switch_contact : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3006;
   static constexpr std::uint8_t sub_index = 0x0F;
@@ -819,7 +819,7 @@ struct negative_limit_switch_contact : canopen::TypedObject<std::uint16_t, canop
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 2;
 };
-/// Positive limit switch contact.  3006h:10  UNSIGNED16  rw                        cpd.eds:1698
+/// Positive limit switch contact.  3006h:10  UNSIGNED16  rw                        cpd.eds:1753
 struct positive_limit_switch_contact : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3006;
   static constexpr std::uint8_t sub_index = 0x10;
@@ -827,7 +827,7 @@ struct positive_limit_switch_contact : canopen::TypedObject<std::uint16_t, canop
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 2;
 };
-/// Direction of rotation inversion.  3006h:12  UNSIGNED16  rw                      cpd.eds:1708
+/// Direction of rotation inversion.  3006h:12  UNSIGNED16  rw                      cpd.eds:1764
 struct direction_of_rotation_inversion : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3006;
   static constexpr std::uint8_t sub_index = 0x12;
@@ -837,13 +837,13 @@ struct direction_of_rotation_inversion : canopen::TypedObject<std::uint16_t, can
 
 /// Inputs and outputs.  3008h
 namespace inputs_and_outputs {
-/// Highest sub-index supported.  3008h:00  UNSIGNED8  ro                           cpd.eds:1723
+/// Highest sub-index supported.  3008h:00  UNSIGNED8  ro                           cpd.eds:1780
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3008;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Digital inputs and outputs.  3008h:01  UNSIGNED16  ro  TPDO                     cpd.eds:1731
+/// Digital inputs and outputs.  3008h:01  UNSIGNED16  ro  TPDO                     cpd.eds:1788
 struct digital_inputs_and_outputs : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x3008;
   static constexpr std::uint8_t sub_index = 0x01;
@@ -853,19 +853,19 @@ struct digital_inputs_and_outputs : canopen::TypedObject<std::uint16_t, canopen:
 
 /// Analogue inputs.  3009h
 namespace analogue_inputs {
-/// Highest sub-index supported.  3009h:00  UNSIGNED8  ro                           cpd.eds:1745
+/// Highest sub-index supported.  3009h:00  UNSIGNED8  ro                           cpd.eds:1803
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3009;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Analogue input ANA1.  3009h:01  INTEGER16  ro  TPDO                             cpd.eds:1753
+/// Analogue input ANA1.  3009h:01  INTEGER16  ro  TPDO                             cpd.eds:1811
 struct analogue_input_ana1 : canopen::TypedObject<std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x3009;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Analogue input ANA1";
 };
-/// Analogue input ANA2.  3009h:05  INTEGER16  ro  TPDO                             cpd.eds:1761
+/// Analogue input ANA2.  3009h:05  INTEGER16  ro  TPDO                             cpd.eds:1821
 struct analogue_input_ana2 : canopen::TypedObject<std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x3009;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -875,19 +875,19 @@ struct analogue_input_ana2 : canopen::TypedObject<std::int16_t, canopen::Access:
 
 /// Current limits.  3011h
 namespace current_limits {
-/// Highest sub-index supported.  3011h:00  UNSIGNED8  ro                           cpd.eds:1775
+/// Highest sub-index supported.  3011h:00  UNSIGNED8  ro                           cpd.eds:1837
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3011;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Quick stop current limit.  3011h:05  UNSIGNED16  rw                             cpd.eds:1783
+/// Quick stop current limit.  3011h:05  UNSIGNED16  rw                             cpd.eds:1845
 struct quick_stop_current_limit : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3011;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Quick stop current limit";
 };
-/// Stop current limit.  3011h:06  UNSIGNED16  rw                                   cpd.eds:1791
+/// Stop current limit.  3011h:06  UNSIGNED16  rw                                   cpd.eds:1856
 struct stop_current_limit : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3011;
   static constexpr std::uint8_t sub_index = 0x06;
@@ -897,31 +897,31 @@ struct stop_current_limit : canopen::TypedObject<std::uint16_t, canopen::Access:
 
 /// Operating mode settings.  301Bh
 namespace operating_mode_settings {
-/// Highest sub-index supported.  301Bh:00  UNSIGNED8  ro                           cpd.eds:1806
+/// Highest sub-index supported.  301Bh:00  UNSIGNED8  ro                           cpd.eds:1874
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Manual movement activation.  301Bh:09  UNSIGNED16  rww  RPDO                    cpd.eds:1814
+/// Manual movement activation.  301Bh:09  UNSIGNED16  rww  RPDO                    cpd.eds:1882
 struct manual_movement_activation : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x09;
   static constexpr auto name = "Manual movement activation";
 };
-/// Current setpoint specification.  301Bh:10  UNSIGNED16  rw                       cpd.eds:1822
+/// Current setpoint specification.  301Bh:10  UNSIGNED16  rw                       cpd.eds:1891
 struct current_setpoint_specification : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x10;
   static constexpr auto name = "Current setpoint specification";
 };
-/// Speed setpoint specification.  301Bh:11  UNSIGNED16  rw                         cpd.eds:1830
+/// Speed setpoint specification.  301Bh:11  UNSIGNED16  rw                         cpd.eds:1899
 struct speed_setpoint_specification : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x11;
   static constexpr auto name = "Speed setpoint specification";
 };
-/// Gear activation.  301Bh:12  UNSIGNED16  rw                                      cpd.eds:1838
+/// Gear activation.  301Bh:12  UNSIGNED16  rw                                      cpd.eds:1907
 struct gear_activation : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x12;
@@ -931,37 +931,37 @@ struct gear_activation : canopen::TypedObject<std::uint16_t, canopen::Access::rw
 
 /// Monitoring status.  301Ch
 namespace monitoring_status {
-/// Highest sub-index supported.  301Ch:00  UNSIGNED8  ro                           cpd.eds:1853
+/// Highest sub-index supported.  301Ch:00  UNSIGNED8  ro                           cpd.eds:1922
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Action status.  301Ch:04  UNSIGNED16  ro  TPDO                                  cpd.eds:1861
+/// Action status.  301Ch:04  UNSIGNED16  ro  TPDO                                  cpd.eds:1930
 struct action_status : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Action status";
 };
-/// Active monitoring signals.  301Ch:07  UNSIGNED16  ro                            cpd.eds:1869
+/// Active monitoring signals.  301Ch:07  UNSIGNED16  ro                            cpd.eds:1939
 struct active_monitoring_signals : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Active monitoring signals";
 };
-/// Latched monitoring signals.  301Ch:08  UNSIGNED16  ro                           cpd.eds:1877
+/// Latched monitoring signals.  301Ch:08  UNSIGNED16  ro                           cpd.eds:1948
 struct latched_monitoring_signals : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Latched monitoring signals";
 };
-/// Active warnings.  301Ch:0B  UNSIGNED16  ro                                      cpd.eds:1885
+/// Active warnings.  301Ch:0B  UNSIGNED16  ro                                      cpd.eds:1957
 struct active_warnings : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x0B;
   static constexpr auto name = "Active warnings";
 };
-/// Latched warnings.  301Ch:0C  UNSIGNED16  ro                                     cpd.eds:1893
+/// Latched warnings.  301Ch:0C  UNSIGNED16  ro                                     cpd.eds:1966
 struct latched_warnings : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x0C;
@@ -971,13 +971,13 @@ struct latched_warnings : canopen::TypedObject<std::uint16_t, canopen::Access::r
 
 /// Motion generator.  301Fh
 namespace motion_generator {
-/// Highest sub-index supported.  301Fh:00  UNSIGNED8  ro                           cpd.eds:1907
+/// Highest sub-index supported.  301Fh:00  UNSIGNED8  ro                           cpd.eds:1981
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301F;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Ramp position actual value.  301Fh:02  INTEGER32  ro  TPDO                      cpd.eds:1915
+/// Ramp position actual value.  301Fh:02  INTEGER32  ro  TPDO                      cpd.eds:1989
 struct ramp_position_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x301F;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -987,13 +987,13 @@ struct ramp_position_actual_value : canopen::TypedObject<std::int32_t, canopen::
 
 /// Current control.  3020h
 namespace current_control {
-/// Highest sub-index supported.  3020h:00  UNSIGNED8  ro                           cpd.eds:1929
+/// Highest sub-index supported.  3020h:00  UNSIGNED8  ro                           cpd.eds:2004
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3020;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Current setpoint.  3020h:04  INTEGER16  rww  RPDO                               cpd.eds:1937
+/// Current setpoint.  3020h:04  INTEGER16  rww  RPDO                               cpd.eds:2012
 struct current_setpoint : canopen::TypedObject<std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x3020;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -1003,13 +1003,13 @@ struct current_setpoint : canopen::TypedObject<std::int16_t, canopen::Access::rw
 
 /// Speed control.  3021h
 namespace speed_control {
-/// Highest sub-index supported.  3021h:00  UNSIGNED8  ro                           cpd.eds:1951
+/// Highest sub-index supported.  3021h:00  UNSIGNED8  ro                           cpd.eds:2029
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3021;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Speed setpoint.  3021h:04  INTEGER16  rww  RPDO                                 cpd.eds:1959
+/// Speed setpoint.  3021h:04  INTEGER16  rww  RPDO                                 cpd.eds:2037
 struct speed_setpoint : canopen::TypedObject<std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x3021;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -1019,19 +1019,19 @@ struct speed_setpoint : canopen::TypedObject<std::int16_t, canopen::Access::rww,
 
 /// Electronic gear.  3026h
 namespace electronic_gear {
-/// Highest sub-index supported.  3026h:00  UNSIGNED8  ro                           cpd.eds:1974
+/// Highest sub-index supported.  3026h:00  UNSIGNED8  ro                           cpd.eds:2054
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3026;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Gear denominator.  3026h:03  INTEGER32  rww  RPDO                               cpd.eds:1982
+/// Gear denominator.  3026h:03  INTEGER32  rww  RPDO                               cpd.eds:2062
 struct gear_denominator : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x3026;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Gear denominator";
 };
-/// Gear numerator.  3026h:04  INTEGER32  rww  RPDO                                 cpd.eds:1990
+/// Gear numerator.  3026h:04  INTEGER32  rww  RPDO                                 cpd.eds:2071
 struct gear_numerator : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x3026;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -1041,19 +1041,19 @@ struct gear_numerator : canopen::TypedObject<std::int32_t, canopen::Access::rww,
 
 /// Manual movement.  3029h
 namespace manual_movement {
-/// Highest sub-index supported.  3029h:00  UNSIGNED8  ro                           cpd.eds:2004
+/// Highest sub-index supported.  3029h:00  UNSIGNED8  ro                           cpd.eds:2086
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3029;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Slow speed.  3029h:04  UNSIGNED16  rw                                           cpd.eds:2012
+/// Slow speed.  3029h:04  UNSIGNED16  rw                                           cpd.eds:2094
 struct slow_speed : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3029;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Slow speed";
 };
-/// Fast speed.  3029h:05  UNSIGNED16  rw                                           cpd.eds:2020
+/// Fast speed.  3029h:05  UNSIGNED16  rw                                           cpd.eds:2103
 struct fast_speed : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3029;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1063,13 +1063,13 @@ struct fast_speed : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// Error memory control.  303Bh
 namespace error_memory_control {
-/// Highest sub-index supported.  303Bh:00  UNSIGNED8  ro                           cpd.eds:2035
+/// Highest sub-index supported.  303Bh:00  UNSIGNED8  ro                           cpd.eds:2119
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x303B;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Error memory reset.  303Bh:05  UNSIGNED16  rw                                   cpd.eds:2043
+/// Error memory reset.  303Bh:05  UNSIGNED16  rw                                   cpd.eds:2127
 struct error_memory_reset : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x303B;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1079,13 +1079,13 @@ struct error_memory_reset : canopen::TypedObject<std::uint16_t, canopen::Access:
 
 /// Error memory.  303Ch
 namespace error_memory {
-/// Highest sub-index supported.  303Ch:00  UNSIGNED8  ro                           cpd.eds:2057
+/// Highest sub-index supported.  303Ch:00  UNSIGNED8  ro                           cpd.eds:2142
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x303C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Error number.  303Ch:01  UNSIGNED16  ro                                         cpd.eds:2065
+/// Error number.  303Ch:01  UNSIGNED16  ro                                         cpd.eds:2150
 struct error_number : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x303C;
   static constexpr std::uint8_t sub_index = 0x01;
@@ -1093,28 +1093,28 @@ struct error_number : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
 };
 }  // namespace error_memory
 
-/// Error code.  603Fh:00  UNSIGNED16  ro                                           cpd.eds:1328
+/// Error code.  603Fh:00  UNSIGNED16  ro                                           cpd.eds:1344
 struct error_code : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x603F;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error code";
 };
 
-/// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   cpd.eds:1337
+/// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   cpd.eds:1354
 struct controlword : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6040;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Controlword";
 };
 
-/// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     cpd.eds:1347
+/// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     cpd.eds:1365
 struct statusword : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x6041;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Statusword";
 };
 
-/// Modes of operation.  6060h:00  INTEGER8  rw                                     cpd.eds:1358
+/// Modes of operation.  6060h:00  INTEGER8  rw                                     cpd.eds:1377
 struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6060;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -1122,63 +1122,63 @@ struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::r
   static constexpr canopen::ValueRange accepted[] = {{-128, 1}, {3, 3}, {6, 6}};
 };
 
-/// Modes of operation display.  6061h:00  INTEGER8  ro  TPDO                       cpd.eds:1368
+/// Modes of operation display.  6061h:00  INTEGER8  ro  TPDO                       cpd.eds:1388
 struct modes_of_operation_display : canopen::TypedObject<std::int8_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x6061;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Modes of operation display";
 };
 
-/// Position actual value.  6064h:00  INTEGER32  ro  TPDO                           cpd.eds:1377
+/// Position actual value.  6064h:00  INTEGER32  ro  TPDO                           cpd.eds:1398
 struct position_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x6064;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position actual value";
 };
 
-/// Following error window.  6065h:00  UNSIGNED32  rw                               cpd.eds:1386
+/// Following error window.  6065h:00  UNSIGNED32  rw                               cpd.eds:1408
 struct following_error_window : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6065;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Following error window";
 };
 
-/// Position window.  6067h:00  UNSIGNED32  rw                                      cpd.eds:1395
+/// Position window.  6067h:00  UNSIGNED32  rw                                      cpd.eds:1419
 struct position_window : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6067;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position window";
 };
 
-/// Position window time.  6068h:00  UNSIGNED16  rw                                 cpd.eds:1404
+/// Position window time.  6068h:00  UNSIGNED16  rw                                 cpd.eds:1429
 struct position_window_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6068;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position window time";
 };
 
-/// Velocity demand value.  606Bh:00  INTEGER32  ro                                 cpd.eds:1413
+/// Velocity demand value.  606Bh:00  INTEGER32  ro                                 cpd.eds:1440
 struct velocity_demand_value : canopen::TypedObject<std::int32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x606B;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Velocity demand value";
 };
 
-/// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           cpd.eds:1422
+/// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           cpd.eds:1450
 struct velocity_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x606C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Velocity actual value";
 };
 
-/// Target position.  607Ah:00  INTEGER32  rww  RPDO                                cpd.eds:1431
+/// Target position.  607Ah:00  INTEGER32  rww  RPDO                                cpd.eds:1461
 struct target_position : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x607A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target position";
 };
 
-/// Software position limit.  607Dh:01..02  INTEGER32  rw                           cpd.eds:1457
+/// Software position limit.  607Dh:01..02  INTEGER32  rw                           cpd.eds:1488
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct software_position_limit : canopen::Object<0x607D, SubIndex, std::int32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "software_position_limit has the sub-indices 0..2");
@@ -1191,55 +1191,55 @@ struct software_position_limit<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Min position limit.  607Dh:01  INTEGER32  rw                                    cpd.eds:1457
+/// Min position limit.  607Dh:01  INTEGER32  rw                                    cpd.eds:1488
 using software_position_limit_min_position_limit = software_position_limit<1>;
 
-/// Max position limit.  607Dh:02  INTEGER32  rw                                    cpd.eds:1465
+/// Max position limit.  607Dh:02  INTEGER32  rw                                    cpd.eds:1497
 using software_position_limit_max_position_limit = software_position_limit<2>;
 
-/// Max profile velocity.  607Fh:00  UNSIGNED32  rw                                 cpd.eds:1474
+/// Max profile velocity.  607Fh:00  UNSIGNED32  rw                                 cpd.eds:1507
 struct max_profile_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x607F;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Max profile velocity";
 };
 
-/// Profile velocity.  6081h:00  UNSIGNED32  rww  RPDO                              cpd.eds:1483
+/// Profile velocity.  6081h:00  UNSIGNED32  rww  RPDO                              cpd.eds:1518
 struct profile_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6081;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile velocity";
 };
 
-/// Profile acceleration.  6083h:00  UNSIGNED32  rw                                 cpd.eds:1493
+/// Profile acceleration.  6083h:00  UNSIGNED32  rw                                 cpd.eds:1530
 struct profile_acceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6083;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile acceleration";
 };
 
-/// Profile deceleration.  6084h:00  UNSIGNED32  rw                                 cpd.eds:1503
+/// Profile deceleration.  6084h:00  UNSIGNED32  rw                                 cpd.eds:1542
 struct profile_deceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6084;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile deceleration";
 };
 
-/// Motion profile type.  6086h:00  INTEGER16  rw                                   cpd.eds:1512
+/// Motion profile type.  6086h:00  INTEGER16  rw                                   cpd.eds:1553
 struct motion_profile_type : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6086;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Motion profile type";
 };
 
-/// Homing method.  6098h:00  INTEGER8  rw                                          cpd.eds:1521
+/// Homing method.  6098h:00  INTEGER8  rw                                          cpd.eds:1563
 struct homing_method : canopen::TypedObject<std::int8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6098;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Homing method";
 };
 
-/// Homing speeds.  6099h:01..02  UNSIGNED32  rw                                    cpd.eds:1543
+/// Homing speeds.  6099h:01..02  UNSIGNED32  rw                                    cpd.eds:1586
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct homing_speeds : canopen::Object<0x6099, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "homing_speeds has the sub-indices 0..2");
@@ -1252,27 +1252,27 @@ struct homing_speeds<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Speed during search for switch.  6099h:01  UNSIGNED32  rw                       cpd.eds:1543
+/// Speed during search for switch.  6099h:01  UNSIGNED32  rw                       cpd.eds:1586
 using homing_speeds_speed_during_search_for_switch = homing_speeds<1>;
 
-/// Speed during search for zero.  6099h:02  UNSIGNED32  rw                         cpd.eds:1551
+/// Speed during search for zero.  6099h:02  UNSIGNED32  rw                         cpd.eds:1596
 using homing_speeds_speed_during_search_for_zero = homing_speeds<2>;
 
-/// Following error actual value.  60F4h:00  INTEGER32  ro                          cpd.eds:1560
+/// Following error actual value.  60F4h:00  INTEGER32  ro                          cpd.eds:1607
 struct following_error_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x60F4;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Following error actual value";
 };
 
-/// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                cpd.eds:1569
+/// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                cpd.eds:1617
 struct target_velocity : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x60FF;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target velocity";
 };
 
-/// Supported drive modes.  6502h:00  UNSIGNED32  ro                                cpd.eds:1579
+/// Supported drive modes.  6502h:00  UNSIGNED32  ro                                cpd.eds:1629
 struct supported_drive_modes : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x6502;
   static constexpr std::uint8_t sub_index = 0x00;

@@ -24,6 +24,7 @@ struct Movement {
 };
 
 /// A host calls the node some milliseconds late; the drive has stopped the axis by then.
+// shows 002.114, 002.300, 002.301
 TEST(CpdNode, ReportsEachLimitSwitchThatStopsAMovementWhateverTheRampAndTheTime) {
   for (const auto& [velocity, deceleration] : {Movement{300, 200'000}, Movement{30, 20'000}, Movement{100, 0},
                                                Movement{-300, 200'000}, Movement{-30, 20'000}, Movement{-100, 0}}) {
@@ -48,6 +49,7 @@ TEST(CpdNode, ReportsEachLimitSwitchThatStopsAMovementWhateverTheRampAndTheTime)
 }
 
 /// The same of a switch at a place on the machine, which the axis reaches within a call.
+// shows 002.301
 TEST(CpdNode, ReportsALimitSwitchThatTheAxisReaches) {
   for (int run = 0; run < 100; ++run) {
     Servo drive;
@@ -65,6 +67,7 @@ TEST(CpdNode, ReportsALimitSwitchThatTheAxisReaches) {
 }
 
 /// The signal is shorter than a step.
+// shows 002.305, 002.306
 TEST(CpdNode, ReportsALimitSwitchThatIsReleasedAtOnce) {
   Servo drive;
   drive.write(0x60FF, 0, 4, 100);
@@ -93,6 +96,7 @@ TEST(CpdNode, ReportsNoErrorForALimitSwitchAtStandstillOrDuringHoming) {
 
 // 6.4.6: the contacts of the limit switches
 
+// shows 002.182, 002.302, 002.303
 TEST(CpdNode, EvaluatesALimitSwitchAs3006hSelects) {
   struct Row {
     std::uint16_t setting;
@@ -126,6 +130,7 @@ TEST(CpdNode, EvaluatesALimitSwitchAs3006hSelects) {
   }
 }
 
+// shows 002.302, 002.303, 002.549
 TEST(CpdNode, HasLimitSwitchesWithTheContactOf3006hWithoutALine) {
   for (const std::uint16_t setting : {std::uint16_t{1}, std::uint16_t{2}}) {
     Servo drive;
@@ -141,6 +146,7 @@ TEST(CpdNode, HasLimitSwitchesWithTheContactOf3006hWithoutALine) {
 
 // 6.4.5: reversal of the direction of rotation
 
+// shows 002.294, 002.295
 TEST(CpdNode, TurnsInTheOtherDirectionWith3006h12h) {
   for (const bool reversed : {false, true}) {
     Servo drive;
@@ -159,6 +165,7 @@ TEST(CpdNode, TurnsInTheOtherDirectionWith3006h12h) {
   }
 }
 
+// shows 002.294
 TEST(CpdNode, CountsAShaftThatIsTurnedByHandInTheDirectionOf3006h12h) {
   Servo drive;
   EXPECT_NE(drive.input("turn 1000"), "?");
@@ -189,6 +196,7 @@ TEST(CpdNode, ReversesTheDirectionAtStandstillOnly) {
 
 // 6.4.6: software limits in the modes of the manufacturer
 
+// shows 002.297, 002.299, 002.545
 TEST(CpdNode, EndsManualMovementAtASoftwareLimit) {
   Servo drive;
   drive.write(0x607D, 1, 4, static_cast<std::uint32_t>(-1'000));
@@ -207,6 +215,7 @@ TEST(CpdNode, EndsManualMovementAtASoftwareLimit) {
   EXPECT_EQ(drive.read(0x6064, 0, 4), static_cast<std::uint32_t>(-1'000));
 }
 
+// shows 002.299
 TEST(CpdNode, EndsSpeedCurrentAndGearAtASoftwareLimit) {
   for (const int mode : {-2, -3, -4}) {
     for (const bool positive : {true, false}) {
@@ -232,6 +241,7 @@ TEST(CpdNode, EndsSpeedCurrentAndGearAtASoftwareLimit) {
 
 // 6.4.3: motor stop
 
+// shows 002.291
 TEST(CpdNode, ContinuesAManualMovementAfterHalt) {
   Servo drive;
   drive.write(0x3029, 4, 2, 100);
@@ -250,6 +260,7 @@ TEST(CpdNode, ContinuesAManualMovementAfterHalt) {
   EXPECT_EQ(drive.read(0x606C, 0, 4), 100u);
 }
 
+// shows 002.291
 TEST(CpdNode, ContinuesSpeedCurrentAndGearAfterHalt) {
   for (const int mode : {-2, -3, -4}) {
     SCOPED_TRACE(mode);
@@ -277,6 +288,7 @@ TEST(CpdNode, ContinuesSpeedCurrentAndGearAfterHalt) {
 
 // 6.4.1: 607Fh limits the set speed
 
+// shows 002.285
 TEST(CpdNode, LimitsTheSpeedOfEachModeTo607Fh) {
   for (const int mode : {-1, -2, -4, 3}) {
     SCOPED_TRACE(mode);
@@ -302,6 +314,7 @@ TEST(CpdNode, LimitsTheSpeedOfEachModeTo607Fh) {
 
 // 6.4.2: the current of a quick stop
 
+// shows 002.288, 002.290, 002.548
 TEST(CpdNode, BrakesAQuickStopWithTheCurrentOf3011h05h) {
   struct Row {
     std::uint16_t current;  ///< 0.01 A
@@ -328,6 +341,7 @@ TEST(CpdNode, BrakesAQuickStopWithTheCurrentOf3011h05h) {
   }
 }
 
+// shows 002.289, 002.290, 002.548
 TEST(CpdNode, LimitsTheRampOfAStopToTheCurrentOf3011h06h) {
   struct Row {
     std::uint16_t current;  ///< 0.01 A
@@ -349,6 +363,7 @@ TEST(CpdNode, LimitsTheRampOfAStopToTheCurrentOf3011h06h) {
   }
 }
 
+// shows 002.287
 TEST(CpdNode, BrakesWithTheQuickStopCurrentIfAFaultOccurs) {
   Servo drive;
   drive.write(0x6084, 0, 4, 2'000);
@@ -365,6 +380,7 @@ TEST(CpdNode, BrakesWithTheQuickStopCurrentIfAFaultOccurs) {
 
 // 6.4.7: inputs and outputs
 
+// shows 002.183, 002.310, 002.311
 TEST(CpdNode, ShowsItsAnalogueInputsIn3009hInMillivolts) {
   Servo drive;
   EXPECT_EQ(drive.read(0x3009, 1, 2), 0u);
@@ -385,6 +401,7 @@ TEST(CpdNode, ShowsItsAnalogueInputsIn3009hInMillivolts) {
   EXPECT_EQ(drive.input("analogue 1 -1"), "485 FF FF F0 D8");
 }
 
+// shows 002.312, 002.313, 002.544, 002.551
 TEST(CpdNode, ShowsItsDigitalInputsIn3008h) {
   Servo drive;
   EXPECT_EQ(drive.read(0x3008, 1, 2), 0x0006u);  // LIMN and LIMP are break contacts
@@ -411,6 +428,7 @@ TEST(CpdNode, ShowsItsDigitalInputsIn3008h) {
 
 // 6.4.6: monitoring objects
 
+// shows 002.307, 002.308, 002.319, 002.551
 TEST(CpdNode, ShowsWarningsIn301ChAndTheStatuswords) {
   Servo drive;
   EXPECT_TRUE(has(drive.input("warning 0x0404 on"), "185 B1 66"));  // bit 7
@@ -429,6 +447,7 @@ TEST(CpdNode, ShowsWarningsIn301ChAndTheStatuswords) {
   drive.enable(1);  // a warning does not change the state
 }
 
+// shows 002.309, 002.551
 TEST(CpdNode, ShowsItsMovementInTheActionWord) {
   Servo drive;
   EXPECT_EQ(drive.read(0x301C, 4, 2), 0x0A40u);  // standstill, no profile, in the window
@@ -455,6 +474,7 @@ TEST(CpdNode, ShowsItsMovementInTheActionWord) {
 
 // 9.4.3: the list of errors
 
+// shows 002.121, 002.396
 TEST(CpdNode, KeepsFiveErrorsIn1003hTheNewestFirst) {
   Servo drive;
   for (int i = 1; i <= 6; ++i) drive.input("fault " + std::to_string(0x1000 + i));
@@ -465,6 +485,254 @@ TEST(CpdNode, KeepsFiveErrorsIn1003hTheNewestFirst) {
   EXPECT_EQ(drive.ask("605 40 03 10 06 00 00 00 00"), "585 80 03 10 06 11 00 09 06");
   EXPECT_EQ(drive.write(0x1003, 0, 1, 0), "585 60 03 10 00 00 00 00 00");
   EXPECT_EQ(drive.read(0x1003, 0, 1), 0u);
+}
+
+// 6.2.1, 6.2.2, 6.4.1: ramps and speeds
+
+/// Runs for a time and returns the velocity of the axis, which is one step late.
+std::int32_t velocity_after(Servo& drive, canopen::Duration span) {
+  drive.pass(span + 1ms);
+  return drive.app->axis().velocity();
+}
+
+// shows 002.177, 002.259..002.261, 002.283, 002.284, 002.550
+TEST(CpdNode, MovesToAPositionWithTheRampsAndTheSpeedOf621) {
+  Servo drive;
+  drive.write(0x6083, 0, 4, 2'000);
+  drive.write(0x6084, 0, 4, 4'000);
+  drive.write(0x607F, 0, 4, 6'000);
+  drive.write(0x6081, 0, 4, 4'000);
+  drive.write(0x607A, 0, 4, 10'000'000);
+  drive.enable(1);
+  drive.ask("205 1F 00");
+  EXPECT_NEAR(velocity_after(drive, 500ms), 1'000, 3);  // 2,000 rpm/s
+  EXPECT_NEAR(velocity_after(drive, 3s), 4'000, 1);
+  drive.ask("205 1F 01");
+  EXPECT_NEAR(velocity_after(drive, 500ms), 2'000, 8);  // 4,000 rpm/s
+  drive.ask("205 0F 00");
+  drive.write(0x6081, 0, 4, 7'000);
+  drive.ask("205 3F 00");
+  EXPECT_NEAR(velocity_after(drive, 3s), 6'000, 1);  // 607Fh
+}
+
+// shows 002.266, 002.283, 002.284
+TEST(CpdNode, RunsWithTheRampsAndTheLimitOf622) {
+  Servo drive;
+  drive.write(0x6083, 0, 4, 2'000);
+  drive.write(0x6084, 0, 4, 10'000);
+  drive.write(0x607F, 0, 4, 10'000);
+  drive.write(0x60FF, 0, 4, 1'000);
+  drive.enable(3);
+  EXPECT_NEAR(velocity_after(drive, 250ms), 500, 3);
+  EXPECT_EQ(velocity_after(drive, 1s), 1'000);
+  drive.write(0x60FF, 0, 4, 0);
+  EXPECT_NEAR(velocity_after(drive, 50ms), 500, 12);
+  drive.write(0x60FF, 0, 4, 11'000);
+  EXPECT_EQ(velocity_after(drive, 6s), 10'000);
+}
+
+// shows 002.286
+TEST(CpdNode, HasLinearRampsOnly) {
+  Servo drive;
+  EXPECT_EQ(drive.write(0x6086, 0, 2, 0), "585 60 86 60 00 00 00 00 00");
+  EXPECT_EQ(drive.write(0x6086, 0, 2, 1), "585 80 86 60 00 30 00 09 06");
+}
+
+// shows 002.268, 002.269
+TEST(CpdNode, SearchesTheSwitchFastAndLeavesItSlowly) {
+  Servo drive;
+  drive.input("switches -20000 100000");
+  drive.write(0x6098, 0, 1, 17);
+  drive.write(0x6099, 1, 4, 100);
+  drive.write(0x6099, 2, 4, 10);
+  drive.write(0x6083, 0, 4, 1'000);
+  drive.enable(6);
+  drive.ask("205 1F 00");
+  drive.pass(200ms);
+  EXPECT_EQ(drive.app->axis().velocity(), -100);
+  drive.pass(900ms);
+  EXPECT_EQ(drive.app->axis().velocity(), 10);
+  drive.pass(5s);
+  EXPECT_EQ(drive.statusword(), 0xD637);
+  EXPECT_NEAR(drive.app->axis().machine_position(), -20'000, 30);
+}
+
+// 6.3.4
+
+// shows 002.230, 002.282
+TEST(CpdNode, StartsAManualMovementByRpdo4) {
+  Servo drive;
+  drive.write(0x3029, 5, 2, 250);
+  drive.write(0x1603, 1, 4, 0x301B'0910);
+  drive.write(0x1603, 2, 4, 0x6040'0010);
+  drive.write(0x1603, 3, 4, 0x3026'0320);
+  drive.write(0x1603, 0, 1, 3);
+  drive.write(0x1403, 1, 4, 0x505);
+  drive.enable(-1);
+  drive.ask("505 05 00 0F 00 07 00 00 00");
+  drive.pass(500ms);
+  EXPECT_EQ(drive.read(0x606C, 0, 4), 250u);
+  EXPECT_EQ(drive.read(0x3026, 3, 4), 7u);
+  drive.ask("505 00 00 0F 00 07 00 00 00");
+  drive.pass(500ms);
+  EXPECT_EQ(drive.read(0x606C, 0, 4), 0u);
+}
+
+// 6.4.4
+
+// shows 002.292, 002.293
+TEST(CpdNode, ReportsStandstillByTheWindowOf6067hAnd6068h) {
+  struct Row {
+    std::uint32_t window;
+    std::uint16_t milliseconds;
+    int reported;  ///< ms after the shaft has been blocked 400 increments before the target
+  };
+  for (const auto& [window, milliseconds, reported] : {Row{1'000, 100, 100}, Row{1'000, 300, 300}, Row{1, 0, -1}}) {
+    Servo drive;
+    drive.write(0x6067, 0, 4, window);
+    drive.write(0x6068, 0, 2, milliseconds);
+    drive.write(0x6081, 0, 4, 100);
+    drive.write(0x607A, 0, 4, 10'000);
+    drive.enable(1);
+    drive.pass(1s);
+    drive.ask("205 1F 00");
+    while (drive.app->axis().position() < 9'600) drive.pass(1ms);
+    drive.input("block on");
+    drive.pass(50ms);  // the set position arrives
+    drive.pass(canopen::Duration{static_cast<std::uint32_t>(milliseconds) * 1'000});
+    EXPECT_EQ((drive.statusword() & 0x0400) != 0, reported >= 0);
+  }
+}
+
+// 6.4.6: positions
+
+// shows 002.113, 002.296
+TEST(CpdNode, ReachesEachEndOfTheRangeOfTheAxis) {
+  Servo drive;
+  drive.write(0x6098, 0, 1, 35);
+  drive.enable(6);
+  drive.ask("205 1F 00");
+  drive.pass(10ms);
+  drive.ask("205 0F 00");
+  drive.write(0x6060, 0, 1, 1);
+  drive.write(0x6081, 0, 4, 12'000);
+  for (const std::int32_t end : {0x1000'0000, -0x1000'0000}) {
+    drive.write(0x607A, 0, 4, static_cast<std::uint32_t>(end));
+    drive.ask("205 1F 00");
+    drive.pass(200s);
+    EXPECT_EQ(drive.read(0x6064, 0, 4), static_cast<std::uint32_t>(end));
+    EXPECT_EQ(drive.statusword() & 0x8000, 0x8000);
+    drive.ask("205 0F 00");
+  }
+}
+
+/// The motor is blocked: the set position reaches the limit, the motor does not.
+// shows 002.298
+TEST(CpdNode, WatchesSoftwareLimitsByTheSetPosition) {
+  Servo drive;
+  drive.write(0x607D, 1, 4, static_cast<std::uint32_t>(-10'000));
+  drive.write(0x607D, 2, 4, 10'000);
+  drive.write(0x6081, 0, 4, 1'000);
+  drive.write(0x607A, 0, 4, 20'000);
+  drive.input("block on");
+  drive.enable(1);
+  drive.ask("205 1F 00");
+  drive.pass(1s);
+  EXPECT_EQ(drive.read(0x6064, 0, 4), 0u);
+  EXPECT_EQ(drive.read(0x60F4, 0, 4), 10'000u);
+  EXPECT_EQ(drive.read(0x301C, 8, 2), 0x0004u);
+}
+
+// 6.4.8
+
+// shows 002.314, 002.315
+TEST(CpdNode, WorksWithTheValuesInRamUntilTheyAreSaved) {
+  Servo drive;
+  drive.write(0x3029, 4, 2, 100);
+  drive.enable(-1);
+  drive.write(0x301B, 9, 2, 1);
+  drive.pass(500ms);
+  EXPECT_EQ(drive.read(0x606C, 0, 4), 100u);
+  drive.power_cycle();
+  EXPECT_EQ(drive.read(0x3029, 4, 2), 0u);
+  drive.write(0x3029, 4, 2, 100);
+  drive.write(0x3004, 1, 2, 1);
+  drive.power_cycle();
+  EXPECT_EQ(drive.read(0x3029, 4, 2), 100u);
+}
+
+// shows 002.552
+TEST(CpdNode, AcceptsTheValuesOfItsCommandObjects) {
+  Servo drive;
+  for (const std::uint8_t sub_index : {std::uint8_t{1}, std::uint8_t{8}}) {
+    const std::string place = Servo::sdo(0x585, 0x60, 0x3004, sub_index, 0);
+    EXPECT_EQ(drive.write(0x3004, sub_index, 2, 0), place);
+    EXPECT_EQ(drive.write(0x3004, sub_index, 2, 1), place);
+    EXPECT_EQ(drive.write(0x3004, sub_index, 2, 2), Servo::sdo(0x585, 0x80, 0x3004, sub_index, 0x0609'0030));
+  }
+  EXPECT_EQ(drive.write(0x303B, 5, 2, 7), "585 60 3B 30 05 00 00 00 00");
+  drive.write(0x3021, 4, 2, 100);
+  drive.write(0x301B, 0x11, 2, 1);
+  drive.enable(-4);
+  drive.pass(100ms);
+  EXPECT_EQ(drive.read(0x606C, 0, 4), 0u);
+}
+
+// Chapters 3, 5 and 7: the node
+
+// shows 002.251, 002.316
+TEST(CpdNode, SendsItsBootUpMessageWithNodeId127ByDefault) {
+  bench::NodeBench<cpd_node::Cpd> drive{std::nullopt};
+  EXPECT_EQ(drive.boot_up, "77F 00");
+  EXPECT_EQ(drive.ask("000 01 7F"), "1FF 31 66");
+}
+
+// shows 002.216, 002.241
+TEST(CpdNode, SendsNothingWithoutAnEventOrARequest) {
+  Servo drive;
+  EXPECT_EQ(drive.pass(3'600s), "");
+  EXPECT_EQ(drive.ask("605 40 80 1F 00 00 00 00 00"), "585 80 80 1F 00 00 00 02 06");  // 1F80h, of an NMT master
+}
+
+// shows 002.214
+TEST(CpdNode, IgnoresTheServicesOfTable32ThatItDoesNotHave) {
+  Servo drive;
+  for (const char* can_id : {"7E4", "7E5", "7E6", "7E7", "7E8", "7E9", "7EA"}) {
+    EXPECT_EQ(drive.ask(std::string{can_id} + " 04 01 00 00 00 00 00 00"), "");
+    EXPECT_EQ(drive.ask(std::string{can_id} + " 5E 00 00 00 00 00 00 00"), "");
+  }
+}
+
+// shows 002.233
+TEST(CpdNode, StartsTogetherWithOtherDrivesAtSync) {
+  Servo drives[2];
+  for (Servo& drive : drives) {
+    drive.write(0x1401, 2, 1, 1);
+    drive.write(0x1401, 1, 4, 0x305);
+    drive.write(0x6081, 0, 4, 1'000);
+    drive.enable(1);
+  }
+  drives[0].ask("305 1F 00 40 42 0F 00");
+  drives[0].pass(50ms);
+  drives[1].pass(50ms);
+  drives[1].ask("305 1F 00 40 42 0F 00");
+  for (Servo& drive : drives) {
+    drive.pass(50ms);
+    EXPECT_EQ(drive.read(0x6064, 0, 4), 0u);
+    drive.ask("080");
+    drive.pass(20ms);
+    EXPECT_EQ(drive.app->axis().velocity(), 1'000);
+  }
+  EXPECT_EQ(drives[0].app->axis().position(), drives[1].app->axis().position());
+}
+
+// shows 002.33, 002.320, 002.547
+TEST(CpdNode, HasNoReservedBitsInItsErrorRegister) {
+  Servo drive;
+  EXPECT_EQ(drive.input("fault 0x1000 0xFF").substr(0, 12), "085 00 10 B1");
+  EXPECT_EQ(drive.read(0x1001, 0, 1), 0xB1u);
+  drive.ask("205 80 00");
+  EXPECT_EQ(drive.input("fault 0x1000 0x4E").substr(0, 12), "085 00 10 01");
 }
 
 }  // namespace

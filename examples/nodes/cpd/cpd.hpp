@@ -122,6 +122,13 @@ struct AcceptsHomingMethod {
   }
 };
 
+/// 6086h, ProfileType: ramps are linear, 0.
+struct AcceptsProfileType {
+  canopen::AbortCode operator()(std::int16_t type) const {
+    return type == 0 ? canopen::ok : canopen::AbortCode::invalid_value;
+  }
+};
+
 /// 3004h:01, PAReeprSave: 1 stores the same parameters as 1010h:01.
 struct SavesSettings {
   canopen::AbortCode operator()(auto& node, std::uint16_t value) const {
@@ -158,6 +165,7 @@ template <class Self, canopen::Bus B>
 using Base = nodes::DriveNode<Self, cpd::Device, B, options, canopen::StoredIn<nodes::NodeStorage>,
                               canopen::WriteHandler<od::modes_of_operation, AcceptsMode>,
                               canopen::WriteHandler<od::homing_method, AcceptsHomingMethod>,
+                              canopen::WriteHandler<od::motion_profile_type, AcceptsProfileType>,
                               canopen::WriteHandler<od::parameter_storage::save_settings_to_eeprom, SavesSettings>,
                               canopen::WriteHandler<od::parameter_storage::reset_user_settings, RestoresSettings>,
                               canopen::ReadHandler<od::error_memory::error_number, ReadsErrorMemory>,
@@ -172,6 +180,7 @@ class Cpd : public Base<Cpd<B>, B> {
   using Node::node_;
 
  public:
+  static constexpr std::uint8_t error_register_bits = 0xB1;  ///< bits 1 to 3 and 6 are reserved (9.4.2)
   static constexpr nodes::Description description{
       "cpd", "A servo drive of CiA 402 with manual movement, electronic gear, current and speed control.", "127",
       "  fault CODE [BITS]                an error of the drive: 603Fh, EMCY; BITS of 1001h\n"
@@ -193,6 +202,7 @@ class Cpd : public Base<Cpd<B>, B> {
              around.node_id.value_or(canopen::NodeId{127}),
              axis,
              canopen::stored_in(around.parameters),
+             {},
              {},
              {},
              {},
