@@ -17,12 +17,12 @@ from typing import Any
 
 PAGE_MARK = re.compile(r"<\|[^|]*\|>")
 TAG = re.compile(r"</?[a-z]+>")
-MARKUP = re.compile(r"^[#*\s\-•▪]+|\*+|\\")
+MARKUP = re.compile(r"^[#*\s\-•▪●]+|\*+|\\")
 LEADER = re.compile(r"[\s.]*(?:\.{3,}|\t+(?:page\t+)?)[\s.]*\d+$|\.{3,}$")
 NUMBER = re.compile(r"(\d+(?:\.\d+)*)\.?\s+(?=\S)")
 CONTENTS_LINE = re.compile(r".*\.{5}.*\d|\d+(?:\.\d+)*\t[A-Z][^\t]+(?:\tpage)?\t+\d+")
 HASH_HEADING = re.compile(r"#+ .+")
-BOLD_BULLET = re.compile(r"[-•] \*\*[^*]+\*\*")
+BOLD_BULLET = re.compile(r"[-•●] \*\*[^*]+\*\*")
 NUMBERED = re.compile(r"(?:\d+(?:\.\d+)+|\d+\.?(?= +[A-Z])) +[A-Za-z0-9].*")
 OBJECT = re.compile(r"[0-9A-F]{4}h – .+")
 MAX_LENGTH = 80  # of a numbered heading; longer lines are text

@@ -204,7 +204,7 @@ TYPED_TEST(EveryDevice, AbortsWhatItCannotDo) {
   EXPECT_EQ(device.ask("605 60 00 00 00 00 00 00 00").substr(16), "01 00 04 05");
 }
 
-// shows 000.1, 001.5, 002.5
+// shows 000.1, 001.5, 002.5, 003.110
 TYPED_TEST(EveryDevice, IgnoresExtendedFrames) {
   bench::Bench<typename TestFixture::Device> device;
   EXPECT_EQ(device.ask("00000605 40 00 10 00 00 00 00 00"), "");

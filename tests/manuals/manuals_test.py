@@ -25,6 +25,7 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import value_only
 from headings import compare_with_text
 
 MANUALS = ("000", "001", "002", "003", "004")
@@ -205,6 +206,10 @@ shown. Each statement is in one of these states:
 """
 
 
+VALUE_ONLY = """SDO and PDOs read and write these objects. They have no other effect. Objects in 1000h to 1FFFh are not listed.
+The test `value_only` compares the list with the objects that the application uses while all tests run."""
+
+
 def cell(text: str) -> str:
     return re.sub(r"([|<>])", r"\\\1", text)
 
@@ -229,7 +234,7 @@ def table(*header: str) -> list[str]:
     return ["", f"| {' | '.join(header)} |", "|---" * len(header) + "|"]
 
 
-def document(manuals: list[Manual], items: dict[str, Item]) -> str:
+def document(source: Path, manuals: list[Manual], items: dict[str, Item], problems: list[str]) -> str:
     states = ("shown", *KINDS)
     out = [INTRODUCTION, f"- shown: {SHOWN}."]
     out += [f"- {kind}: {meaning}." for kind, meaning in KINDS.items()]
@@ -250,6 +255,11 @@ def document(manuals: list[Manual], items: dict[str, Item]) -> str:
             out += table("number", "statement in the manual", "shown by, or reason why not")
             for item in (items[number] for number in section.own):
                 out.append(f"| {item.number} | {cell(item.text)} | {describe(item)} |")
+        for device in value_only.DEVICES[manual.name]:
+            rows = value_only.document(source, device, problems)
+            if rows:
+                out += ["", f"### Objects of {device} with a value only", "", VALUE_ONLY]
+                out += table("object", "name", "place in the manual", "reason") + rows
     return "\n".join(out) + "\n"
 
 
@@ -274,7 +284,7 @@ def main() -> int:
     read_tests(source / "tests", items, problems)
     problems += [f"[{item.number}] has neither a test nor a reason: {item.text}" for item in items.values()
                  if item.state == "missing"]
-    page, text = source / "docs" / "manuals.md", document(manuals, items)
+    page, text = source / "docs" / "manuals.md", document(source, manuals, items, problems)
     if "--write" in sys.argv:
         page.write_text(text, encoding="utf-8")
     elif not page.exists() or page.read_text(encoding="utf-8") != text:

@@ -78,7 +78,7 @@ class IoModule {
     update();
   }
 
-  /// `digital BLOCK LEVELS`, `analogue CHANNEL VOLTS`, `fault NAME`, `fault over`.
+  /// `digital BLOCK LEVELS`, `analogue CHANNEL VOLTS`, `switches TENS UNITS`, `fault NAME`, `fault over`.
   bool input(const InputLine& line, canopen::TimePoint now) {
     const bool taken = take(line);
     on_time(now);
@@ -158,7 +158,19 @@ class IoModule {
       if (channel && volts) set_analogue(static_cast<std::uint8_t>(*channel - 1), raw_from_volts(*volts));
       return channel && volts;
     }
+    if (line.is("switches", 2)) {
+      const auto tens = line.number<std::uint8_t>(1, 0, 9);
+      const auto units = line.number<std::uint8_t>(2, 0, 9);
+      return tens && units && turn_switches(static_cast<std::uint8_t>(10 * *tens + *units));
+    }
     return line.is("fault", 1) && take_fault(line.word(1));
+  }
+
+  /// The module reads its rotary switches at power-on.
+  [[nodiscard]] bool turn_switches(std::uint8_t node_id) {
+    if (node_id == 0) return false;
+    around_.node_id = canopen::NodeId{node_id};
+    return true;
   }
 
   [[nodiscard]] bool take_fault(std::string_view name) {

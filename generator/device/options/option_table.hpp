@@ -141,7 +141,7 @@ inline constexpr OptionRow rows[] = {
      "", "zero"},
     {emcy, "reset_code", "reset_emergency", emergency_code,
      "emergency error code of an EMCY sent before a reset by NMT command, with the manufacturer-specific bit of 1001h: "
-     "`\"FF00h\"`",
+     "`\"FF00h\"`; the errors in 1003h remain after the reset",
      "", "none"},
     {emcy, "history_keeps_resets", "error_history_keeps_resets", flag,
      "1003h also records EMCYs that report the end of an error", "false"},

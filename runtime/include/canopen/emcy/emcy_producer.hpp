@@ -116,14 +116,16 @@ class EmergencyProducer {
     inhibit_ = {};
   }
 
-  /// Sends the EMCY before a requested reset, if the device has one. It is lost if the bus has no room.
+  /// Sends the EMCY before a requested reset, if the device has one, and records it in the history, which the reset
+  /// keeps. The message is lost if the bus has no room.
   template <Bus BusType>
-  void announce_reset([[maybe_unused]] const ObjectStore<Device>& store, [[maybe_unused]] BusType& bus) const {
+  void announce_reset([[maybe_unused]] ObjectStore<Device>& store, [[maybe_unused]] BusType& bus) const {
     if constexpr (has_cob_id && Device::options.reset_emergency != 0) {
       constexpr std::uint16_t code = Device::options.reset_emergency;
       const auto bits =
           static_cast<std::uint8_t>(error_register() | static_cast<std::uint8_t>(ErrorRegister::manufacturer));
       (void)send(store, bus, message_of(code, bits, Device::emergency_info(code)));
+      remember(store, code, Device::emergency_info(code));
     }
   }
 

@@ -73,12 +73,15 @@ class ObjectStore {
     }
   }
 
-  /// Sets 1000h..1FFFh to their default values, with the node-ID added where the EDS says so.
+  /// Sets 1000h..1FFFh to their default values, with the node-ID added where the EDS says so. A device with an EMCY
+  /// before a reset keeps its error history 1003h: only then can this error be read.
   void reset_communication(NodeId node_id) {
     node_id_ = node_id;
     const BoundDomains bound = bound_domains();
+    const ErrorHistory history = error_history();
     Device::reset_communication(values_);
     bind_again(bound);
+    restore(history);
     add_node_id(Device::node_id_relative_communication());
   }
 
@@ -157,6 +160,38 @@ class ObjectStore {
   }
   void bind_again(const BoundDomains& bound) {
     for (std::size_t i = 0; i < domain_count; ++i) std::memcpy(ram() + domain_offsets[i], &bound[i], sizeof(Domain));
+  }
+
+  /// Words of 1003h, which a reset keeps in a device with an EMCY before it.
+  static constexpr std::size_t kept_errors = [] {
+    std::size_t count = 0;
+    while (Device::options.reset_emergency != 0 && count < 255) {
+      const entry::Word word = Device::dictionary.find(0x1003, static_cast<std::uint8_t>(count));
+      if (word <= Dictionary::no_sub_index || entry::place_of(word) != entry::Place::ram) break;
+      ++count;
+    }
+    return count;
+  }();
+  static constexpr std::array<entry::Word, kept_errors> error_words = [] {
+    std::array<entry::Word, kept_errors> words{};
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      words[i] = Device::dictionary.find(0x1003, static_cast<std::uint8_t>(i));
+    }
+    return words;
+  }();
+
+  using ErrorHistory = std::array<std::uint32_t, kept_errors>;
+  [[nodiscard]] ErrorHistory error_history() {
+    ErrorHistory errors{};
+    for (std::size_t i = 0; i < kept_errors; ++i) {
+      std::memcpy(&errors[i], ram() + entry::offset_of(error_words[i]), entry::wire_bytes(error_words[i]));
+    }
+    return errors;
+  }
+  void restore(const ErrorHistory& errors) {
+    for (std::size_t i = 0; i < kept_errors; ++i) {
+      std::memcpy(ram() + entry::offset_of(error_words[i]), &errors[i], entry::wire_bytes(error_words[i]));
+    }
   }
 
   [[nodiscard]] std::uint8_t* ram() {
