@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What manual 002 prints about the objects of the CPD and no frame carries: object codes, units, internal names.
 
-    manual_002_names_test.py EDSC CPD.eds      compares the tables of the manual with the output of `edsc dump`
+    manual_002_names_test.py SOURCE_DIR EDSC      compares the tables of the manual with the output of `edsc dump`
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 OBJECTS = (  # 9.2: index, object code, data type (of a VAR or an ARRAY), access; where 9.4 differs: 9.4
@@ -142,8 +143,8 @@ def check_units(entries: dict[tuple[int, int], Any]) -> None:
 
 
 def main() -> int:
-    edsc, eds = sys.argv[1:3]
-    dump = subprocess.run([edsc, "dump", eds], capture_output=True, text=True, check=True).stdout
+    source, edsc = (Path(argument).resolve() for argument in sys.argv[1:3])
+    dump = subprocess.run([edsc, "dump", source / "eds/cpd.eds"], capture_output=True, text=True, check=True).stdout
     objects = {item["index"]: item for item in json.loads(dump)["objects"]}
     entries = {(entry["index"], entry["sub_index"]): entry for item in objects.values() for entry in item["entries"]}
     check_objects(objects)
