@@ -613,13 +613,14 @@ TEST(CpdNode, ReachesEachEndOfTheRangeOfTheAxis) {
   drive.enable(6);
   drive.ask("205 1F 00");
   drive.pass(10ms);
-  drive.ask("205 0F 00");
-  drive.write(0x6060, 0, 1, 1);
   drive.write(0x6081, 0, 4, 12'000);
   for (const std::int32_t end : {0x1000'0000, -0x1000'0000}) {
+    drive.ask("205 00 00");
+    EXPECT_NE(drive.input("position " + std::to_string(end / 256 * 255)), "?");
     drive.write(0x607A, 0, 4, static_cast<std::uint32_t>(end));
+    drive.enable(1);
     drive.ask("205 1F 00");
-    drive.pass(200s);
+    drive.pass(2s);
     EXPECT_EQ(drive.read(0x6064, 0, 4), static_cast<std::uint32_t>(end));
     EXPECT_EQ(drive.statusword() & 0x8000, 0x8000);
     drive.ask("205 0F 00");
@@ -641,6 +642,31 @@ TEST(CpdNode, WatchesSoftwareLimitsByTheSetPosition) {
   EXPECT_EQ(drive.read(0x6064, 0, 4), 0u);
   EXPECT_EQ(drive.read(0x60F4, 0, 4), 10'000u);
   EXPECT_EQ(drive.read(0x301C, 8, 2), 0x0004u);
+}
+
+/// The shaft is blocked: the ramp generator goes on, the motor does not.
+// shows 002.556, 002.367, 002.371, 002.372, 002.384
+TEST(CpdNode, ShowsTheRampGeneratorAndTheMotorInTheirObjects) {
+  Servo drive;
+  drive.write(0x6083, 0, 4, 1'000);
+  drive.write(0x60FF, 0, 4, static_cast<std::uint32_t>(-600));
+  drive.enable(3);
+  drive.pass(310ms);
+  const auto speed = static_cast<std::int32_t>(drive.read(0x606B, 0, 4));
+  EXPECT_NEAR(speed, -300, 15);
+  EXPECT_NEAR(static_cast<std::int32_t>(drive.read(0x606C, 0, 4)), speed, 2);
+  EXPECT_NEAR(static_cast<std::int32_t>(drive.read(0x6064, 0, 4)), drive.app->axis().position(), 1'000);
+  drive.input("block on");
+  const std::uint32_t blocked_at = drive.read(0x6064, 0, 4);
+  drive.pass(1s);
+  EXPECT_EQ(drive.read(0x606B, 0, 4), static_cast<std::uint32_t>(-600));
+  EXPECT_EQ(drive.read(0x606C, 0, 4), 0u);
+  EXPECT_NEAR(static_cast<std::int32_t>(drive.read(0x6064, 0, 4) - blocked_at), 0, 1'000);
+  const std::uint32_t ramp = drive.read(0x301F, 2, 4);
+  EXPECT_LT(static_cast<std::int32_t>(ramp), static_cast<std::int32_t>(blocked_at) - 100'000);
+  drive.ask("205 0F 01");  // Halt: both are at rest
+  drive.pass(1s);
+  EXPECT_EQ(drive.read(0x60F4, 0, 4), drive.read(0x301F, 2, 4) - drive.read(0x6064, 0, 4));
 }
 
 // 6.4.8
