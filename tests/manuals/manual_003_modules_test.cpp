@@ -123,7 +123,7 @@ TEST(Manual003Modules, UseTheFunctionCodesOfTheTable) {
   for (const unsigned node_id : {1u, 32u, 99u}) {
     SCOPED_TRACE(node_id);
     const auto can_id = [node_id](unsigned function_code) {
-      char text[8];
+      char text[16];
       std::snprintf(text, sizeof text, "%03X", function_code << 7 | node_id);
       return std::string{text};
     };
@@ -194,6 +194,14 @@ TEST(Manual003Modules, StoreAndRestoreTheirIoSettings) {
   expect_stored(analog, {{0x6443, 2, 1, 1, 0}, {0x6444, 4, 4, 0, 0x3FFF}, {0x1401, 2, 1, 0xFF, 1}});
   DigitalInputs inputs;
   expect_stored(inputs, {{0x1800, 5, 2, 0, 1000}, {0x1017, 0, 2, 0, 250}});
+}
+
+// shows 003.72
+TYPED_TEST(EveryRunnableModule, ReportsThatItsMemoryCannotBeWritten) {
+  TypeParam failing{canopen::NodeId{5}, "no such folder/module.parameters"};
+  EXPECT_EQ(failing.ask(save), refused(0x1010, 1, 0x0606'0000));
+  EXPECT_EQ(failing.pass(0s), "085 00 50 81 02 00 00 00 00");
+  EXPECT_EQ(read(failing, 0x1003, 1), value_of(0x1003, 1, 4, 0x0002'5000));
 }
 
 // Digital and analog channels
@@ -384,6 +392,23 @@ TEST(Manual003Modules, ShowTheMostSevereError) {
   EXPECT_TRUE(module.logged("ERR double flash"));
   module.ask("705 R 1");
   EXPECT_TRUE(module.logged("ERR off"));
+}
+
+// shows 003.87, 003.88
+TEST(Manual003Modules, SetTheErrorValueOfEachAnalogOutputWhoseModeIs1) {
+  AnalogOutputs module;
+  constexpr std::uint32_t values[] = {0x1000, 0x2000, 0x3000, 0x4000};
+  for (std::uint8_t channel = 1; channel <= 4; ++channel) {
+    write(module, 0x6444, channel, 4, values[channel - 1]);
+  }
+  write(module, 0x6443, 3, 1, 0);
+  write(module, 0x100C, 0, 2, 100);
+  write(module, 0x100D, 0, 1, 1);
+  module.ask("705 R 1");
+  EXPECT_EQ(module.pass(100ms), "085 30 81 11 07 00 00 00 00");
+  for (std::uint8_t channel = 1; channel <= 4; ++channel) {
+    EXPECT_EQ(read(module, 0x6411, channel), value_of(0x6411, channel, 2, channel == 3 ? 0 : values[channel - 1]));
+  }
 }
 
 // shows 003.148, 003.149

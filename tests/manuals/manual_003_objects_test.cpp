@@ -69,7 +69,7 @@ TYPED_TEST(EveryModule, HasTheGeneralObjectsWithoutADefaultValue) {
   EXPECT_EQ(this->module.ask("605 40 03 10 06 00 00 00 00"), "585 80 03 10 06 11 00 09 06");
 }
 
-// shows 003.32, 003.36, 003.96, 003.138, 003.139, 003.181
+// shows 003.32, 003.36, 003.96, 003.132, 003.138, 003.139, 003.181
 TYPED_TEST(EveryModule, HasTenPdosOfEachDirection) {
   constexpr std::uint32_t rpdos[] = {0x205, 0x305, 0x405, 0x505};
   constexpr std::uint32_t tpdos[] = {0x185, 0x285, 0x385, 0x485};

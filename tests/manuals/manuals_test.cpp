@@ -94,7 +94,7 @@ TYPED_TEST(EveryDevice, SendsTheBootUpMessageAndEntersPreOperationalByItself) {
   EXPECT_EQ(bus.take(), "");
 }
 
-// shows 000.30, 000.31, 001.1, 001.15, 002.47, 003.5..003.10, 003.15, 004.103..004.105, 001.88, 004.136
+// shows 000.30, 000.31, 001.1, 001.15, 002.47, 003.5..003.10, 003.15, 004.103..004.105, 001.88, 004.136, 004.163
 TYPED_TEST(EveryDevice, FollowsEachNmtCommandInEachState) {
   for (const State& from : states) {
     for (const Command& command : commands) {

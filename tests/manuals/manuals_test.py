@@ -15,6 +15,7 @@ If ../shared/seeds has the text of the manual, the sections are compared with it
   GoogleTest, `# shows ...` in a trace, or above a function or the first statement of a Python test.
 - `// open ...` is above a test that does not pass yet and therefore has a name with DISABLED_.
 - out_of_reach.tsv: numbers, one of KINDS, reason.
+- units.tsv: the units of the EDS files, as the manuals print them (units.py).
 - readings.tsv: numbers, and the reading of a statement that is unclear or contradicts another one.
 """
 
@@ -27,6 +28,7 @@ from pathlib import Path
 
 import value_only
 from headings import compare_with_text
+from units import check_units
 
 MANUALS = ("000", "001", "002", "003", "004")
 SHOWN = "a test verifies the statement with frames or with the live object dictionary"
@@ -282,6 +284,7 @@ def main() -> int:
     for item, (reading,) in read_rows(folder / "readings.tsv", 2, items, problems):
         item.reading = reading
     read_tests(source / "tests", items, problems)
+    check_units(source, problems)
     problems += [f"[{item.number}] has neither a test nor a reason: {item.text}" for item in items.values()
                  if item.state == "missing"]
     page, text = source / "docs" / "manuals.md", document(source, manuals, items, problems)

@@ -48,24 +48,31 @@ def read_rows(source: Path, device: str, problems: list[str]) -> list[Row]:
     return rows
 
 
-def names_in_eds(source: Path, device: str) -> dict[Key, str]:
-    """The entries outside 1000h to 1FFFh, except the numbers of sub-indices, with their names."""
-    names: dict[Key, str] = {}
-    parents: set[int] = set()
-    key: Key | None = None
+def entries_of_eds(source: Path, device: str) -> dict[Key, dict[str, str]]:
+    """The keys of each entry. An object with sub-indices is the entry of sub-index 0."""
+    entries: dict[Key, dict[str, str]] = {}
+    entry: dict[str, str] = {}
     for line in (source / "eds" / f"{device}.eds").read_text(encoding="utf-8").splitlines():
         if line.startswith("["):
             match = SECTION.fullmatch(line)
-            key = (int(match[1], 16), int(match[2] or "0", 16)) if match else None
-            if match and match[2]:
-                parents.add(key[0])
-        elif key is not None and line.startswith("ParameterName=") and key not in names:
-            names[key] = line.removeprefix("ParameterName=")
-    return {(index, sub): name for (index, sub), name in sorted(names.items())
+            entry = {}
+            if match:
+                entry = entries.setdefault((int(match[1], 16), int(match[2] or "0", 16)), {})
+        elif "=" in line and not line.startswith(";"):
+            key, value = line.split("=", 1)
+            entry.setdefault(key, value)
+    return entries
+
+
+def names_in_eds(source: Path, device: str) -> dict[Key, str]:
+    """The entries outside 1000h to 1FFFh, except the numbers of sub-indices, with their names."""
+    entries = entries_of_eds(source, device)
+    parents = {index for index, sub in entries if sub != 0}
+    return {(index, sub): entry["ParameterName"] for (index, sub), entry in sorted(entries.items())
             if not 0x1000 <= index <= 0x1FFF and (sub != 0 or index not in parents)}
 
 
-def text_of(key: Key, parents: bool = True) -> str:
+def text_of(key: Key) -> str:
     return f"{key[0]:04X}h:{key[1]:02X}"
 
 

@@ -203,6 +203,7 @@ TEST(ModuleNode, ScalesItsAnalogueChannels) {
   EXPECT_TRUE(outputs.logged("analogue 1 5.002 V"));
 }
 
+// shows 003.183
 TEST(ModuleNode, ShowsItsStateAndItsErrorsWithItsIndicators) {
   bench::NodeBench<Can2057c> module;
   EXPECT_TRUE(module.logged("RUN blinking"));

@@ -129,6 +129,7 @@ class IoModule {
 
   /// Updates the objects from the inputs and the outputs from the objects.
   void update() {
+    if (around_.parameters.take_failure()) static_cast<void>(take_fault("eeprom"));
     for (std::uint8_t block = 0; block < digital_levels_.size(); ++block) {
       digital_inputs_.sample(node_, block, digital_levels_[block]);
     }

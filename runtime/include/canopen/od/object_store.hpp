@@ -162,21 +162,27 @@ class ObjectStore {
     for (std::size_t i = 0; i < domain_count; ++i) std::memcpy(ram() + domain_offsets[i], &bound[i], sizeof(Domain));
   }
 
-  /// Words of 1003h, which a reset keeps in a device with an EMCY before it.
+  /// Calls `visit(word)` for each entry of 1003h that a reset keeps: all in RAM, in a device with an EMCY before a
+  /// reset.
+  template <class Visit>
+  static constexpr void for_each_kept_error([[maybe_unused]] Visit visit) {
+    if constexpr (Device::options.reset_emergency != 0) {
+      Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t, entry::Word word) {
+        if (index == 0x1003 && entry::place_of(word) == entry::Place::ram) visit(word);
+      });
+    }
+  }
+
   static constexpr std::size_t kept_errors = [] {
     std::size_t count = 0;
-    while (Device::options.reset_emergency != 0 && count < 255) {
-      const entry::Word word = Device::dictionary.find(0x1003, static_cast<std::uint8_t>(count));
-      if (word <= Dictionary::no_sub_index || entry::place_of(word) != entry::Place::ram) break;
-      ++count;
-    }
+    for_each_kept_error([&](entry::Word) { ++count; });
     return count;
   }();
+
   static constexpr std::array<entry::Word, kept_errors> error_words = [] {
     std::array<entry::Word, kept_errors> words{};
-    for (std::size_t i = 0; i < words.size(); ++i) {
-      words[i] = Device::dictionary.find(0x1003, static_cast<std::uint8_t>(i));
-    }
+    std::size_t i = 0;
+    for_each_kept_error([&](entry::Word word) { words[i++] = word; });
     return words;
   }();
 
