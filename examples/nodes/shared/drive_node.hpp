@@ -46,6 +46,7 @@ struct AxisOf {
 ///     void restarted()                             power-on, or an NMT reset
 ///     void on_state(canopen::NmtState state)       an NMT state is entered
 ///     bool take_line(const InputLine& line)        its own inputs, or with the time as second argument
+///     std::uint8_t error_register_bits             the bits of 1001h that the device has; default: all
 /// `node_id` is the node-ID at power-on; the handlers are passed to the node. The surroundings must outlive it.
 template <class Self, class Device, canopen::Bus B, canopen::cia402::Options options, class... Handlers>
 class DriveNode {
@@ -171,7 +172,9 @@ class DriveNode {
     if (line.is("fault", 1) || line.is("fault", 2)) {
       const auto code = line.number<std::uint16_t>(1);
       const auto bits = line.is("fault", 2) ? line.number<std::uint8_t>(2) : std::optional<std::uint8_t>{0x01};
-      if (code && bits) fault(*code, static_cast<canopen::ErrorRegister>(*bits));
+      std::uint8_t known = 0xFF;
+      if constexpr (requires { Self::error_register_bits; }) known = Self::error_register_bits;
+      if (code && bits) fault(*code, static_cast<canopen::ErrorRegister>(*bits & known));
       return code && bits;
     }
     if (line.is("limit", 2) && (line.word(1) == "negative" || line.word(1) == "positive")) {

@@ -166,6 +166,13 @@ class EmergencyProducer {
     return true;
   }
 
+  /// Sets the elements of the history to 0.
+  static void clear_history([[maybe_unused]] ObjectStore<Device>& store) {
+    if constexpr (has_history) {
+      std::ranges::fill_n(store.entries().ram(history_first), history_capacity * 4, std::uint8_t{0});
+    }
+  }
+
   /// Returns when the inhibit time ends, or when the next message is to be sent, if the NMT state allows it: not later
   /// than `now` if it can already be sent.
   [[nodiscard]] std::optional<TimePoint> next_deadline(TimePoint now, bool may_send) const {
@@ -270,7 +277,10 @@ class EmergencyProducer {
       unsigned older = count;
       if (older >= history_capacity) older = history_capacity - 1;  // the application may set any number
       count = static_cast<std::uint8_t>(older + 1);
-      const std::uint32_t newest = code | static_cast<std::uint32_t>(info[0] << 16) | (std::uint32_t{info[1]} << 24);
+      std::uint32_t newest = code;
+      if constexpr (Device::options.error_history_has_info) {
+        newest |= static_cast<std::uint32_t>(info[0] << 16) | (std::uint32_t{info[1]} << 24);
+      }
       for (field += sizeof newest * older; older != 0; --older, field -= sizeof newest) {
         std::uint32_t moved;
         std::memcpy(&moved, std::assume_aligned<alignof(std::uint32_t)>(field - sizeof moved), sizeof moved);
