@@ -66,6 +66,18 @@ function(edsc_add_gtest name)
   edsc_add_test_run(${name} --gtest_brief=1)
 endfunction()
 
+# edsc_record_accesses(NAME): a GoogleTest program that records which objects the applications of its nodes use, for the test
+# `value_only`.
+function(edsc_record_accesses name)
+  set(file ${CMAKE_BINARY_DIR}/accesses/${name}.tsv)
+  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/accesses)
+  target_compile_definitions(${name} PRIVATE CANOPEN_ACCESS_PROBE="support/access_probe.hpp" EDSC_ACCESS_FILE="${file}")
+  if(TEST ${name})
+    set_tests_properties(${name} PROPERTIES FIXTURES_SETUP accesses)
+  endif()
+  set_property(GLOBAL APPEND PROPERTY edsc_access_files ${file})
+endfunction()
+
 # `./test.sh quick` also runs these scripts. They take seconds, conform_reference 40 of them.
 set(EDSC_QUICK_SCRIPTS check cli cli_diff cli_format completion conform_reference decode golden manuals options rules)
 

@@ -32,7 +32,7 @@ struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> 
   static constexpr auto name = "Error register";
 };
 
-/// Pre-defined error field.  1003h:01..05  UNSIGNED32  ro                          can-2017c.eds:211
+/// Pre-defined error field.  1003h:01..05  UNSIGNED32  ro                          can-2017c.eds:213
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
   static_assert(SubIndex <= 5 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..5");
@@ -45,49 +45,51 @@ struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Number of errors";
 };
 
-/// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          can-2017c.eds:255
+/// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          can-2017c.eds:257
 struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1005;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
 };
 
-/// Manufacturer device name.  1008h:00  VISIBLE_STRING  ro                         can-2017c.eds:267
+/// Manufacturer device name.  1008h:00  VISIBLE_STRING  ro                         can-2017c.eds:269
 struct manufacturer_device_name : canopen::TypedObject<canopen::VisibleString<16>, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1008;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer device name";
 };
 
-/// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  ro                    can-2017c.eds:276
+/// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  ro                    can-2017c.eds:278
 struct manufacturer_hardware_version : canopen::TypedObject<canopen::VisibleString<6>, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1009;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer hardware version";
 };
 
-/// Manufacturer software version.  100Ah:00  VISIBLE_STRING  ro                    can-2017c.eds:285
+/// Manufacturer software version.  100Ah:00  VISIBLE_STRING  ro                    can-2017c.eds:287
 struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleString<6>, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x100A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer software version";
 };
 
-/// Guard time.  100Ch:00  UNSIGNED16  rw                                           can-2017c.eds:294
+/// Guard time.  100Ch:00  UNSIGNED16  rw                                           can-2017c.eds:296
 struct guard_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x100C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Guard time";
+  static constexpr type low_limit = 0;
+  static constexpr type high_limit = 65535;
 };
 
-/// Life time factor.  100Dh:00  UNSIGNED8  rw                                      can-2017c.eds:303
+/// Life time factor.  100Dh:00  UNSIGNED8  rw                                      can-2017c.eds:308
 struct life_time_factor : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x100D;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Life time factor";
 };
 
-/// Store parameters.  1010h:01..01  UNSIGNED32  rw                                 can-2017c.eds:326
+/// Store parameters.  1010h:01..01  UNSIGNED32  rw                                 can-2017c.eds:331
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..1");
@@ -100,10 +102,10 @@ struct store_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access:
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  can-2017c.eds:326
+/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  can-2017c.eds:331
 using store_parameters_save_all_parameters = store_parameters<1>;
 
-/// Restore default parameters.  1011h:01..01  UNSIGNED32  rw                       can-2017c.eds:349
+/// Restore default parameters.  1011h:01..01  UNSIGNED32  rw                       can-2017c.eds:354
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..1");
@@ -116,17 +118,17 @@ struct restore_default_parameters<0> : canopen::TypedObject<std::uint8_t, canope
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       can-2017c.eds:349
+/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       can-2017c.eds:354
 using restore_default_parameters_restore_all_default_parameters = restore_default_parameters<1>;
 
-/// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          can-2017c.eds:360
+/// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          can-2017c.eds:365
 struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1014;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
-/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              can-2017c.eds:369
+/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              can-2017c.eds:374
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -169,19 +171,19 @@ struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> 
 
 /// SDO server parameter.  1200h
 namespace sdo_server_parameter {
-/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           can-2017c.eds:383
+/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           can-2017c.eds:389
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              can-2017c.eds:391
+/// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              can-2017c.eds:397
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
-/// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              can-2017c.eds:399
+/// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              can-2017c.eds:405
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -191,19 +193,19 @@ struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Ac
 
 /// RPDO communication parameter 1.  1400h
 namespace rpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           can-2017c.eds:417
+/// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           can-2017c.eds:423
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  can-2017c.eds:425
+/// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  can-2017c.eds:431
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1400h:02  UNSIGNED8  rw                                     can-2017c.eds:433
+/// Transmission type.  1400h:02  UNSIGNED8  rw                                     can-2017c.eds:439
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -213,19 +215,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 2.  1401h
 namespace rpdo_communication_parameter_2 {
-/// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           can-2017c.eds:447
+/// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           can-2017c.eds:453
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  can-2017c.eds:455
+/// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  can-2017c.eds:461
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1401h:02  UNSIGNED8  rw                                     can-2017c.eds:463
+/// Transmission type.  1401h:02  UNSIGNED8  rw                                     can-2017c.eds:469
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -235,19 +237,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 3.  1402h
 namespace rpdo_communication_parameter_3 {
-/// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           can-2017c.eds:477
+/// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           can-2017c.eds:483
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  can-2017c.eds:485
+/// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  can-2017c.eds:491
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1402h:02  UNSIGNED8  rw                                     can-2017c.eds:493
+/// Transmission type.  1402h:02  UNSIGNED8  rw                                     can-2017c.eds:499
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -257,19 +259,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 4.  1403h
 namespace rpdo_communication_parameter_4 {
-/// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           can-2017c.eds:507
+/// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           can-2017c.eds:513
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  can-2017c.eds:515
+/// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  can-2017c.eds:521
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1403h:02  UNSIGNED8  rw                                     can-2017c.eds:523
+/// Transmission type.  1403h:02  UNSIGNED8  rw                                     can-2017c.eds:529
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -279,19 +281,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 5.  1404h
 namespace rpdo_communication_parameter_5 {
-/// Highest sub-index supported.  1404h:00  UNSIGNED8  ro                           can-2017c.eds:537
+/// Highest sub-index supported.  1404h:00  UNSIGNED8  ro                           can-2017c.eds:543
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1404;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1404h:01  UNSIGNED32  rw                                  can-2017c.eds:545
+/// COB-ID used by RPDO.  1404h:01  UNSIGNED32  rw                                  can-2017c.eds:551
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1404;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1404h:02  UNSIGNED8  rw                                     can-2017c.eds:553
+/// Transmission type.  1404h:02  UNSIGNED8  rw                                     can-2017c.eds:559
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1404;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -301,19 +303,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 6.  1405h
 namespace rpdo_communication_parameter_6 {
-/// Highest sub-index supported.  1405h:00  UNSIGNED8  ro                           can-2017c.eds:569
+/// Highest sub-index supported.  1405h:00  UNSIGNED8  ro                           can-2017c.eds:575
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1405;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1405h:01  UNSIGNED32  rw                                  can-2017c.eds:577
+/// COB-ID used by RPDO.  1405h:01  UNSIGNED32  rw                                  can-2017c.eds:583
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1405;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1405h:02  UNSIGNED8  rw                                     can-2017c.eds:585
+/// Transmission type.  1405h:02  UNSIGNED8  rw                                     can-2017c.eds:591
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1405;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -323,19 +325,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 7.  1406h
 namespace rpdo_communication_parameter_7 {
-/// Highest sub-index supported.  1406h:00  UNSIGNED8  ro                           can-2017c.eds:599
+/// Highest sub-index supported.  1406h:00  UNSIGNED8  ro                           can-2017c.eds:605
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1406;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1406h:01  UNSIGNED32  rw                                  can-2017c.eds:607
+/// COB-ID used by RPDO.  1406h:01  UNSIGNED32  rw                                  can-2017c.eds:613
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1406;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1406h:02  UNSIGNED8  rw                                     can-2017c.eds:615
+/// Transmission type.  1406h:02  UNSIGNED8  rw                                     can-2017c.eds:621
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1406;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -345,19 +347,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 8.  1407h
 namespace rpdo_communication_parameter_8 {
-/// Highest sub-index supported.  1407h:00  UNSIGNED8  ro                           can-2017c.eds:629
+/// Highest sub-index supported.  1407h:00  UNSIGNED8  ro                           can-2017c.eds:635
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1407;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1407h:01  UNSIGNED32  rw                                  can-2017c.eds:637
+/// COB-ID used by RPDO.  1407h:01  UNSIGNED32  rw                                  can-2017c.eds:643
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1407;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1407h:02  UNSIGNED8  rw                                     can-2017c.eds:645
+/// Transmission type.  1407h:02  UNSIGNED8  rw                                     can-2017c.eds:651
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1407;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -367,19 +369,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 9.  1408h
 namespace rpdo_communication_parameter_9 {
-/// Highest sub-index supported.  1408h:00  UNSIGNED8  ro                           can-2017c.eds:659
+/// Highest sub-index supported.  1408h:00  UNSIGNED8  ro                           can-2017c.eds:665
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1408;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1408h:01  UNSIGNED32  rw                                  can-2017c.eds:667
+/// COB-ID used by RPDO.  1408h:01  UNSIGNED32  rw                                  can-2017c.eds:673
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1408;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1408h:02  UNSIGNED8  rw                                     can-2017c.eds:675
+/// Transmission type.  1408h:02  UNSIGNED8  rw                                     can-2017c.eds:681
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1408;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -389,19 +391,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 10.  1409h
 namespace rpdo_communication_parameter_10 {
-/// Highest sub-index supported.  1409h:00  UNSIGNED8  ro                           can-2017c.eds:689
+/// Highest sub-index supported.  1409h:00  UNSIGNED8  ro                           can-2017c.eds:695
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1409;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1409h:01  UNSIGNED32  rw                                  can-2017c.eds:697
+/// COB-ID used by RPDO.  1409h:01  UNSIGNED32  rw                                  can-2017c.eds:703
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1409;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1409h:02  UNSIGNED8  rw                                     can-2017c.eds:705
+/// Transmission type.  1409h:02  UNSIGNED8  rw                                     can-2017c.eds:711
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1409;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -411,55 +413,55 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO mapping parameter 1.  1600h
 namespace rpdo_mapping_parameter_1 {
-/// Number of mapped objects.  1600h:00  UNSIGNED8  rw                              can-2017c.eds:726
+/// Number of mapped objects.  1600h:00  UNSIGNED8  rw                              can-2017c.eds:732
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      can-2017c.eds:734
+/// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      can-2017c.eds:740
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      can-2017c.eds:742
+/// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      can-2017c.eds:748
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      can-2017c.eds:750
+/// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      can-2017c.eds:756
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      can-2017c.eds:758
+/// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      can-2017c.eds:764
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1600h:05  UNSIGNED32  rw                                      can-2017c.eds:766
+/// Mapping entry 5.  1600h:05  UNSIGNED32  rw                                      can-2017c.eds:772
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1600h:06  UNSIGNED32  rw                                      can-2017c.eds:774
+/// Mapping entry 6.  1600h:06  UNSIGNED32  rw                                      can-2017c.eds:780
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1600h:07  UNSIGNED32  rw                                      can-2017c.eds:782
+/// Mapping entry 7.  1600h:07  UNSIGNED32  rw                                      can-2017c.eds:788
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1600h:08  UNSIGNED32  rw                                      can-2017c.eds:790
+/// Mapping entry 8.  1600h:08  UNSIGNED32  rw                                      can-2017c.eds:796
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -469,55 +471,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 2.  1601h
 namespace rpdo_mapping_parameter_2 {
-/// Number of mapped objects.  1601h:00  UNSIGNED8  rw                              can-2017c.eds:803
+/// Number of mapped objects.  1601h:00  UNSIGNED8  rw                              can-2017c.eds:809
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      can-2017c.eds:811
+/// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      can-2017c.eds:817
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      can-2017c.eds:819
+/// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      can-2017c.eds:825
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      can-2017c.eds:827
+/// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      can-2017c.eds:833
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      can-2017c.eds:835
+/// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      can-2017c.eds:841
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1601h:05  UNSIGNED32  rw                                      can-2017c.eds:843
+/// Mapping entry 5.  1601h:05  UNSIGNED32  rw                                      can-2017c.eds:849
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1601h:06  UNSIGNED32  rw                                      can-2017c.eds:851
+/// Mapping entry 6.  1601h:06  UNSIGNED32  rw                                      can-2017c.eds:857
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1601h:07  UNSIGNED32  rw                                      can-2017c.eds:859
+/// Mapping entry 7.  1601h:07  UNSIGNED32  rw                                      can-2017c.eds:865
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1601h:08  UNSIGNED32  rw                                      can-2017c.eds:867
+/// Mapping entry 8.  1601h:08  UNSIGNED32  rw                                      can-2017c.eds:873
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -527,55 +529,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 3.  1602h
 namespace rpdo_mapping_parameter_3 {
-/// Number of mapped objects.  1602h:00  UNSIGNED8  rw                              can-2017c.eds:880
+/// Number of mapped objects.  1602h:00  UNSIGNED8  rw                              can-2017c.eds:886
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      can-2017c.eds:888
+/// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      can-2017c.eds:894
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      can-2017c.eds:896
+/// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      can-2017c.eds:902
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      can-2017c.eds:904
+/// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      can-2017c.eds:910
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      can-2017c.eds:912
+/// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      can-2017c.eds:918
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1602h:05  UNSIGNED32  rw                                      can-2017c.eds:920
+/// Mapping entry 5.  1602h:05  UNSIGNED32  rw                                      can-2017c.eds:926
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1602h:06  UNSIGNED32  rw                                      can-2017c.eds:928
+/// Mapping entry 6.  1602h:06  UNSIGNED32  rw                                      can-2017c.eds:934
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1602h:07  UNSIGNED32  rw                                      can-2017c.eds:936
+/// Mapping entry 7.  1602h:07  UNSIGNED32  rw                                      can-2017c.eds:942
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1602h:08  UNSIGNED32  rw                                      can-2017c.eds:944
+/// Mapping entry 8.  1602h:08  UNSIGNED32  rw                                      can-2017c.eds:950
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -585,55 +587,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 4.  1603h
 namespace rpdo_mapping_parameter_4 {
-/// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              can-2017c.eds:957
+/// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              can-2017c.eds:963
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      can-2017c.eds:965
+/// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      can-2017c.eds:971
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      can-2017c.eds:973
+/// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      can-2017c.eds:979
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      can-2017c.eds:981
+/// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      can-2017c.eds:987
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      can-2017c.eds:989
+/// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      can-2017c.eds:995
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1603h:05  UNSIGNED32  rw                                      can-2017c.eds:997
+/// Mapping entry 5.  1603h:05  UNSIGNED32  rw                                      can-2017c.eds:1003
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1603h:06  UNSIGNED32  rw                                      can-2017c.eds:1005
+/// Mapping entry 6.  1603h:06  UNSIGNED32  rw                                      can-2017c.eds:1011
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1603h:07  UNSIGNED32  rw                                      can-2017c.eds:1013
+/// Mapping entry 7.  1603h:07  UNSIGNED32  rw                                      can-2017c.eds:1019
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1603h:08  UNSIGNED32  rw                                      can-2017c.eds:1021
+/// Mapping entry 8.  1603h:08  UNSIGNED32  rw                                      can-2017c.eds:1027
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -643,55 +645,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 5.  1604h
 namespace rpdo_mapping_parameter_5 {
-/// Number of mapped objects.  1604h:00  UNSIGNED8  rw                              can-2017c.eds:1034
+/// Number of mapped objects.  1604h:00  UNSIGNED8  rw                              can-2017c.eds:1040
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1604h:01  UNSIGNED32  rw                                      can-2017c.eds:1042
+/// Mapping entry 1.  1604h:01  UNSIGNED32  rw                                      can-2017c.eds:1048
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1604h:02  UNSIGNED32  rw                                      can-2017c.eds:1050
+/// Mapping entry 2.  1604h:02  UNSIGNED32  rw                                      can-2017c.eds:1056
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1604h:03  UNSIGNED32  rw                                      can-2017c.eds:1058
+/// Mapping entry 3.  1604h:03  UNSIGNED32  rw                                      can-2017c.eds:1064
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1604h:04  UNSIGNED32  rw                                      can-2017c.eds:1066
+/// Mapping entry 4.  1604h:04  UNSIGNED32  rw                                      can-2017c.eds:1072
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1604h:05  UNSIGNED32  rw                                      can-2017c.eds:1074
+/// Mapping entry 5.  1604h:05  UNSIGNED32  rw                                      can-2017c.eds:1080
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1604h:06  UNSIGNED32  rw                                      can-2017c.eds:1082
+/// Mapping entry 6.  1604h:06  UNSIGNED32  rw                                      can-2017c.eds:1088
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1604h:07  UNSIGNED32  rw                                      can-2017c.eds:1090
+/// Mapping entry 7.  1604h:07  UNSIGNED32  rw                                      can-2017c.eds:1096
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1604h:08  UNSIGNED32  rw                                      can-2017c.eds:1098
+/// Mapping entry 8.  1604h:08  UNSIGNED32  rw                                      can-2017c.eds:1104
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -701,55 +703,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 6.  1605h
 namespace rpdo_mapping_parameter_6 {
-/// Number of mapped objects.  1605h:00  UNSIGNED8  rw                              can-2017c.eds:1111
+/// Number of mapped objects.  1605h:00  UNSIGNED8  rw                              can-2017c.eds:1117
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1605h:01  UNSIGNED32  rw                                      can-2017c.eds:1119
+/// Mapping entry 1.  1605h:01  UNSIGNED32  rw                                      can-2017c.eds:1125
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1605h:02  UNSIGNED32  rw                                      can-2017c.eds:1127
+/// Mapping entry 2.  1605h:02  UNSIGNED32  rw                                      can-2017c.eds:1133
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1605h:03  UNSIGNED32  rw                                      can-2017c.eds:1135
+/// Mapping entry 3.  1605h:03  UNSIGNED32  rw                                      can-2017c.eds:1141
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1605h:04  UNSIGNED32  rw                                      can-2017c.eds:1143
+/// Mapping entry 4.  1605h:04  UNSIGNED32  rw                                      can-2017c.eds:1149
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1605h:05  UNSIGNED32  rw                                      can-2017c.eds:1151
+/// Mapping entry 5.  1605h:05  UNSIGNED32  rw                                      can-2017c.eds:1157
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1605h:06  UNSIGNED32  rw                                      can-2017c.eds:1159
+/// Mapping entry 6.  1605h:06  UNSIGNED32  rw                                      can-2017c.eds:1165
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1605h:07  UNSIGNED32  rw                                      can-2017c.eds:1167
+/// Mapping entry 7.  1605h:07  UNSIGNED32  rw                                      can-2017c.eds:1173
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1605h:08  UNSIGNED32  rw                                      can-2017c.eds:1175
+/// Mapping entry 8.  1605h:08  UNSIGNED32  rw                                      can-2017c.eds:1181
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -759,55 +761,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 7.  1606h
 namespace rpdo_mapping_parameter_7 {
-/// Number of mapped objects.  1606h:00  UNSIGNED8  rw                              can-2017c.eds:1188
+/// Number of mapped objects.  1606h:00  UNSIGNED8  rw                              can-2017c.eds:1194
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1606h:01  UNSIGNED32  rw                                      can-2017c.eds:1196
+/// Mapping entry 1.  1606h:01  UNSIGNED32  rw                                      can-2017c.eds:1202
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1606h:02  UNSIGNED32  rw                                      can-2017c.eds:1204
+/// Mapping entry 2.  1606h:02  UNSIGNED32  rw                                      can-2017c.eds:1210
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1606h:03  UNSIGNED32  rw                                      can-2017c.eds:1212
+/// Mapping entry 3.  1606h:03  UNSIGNED32  rw                                      can-2017c.eds:1218
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1606h:04  UNSIGNED32  rw                                      can-2017c.eds:1220
+/// Mapping entry 4.  1606h:04  UNSIGNED32  rw                                      can-2017c.eds:1226
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1606h:05  UNSIGNED32  rw                                      can-2017c.eds:1228
+/// Mapping entry 5.  1606h:05  UNSIGNED32  rw                                      can-2017c.eds:1234
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1606h:06  UNSIGNED32  rw                                      can-2017c.eds:1236
+/// Mapping entry 6.  1606h:06  UNSIGNED32  rw                                      can-2017c.eds:1242
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1606h:07  UNSIGNED32  rw                                      can-2017c.eds:1244
+/// Mapping entry 7.  1606h:07  UNSIGNED32  rw                                      can-2017c.eds:1250
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1606h:08  UNSIGNED32  rw                                      can-2017c.eds:1252
+/// Mapping entry 8.  1606h:08  UNSIGNED32  rw                                      can-2017c.eds:1258
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -817,55 +819,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 8.  1607h
 namespace rpdo_mapping_parameter_8 {
-/// Number of mapped objects.  1607h:00  UNSIGNED8  rw                              can-2017c.eds:1265
+/// Number of mapped objects.  1607h:00  UNSIGNED8  rw                              can-2017c.eds:1271
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1607h:01  UNSIGNED32  rw                                      can-2017c.eds:1273
+/// Mapping entry 1.  1607h:01  UNSIGNED32  rw                                      can-2017c.eds:1279
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1607h:02  UNSIGNED32  rw                                      can-2017c.eds:1281
+/// Mapping entry 2.  1607h:02  UNSIGNED32  rw                                      can-2017c.eds:1287
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1607h:03  UNSIGNED32  rw                                      can-2017c.eds:1289
+/// Mapping entry 3.  1607h:03  UNSIGNED32  rw                                      can-2017c.eds:1295
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1607h:04  UNSIGNED32  rw                                      can-2017c.eds:1297
+/// Mapping entry 4.  1607h:04  UNSIGNED32  rw                                      can-2017c.eds:1303
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1607h:05  UNSIGNED32  rw                                      can-2017c.eds:1305
+/// Mapping entry 5.  1607h:05  UNSIGNED32  rw                                      can-2017c.eds:1311
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1607h:06  UNSIGNED32  rw                                      can-2017c.eds:1313
+/// Mapping entry 6.  1607h:06  UNSIGNED32  rw                                      can-2017c.eds:1319
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1607h:07  UNSIGNED32  rw                                      can-2017c.eds:1321
+/// Mapping entry 7.  1607h:07  UNSIGNED32  rw                                      can-2017c.eds:1327
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1607h:08  UNSIGNED32  rw                                      can-2017c.eds:1329
+/// Mapping entry 8.  1607h:08  UNSIGNED32  rw                                      can-2017c.eds:1335
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -875,55 +877,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 9.  1608h
 namespace rpdo_mapping_parameter_9 {
-/// Number of mapped objects.  1608h:00  UNSIGNED8  rw                              can-2017c.eds:1342
+/// Number of mapped objects.  1608h:00  UNSIGNED8  rw                              can-2017c.eds:1348
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1608h:01  UNSIGNED32  rw                                      can-2017c.eds:1350
+/// Mapping entry 1.  1608h:01  UNSIGNED32  rw                                      can-2017c.eds:1356
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1608h:02  UNSIGNED32  rw                                      can-2017c.eds:1358
+/// Mapping entry 2.  1608h:02  UNSIGNED32  rw                                      can-2017c.eds:1364
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1608h:03  UNSIGNED32  rw                                      can-2017c.eds:1366
+/// Mapping entry 3.  1608h:03  UNSIGNED32  rw                                      can-2017c.eds:1372
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1608h:04  UNSIGNED32  rw                                      can-2017c.eds:1374
+/// Mapping entry 4.  1608h:04  UNSIGNED32  rw                                      can-2017c.eds:1380
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1608h:05  UNSIGNED32  rw                                      can-2017c.eds:1382
+/// Mapping entry 5.  1608h:05  UNSIGNED32  rw                                      can-2017c.eds:1388
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1608h:06  UNSIGNED32  rw                                      can-2017c.eds:1390
+/// Mapping entry 6.  1608h:06  UNSIGNED32  rw                                      can-2017c.eds:1396
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1608h:07  UNSIGNED32  rw                                      can-2017c.eds:1398
+/// Mapping entry 7.  1608h:07  UNSIGNED32  rw                                      can-2017c.eds:1404
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1608h:08  UNSIGNED32  rw                                      can-2017c.eds:1406
+/// Mapping entry 8.  1608h:08  UNSIGNED32  rw                                      can-2017c.eds:1412
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -933,55 +935,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 10.  1609h
 namespace rpdo_mapping_parameter_10 {
-/// Number of mapped objects.  1609h:00  UNSIGNED8  rw                              can-2017c.eds:1419
+/// Number of mapped objects.  1609h:00  UNSIGNED8  rw                              can-2017c.eds:1425
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1609h:01  UNSIGNED32  rw                                      can-2017c.eds:1427
+/// Mapping entry 1.  1609h:01  UNSIGNED32  rw                                      can-2017c.eds:1433
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1609h:02  UNSIGNED32  rw                                      can-2017c.eds:1435
+/// Mapping entry 2.  1609h:02  UNSIGNED32  rw                                      can-2017c.eds:1441
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1609h:03  UNSIGNED32  rw                                      can-2017c.eds:1443
+/// Mapping entry 3.  1609h:03  UNSIGNED32  rw                                      can-2017c.eds:1449
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1609h:04  UNSIGNED32  rw                                      can-2017c.eds:1451
+/// Mapping entry 4.  1609h:04  UNSIGNED32  rw                                      can-2017c.eds:1457
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1609h:05  UNSIGNED32  rw                                      can-2017c.eds:1459
+/// Mapping entry 5.  1609h:05  UNSIGNED32  rw                                      can-2017c.eds:1465
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1609h:06  UNSIGNED32  rw                                      can-2017c.eds:1467
+/// Mapping entry 6.  1609h:06  UNSIGNED32  rw                                      can-2017c.eds:1473
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1609h:07  UNSIGNED32  rw                                      can-2017c.eds:1475
+/// Mapping entry 7.  1609h:07  UNSIGNED32  rw                                      can-2017c.eds:1481
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1609h:08  UNSIGNED32  rw                                      can-2017c.eds:1483
+/// Mapping entry 8.  1609h:08  UNSIGNED32  rw                                      can-2017c.eds:1489
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -991,31 +993,31 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           can-2017c.eds:1502
+/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           can-2017c.eds:1508
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  can-2017c.eds:1510
+/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  can-2017c.eds:1516
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1800h:02  UNSIGNED8  rw                                     can-2017c.eds:1518
+/// Transmission type.  1800h:02  UNSIGNED8  rw                                     can-2017c.eds:1524
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1800h:03  UNSIGNED16  rw                                         can-2017c.eds:1526
+/// Inhibit time.  1800h:03  UNSIGNED16  rw                                         can-2017c.eds:1532
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1800h:05  UNSIGNED16  rw                                          can-2017c.eds:1534
+/// Event timer.  1800h:05  UNSIGNED16  rw                                          can-2017c.eds:1541
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1025,31 +1027,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 2.  1801h
 namespace tpdo_communication_parameter_2 {
-/// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           can-2017c.eds:1548
+/// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           can-2017c.eds:1556
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  can-2017c.eds:1556
+/// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  can-2017c.eds:1564
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1801h:02  UNSIGNED8  rw                                     can-2017c.eds:1564
+/// Transmission type.  1801h:02  UNSIGNED8  rw                                     can-2017c.eds:1572
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1801h:03  UNSIGNED16  rw                                         can-2017c.eds:1572
+/// Inhibit time.  1801h:03  UNSIGNED16  rw                                         can-2017c.eds:1580
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1801h:05  UNSIGNED16  rw                                          can-2017c.eds:1580
+/// Event timer.  1801h:05  UNSIGNED16  rw                                          can-2017c.eds:1589
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1059,31 +1061,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 3.  1802h
 namespace tpdo_communication_parameter_3 {
-/// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           can-2017c.eds:1594
+/// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           can-2017c.eds:1604
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  can-2017c.eds:1602
+/// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  can-2017c.eds:1612
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1802h:02  UNSIGNED8  rw                                     can-2017c.eds:1610
+/// Transmission type.  1802h:02  UNSIGNED8  rw                                     can-2017c.eds:1620
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1802h:03  UNSIGNED16  rw                                         can-2017c.eds:1618
+/// Inhibit time.  1802h:03  UNSIGNED16  rw                                         can-2017c.eds:1628
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1802h:05  UNSIGNED16  rw                                          can-2017c.eds:1626
+/// Event timer.  1802h:05  UNSIGNED16  rw                                          can-2017c.eds:1637
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1093,31 +1095,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 4.  1803h
 namespace tpdo_communication_parameter_4 {
-/// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           can-2017c.eds:1640
+/// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           can-2017c.eds:1652
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  can-2017c.eds:1648
+/// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  can-2017c.eds:1660
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1803h:02  UNSIGNED8  rw                                     can-2017c.eds:1656
+/// Transmission type.  1803h:02  UNSIGNED8  rw                                     can-2017c.eds:1668
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1803h:03  UNSIGNED16  rw                                         can-2017c.eds:1664
+/// Inhibit time.  1803h:03  UNSIGNED16  rw                                         can-2017c.eds:1676
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1803h:05  UNSIGNED16  rw                                          can-2017c.eds:1672
+/// Event timer.  1803h:05  UNSIGNED16  rw                                          can-2017c.eds:1685
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1127,31 +1129,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 5.  1804h
 namespace tpdo_communication_parameter_5 {
-/// Highest sub-index supported.  1804h:00  UNSIGNED8  ro                           can-2017c.eds:1686
+/// Highest sub-index supported.  1804h:00  UNSIGNED8  ro                           can-2017c.eds:1700
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1804h:01  UNSIGNED32  rw                                  can-2017c.eds:1694
+/// COB-ID used by TPDO.  1804h:01  UNSIGNED32  rw                                  can-2017c.eds:1708
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1804h:02  UNSIGNED8  rw                                     can-2017c.eds:1702
+/// Transmission type.  1804h:02  UNSIGNED8  rw                                     can-2017c.eds:1716
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1804h:03  UNSIGNED16  rw                                         can-2017c.eds:1710
+/// Inhibit time.  1804h:03  UNSIGNED16  rw                                         can-2017c.eds:1724
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1804h:05  UNSIGNED16  rw                                          can-2017c.eds:1718
+/// Event timer.  1804h:05  UNSIGNED16  rw                                          can-2017c.eds:1733
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1161,31 +1163,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 6.  1805h
 namespace tpdo_communication_parameter_6 {
-/// Highest sub-index supported.  1805h:00  UNSIGNED8  ro                           can-2017c.eds:1734
+/// Highest sub-index supported.  1805h:00  UNSIGNED8  ro                           can-2017c.eds:1750
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1805h:01  UNSIGNED32  rw                                  can-2017c.eds:1742
+/// COB-ID used by TPDO.  1805h:01  UNSIGNED32  rw                                  can-2017c.eds:1758
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1805h:02  UNSIGNED8  rw                                     can-2017c.eds:1750
+/// Transmission type.  1805h:02  UNSIGNED8  rw                                     can-2017c.eds:1766
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1805h:03  UNSIGNED16  rw                                         can-2017c.eds:1758
+/// Inhibit time.  1805h:03  UNSIGNED16  rw                                         can-2017c.eds:1774
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1805h:05  UNSIGNED16  rw                                          can-2017c.eds:1766
+/// Event timer.  1805h:05  UNSIGNED16  rw                                          can-2017c.eds:1783
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1195,31 +1197,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 7.  1806h
 namespace tpdo_communication_parameter_7 {
-/// Highest sub-index supported.  1806h:00  UNSIGNED8  ro                           can-2017c.eds:1780
+/// Highest sub-index supported.  1806h:00  UNSIGNED8  ro                           can-2017c.eds:1798
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1806h:01  UNSIGNED32  rw                                  can-2017c.eds:1788
+/// COB-ID used by TPDO.  1806h:01  UNSIGNED32  rw                                  can-2017c.eds:1806
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1806h:02  UNSIGNED8  rw                                     can-2017c.eds:1796
+/// Transmission type.  1806h:02  UNSIGNED8  rw                                     can-2017c.eds:1814
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1806h:03  UNSIGNED16  rw                                         can-2017c.eds:1804
+/// Inhibit time.  1806h:03  UNSIGNED16  rw                                         can-2017c.eds:1822
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1806h:05  UNSIGNED16  rw                                          can-2017c.eds:1812
+/// Event timer.  1806h:05  UNSIGNED16  rw                                          can-2017c.eds:1831
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1229,31 +1231,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 8.  1807h
 namespace tpdo_communication_parameter_8 {
-/// Highest sub-index supported.  1807h:00  UNSIGNED8  ro                           can-2017c.eds:1826
+/// Highest sub-index supported.  1807h:00  UNSIGNED8  ro                           can-2017c.eds:1846
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1807h:01  UNSIGNED32  rw                                  can-2017c.eds:1834
+/// COB-ID used by TPDO.  1807h:01  UNSIGNED32  rw                                  can-2017c.eds:1854
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1807h:02  UNSIGNED8  rw                                     can-2017c.eds:1842
+/// Transmission type.  1807h:02  UNSIGNED8  rw                                     can-2017c.eds:1862
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1807h:03  UNSIGNED16  rw                                         can-2017c.eds:1850
+/// Inhibit time.  1807h:03  UNSIGNED16  rw                                         can-2017c.eds:1870
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1807h:05  UNSIGNED16  rw                                          can-2017c.eds:1858
+/// Event timer.  1807h:05  UNSIGNED16  rw                                          can-2017c.eds:1879
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1263,31 +1265,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 9.  1808h
 namespace tpdo_communication_parameter_9 {
-/// Highest sub-index supported.  1808h:00  UNSIGNED8  ro                           can-2017c.eds:1872
+/// Highest sub-index supported.  1808h:00  UNSIGNED8  ro                           can-2017c.eds:1894
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1808h:01  UNSIGNED32  rw                                  can-2017c.eds:1880
+/// COB-ID used by TPDO.  1808h:01  UNSIGNED32  rw                                  can-2017c.eds:1902
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1808h:02  UNSIGNED8  rw                                     can-2017c.eds:1888
+/// Transmission type.  1808h:02  UNSIGNED8  rw                                     can-2017c.eds:1910
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1808h:03  UNSIGNED16  rw                                         can-2017c.eds:1896
+/// Inhibit time.  1808h:03  UNSIGNED16  rw                                         can-2017c.eds:1918
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1808h:05  UNSIGNED16  rw                                          can-2017c.eds:1904
+/// Event timer.  1808h:05  UNSIGNED16  rw                                          can-2017c.eds:1927
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1297,31 +1299,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 10.  1809h
 namespace tpdo_communication_parameter_10 {
-/// Highest sub-index supported.  1809h:00  UNSIGNED8  ro                           can-2017c.eds:1918
+/// Highest sub-index supported.  1809h:00  UNSIGNED8  ro                           can-2017c.eds:1942
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1809h:01  UNSIGNED32  rw                                  can-2017c.eds:1926
+/// COB-ID used by TPDO.  1809h:01  UNSIGNED32  rw                                  can-2017c.eds:1950
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1809h:02  UNSIGNED8  rw                                     can-2017c.eds:1934
+/// Transmission type.  1809h:02  UNSIGNED8  rw                                     can-2017c.eds:1958
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1809h:03  UNSIGNED16  rw                                         can-2017c.eds:1942
+/// Inhibit time.  1809h:03  UNSIGNED16  rw                                         can-2017c.eds:1966
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1809h:05  UNSIGNED16  rw                                          can-2017c.eds:1950
+/// Event timer.  1809h:05  UNSIGNED16  rw                                          can-2017c.eds:1975
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1331,55 +1333,55 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
-/// Number of mapped objects.  1A00h:00  UNSIGNED8  rw                              can-2017c.eds:1971
+/// Number of mapped objects.  1A00h:00  UNSIGNED8  rw                              can-2017c.eds:1997
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      can-2017c.eds:1979
+/// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      can-2017c.eds:2005
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      can-2017c.eds:1987
+/// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      can-2017c.eds:2013
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      can-2017c.eds:1995
+/// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      can-2017c.eds:2021
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      can-2017c.eds:2003
+/// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      can-2017c.eds:2029
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A00h:05  UNSIGNED32  rw                                      can-2017c.eds:2011
+/// Mapping entry 5.  1A00h:05  UNSIGNED32  rw                                      can-2017c.eds:2037
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A00h:06  UNSIGNED32  rw                                      can-2017c.eds:2019
+/// Mapping entry 6.  1A00h:06  UNSIGNED32  rw                                      can-2017c.eds:2045
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A00h:07  UNSIGNED32  rw                                      can-2017c.eds:2027
+/// Mapping entry 7.  1A00h:07  UNSIGNED32  rw                                      can-2017c.eds:2053
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A00h:08  UNSIGNED32  rw                                      can-2017c.eds:2035
+/// Mapping entry 8.  1A00h:08  UNSIGNED32  rw                                      can-2017c.eds:2061
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1389,55 +1391,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 2.  1A01h
 namespace tpdo_mapping_parameter_2 {
-/// Number of mapped objects.  1A01h:00  UNSIGNED8  rw                              can-2017c.eds:2049
+/// Number of mapped objects.  1A01h:00  UNSIGNED8  rw                              can-2017c.eds:2075
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      can-2017c.eds:2057
+/// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      can-2017c.eds:2083
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      can-2017c.eds:2065
+/// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      can-2017c.eds:2091
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      can-2017c.eds:2073
+/// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      can-2017c.eds:2099
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      can-2017c.eds:2081
+/// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      can-2017c.eds:2107
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A01h:05  UNSIGNED32  rw                                      can-2017c.eds:2089
+/// Mapping entry 5.  1A01h:05  UNSIGNED32  rw                                      can-2017c.eds:2115
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A01h:06  UNSIGNED32  rw                                      can-2017c.eds:2097
+/// Mapping entry 6.  1A01h:06  UNSIGNED32  rw                                      can-2017c.eds:2123
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A01h:07  UNSIGNED32  rw                                      can-2017c.eds:2105
+/// Mapping entry 7.  1A01h:07  UNSIGNED32  rw                                      can-2017c.eds:2131
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A01h:08  UNSIGNED32  rw                                      can-2017c.eds:2113
+/// Mapping entry 8.  1A01h:08  UNSIGNED32  rw                                      can-2017c.eds:2139
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1447,55 +1449,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 3.  1A02h
 namespace tpdo_mapping_parameter_3 {
-/// Number of mapped objects.  1A02h:00  UNSIGNED8  rw                              can-2017c.eds:2127
+/// Number of mapped objects.  1A02h:00  UNSIGNED8  rw                              can-2017c.eds:2153
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      can-2017c.eds:2135
+/// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      can-2017c.eds:2161
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      can-2017c.eds:2143
+/// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      can-2017c.eds:2169
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      can-2017c.eds:2151
+/// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      can-2017c.eds:2177
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      can-2017c.eds:2159
+/// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      can-2017c.eds:2185
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A02h:05  UNSIGNED32  rw                                      can-2017c.eds:2167
+/// Mapping entry 5.  1A02h:05  UNSIGNED32  rw                                      can-2017c.eds:2193
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A02h:06  UNSIGNED32  rw                                      can-2017c.eds:2175
+/// Mapping entry 6.  1A02h:06  UNSIGNED32  rw                                      can-2017c.eds:2201
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A02h:07  UNSIGNED32  rw                                      can-2017c.eds:2183
+/// Mapping entry 7.  1A02h:07  UNSIGNED32  rw                                      can-2017c.eds:2209
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A02h:08  UNSIGNED32  rw                                      can-2017c.eds:2191
+/// Mapping entry 8.  1A02h:08  UNSIGNED32  rw                                      can-2017c.eds:2217
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1505,55 +1507,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 4.  1A03h
 namespace tpdo_mapping_parameter_4 {
-/// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              can-2017c.eds:2204
+/// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              can-2017c.eds:2230
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      can-2017c.eds:2212
+/// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      can-2017c.eds:2238
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      can-2017c.eds:2220
+/// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      can-2017c.eds:2246
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      can-2017c.eds:2228
+/// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      can-2017c.eds:2254
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      can-2017c.eds:2236
+/// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      can-2017c.eds:2262
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A03h:05  UNSIGNED32  rw                                      can-2017c.eds:2244
+/// Mapping entry 5.  1A03h:05  UNSIGNED32  rw                                      can-2017c.eds:2270
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A03h:06  UNSIGNED32  rw                                      can-2017c.eds:2252
+/// Mapping entry 6.  1A03h:06  UNSIGNED32  rw                                      can-2017c.eds:2278
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A03h:07  UNSIGNED32  rw                                      can-2017c.eds:2260
+/// Mapping entry 7.  1A03h:07  UNSIGNED32  rw                                      can-2017c.eds:2286
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A03h:08  UNSIGNED32  rw                                      can-2017c.eds:2268
+/// Mapping entry 8.  1A03h:08  UNSIGNED32  rw                                      can-2017c.eds:2294
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1563,55 +1565,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 5.  1A04h
 namespace tpdo_mapping_parameter_5 {
-/// Number of mapped objects.  1A04h:00  UNSIGNED8  rw                              can-2017c.eds:2281
+/// Number of mapped objects.  1A04h:00  UNSIGNED8  rw                              can-2017c.eds:2307
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A04h:01  UNSIGNED32  rw                                      can-2017c.eds:2289
+/// Mapping entry 1.  1A04h:01  UNSIGNED32  rw                                      can-2017c.eds:2315
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A04h:02  UNSIGNED32  rw                                      can-2017c.eds:2297
+/// Mapping entry 2.  1A04h:02  UNSIGNED32  rw                                      can-2017c.eds:2323
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A04h:03  UNSIGNED32  rw                                      can-2017c.eds:2305
+/// Mapping entry 3.  1A04h:03  UNSIGNED32  rw                                      can-2017c.eds:2331
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A04h:04  UNSIGNED32  rw                                      can-2017c.eds:2313
+/// Mapping entry 4.  1A04h:04  UNSIGNED32  rw                                      can-2017c.eds:2339
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A04h:05  UNSIGNED32  rw                                      can-2017c.eds:2321
+/// Mapping entry 5.  1A04h:05  UNSIGNED32  rw                                      can-2017c.eds:2347
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A04h:06  UNSIGNED32  rw                                      can-2017c.eds:2329
+/// Mapping entry 6.  1A04h:06  UNSIGNED32  rw                                      can-2017c.eds:2355
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A04h:07  UNSIGNED32  rw                                      can-2017c.eds:2337
+/// Mapping entry 7.  1A04h:07  UNSIGNED32  rw                                      can-2017c.eds:2363
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A04h:08  UNSIGNED32  rw                                      can-2017c.eds:2345
+/// Mapping entry 8.  1A04h:08  UNSIGNED32  rw                                      can-2017c.eds:2371
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1621,55 +1623,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 6.  1A05h
 namespace tpdo_mapping_parameter_6 {
-/// Number of mapped objects.  1A05h:00  UNSIGNED8  rw                              can-2017c.eds:2358
+/// Number of mapped objects.  1A05h:00  UNSIGNED8  rw                              can-2017c.eds:2384
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A05h:01  UNSIGNED32  rw                                      can-2017c.eds:2366
+/// Mapping entry 1.  1A05h:01  UNSIGNED32  rw                                      can-2017c.eds:2392
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A05h:02  UNSIGNED32  rw                                      can-2017c.eds:2374
+/// Mapping entry 2.  1A05h:02  UNSIGNED32  rw                                      can-2017c.eds:2400
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A05h:03  UNSIGNED32  rw                                      can-2017c.eds:2382
+/// Mapping entry 3.  1A05h:03  UNSIGNED32  rw                                      can-2017c.eds:2408
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A05h:04  UNSIGNED32  rw                                      can-2017c.eds:2390
+/// Mapping entry 4.  1A05h:04  UNSIGNED32  rw                                      can-2017c.eds:2416
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A05h:05  UNSIGNED32  rw                                      can-2017c.eds:2398
+/// Mapping entry 5.  1A05h:05  UNSIGNED32  rw                                      can-2017c.eds:2424
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A05h:06  UNSIGNED32  rw                                      can-2017c.eds:2406
+/// Mapping entry 6.  1A05h:06  UNSIGNED32  rw                                      can-2017c.eds:2432
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A05h:07  UNSIGNED32  rw                                      can-2017c.eds:2414
+/// Mapping entry 7.  1A05h:07  UNSIGNED32  rw                                      can-2017c.eds:2440
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A05h:08  UNSIGNED32  rw                                      can-2017c.eds:2422
+/// Mapping entry 8.  1A05h:08  UNSIGNED32  rw                                      can-2017c.eds:2448
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1679,55 +1681,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 7.  1A06h
 namespace tpdo_mapping_parameter_7 {
-/// Number of mapped objects.  1A06h:00  UNSIGNED8  rw                              can-2017c.eds:2435
+/// Number of mapped objects.  1A06h:00  UNSIGNED8  rw                              can-2017c.eds:2461
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A06h:01  UNSIGNED32  rw                                      can-2017c.eds:2443
+/// Mapping entry 1.  1A06h:01  UNSIGNED32  rw                                      can-2017c.eds:2469
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A06h:02  UNSIGNED32  rw                                      can-2017c.eds:2451
+/// Mapping entry 2.  1A06h:02  UNSIGNED32  rw                                      can-2017c.eds:2477
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A06h:03  UNSIGNED32  rw                                      can-2017c.eds:2459
+/// Mapping entry 3.  1A06h:03  UNSIGNED32  rw                                      can-2017c.eds:2485
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A06h:04  UNSIGNED32  rw                                      can-2017c.eds:2467
+/// Mapping entry 4.  1A06h:04  UNSIGNED32  rw                                      can-2017c.eds:2493
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A06h:05  UNSIGNED32  rw                                      can-2017c.eds:2475
+/// Mapping entry 5.  1A06h:05  UNSIGNED32  rw                                      can-2017c.eds:2501
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A06h:06  UNSIGNED32  rw                                      can-2017c.eds:2483
+/// Mapping entry 6.  1A06h:06  UNSIGNED32  rw                                      can-2017c.eds:2509
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A06h:07  UNSIGNED32  rw                                      can-2017c.eds:2491
+/// Mapping entry 7.  1A06h:07  UNSIGNED32  rw                                      can-2017c.eds:2517
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A06h:08  UNSIGNED32  rw                                      can-2017c.eds:2499
+/// Mapping entry 8.  1A06h:08  UNSIGNED32  rw                                      can-2017c.eds:2525
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1737,55 +1739,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 8.  1A07h
 namespace tpdo_mapping_parameter_8 {
-/// Number of mapped objects.  1A07h:00  UNSIGNED8  rw                              can-2017c.eds:2512
+/// Number of mapped objects.  1A07h:00  UNSIGNED8  rw                              can-2017c.eds:2538
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A07h:01  UNSIGNED32  rw                                      can-2017c.eds:2520
+/// Mapping entry 1.  1A07h:01  UNSIGNED32  rw                                      can-2017c.eds:2546
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A07h:02  UNSIGNED32  rw                                      can-2017c.eds:2528
+/// Mapping entry 2.  1A07h:02  UNSIGNED32  rw                                      can-2017c.eds:2554
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A07h:03  UNSIGNED32  rw                                      can-2017c.eds:2536
+/// Mapping entry 3.  1A07h:03  UNSIGNED32  rw                                      can-2017c.eds:2562
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A07h:04  UNSIGNED32  rw                                      can-2017c.eds:2544
+/// Mapping entry 4.  1A07h:04  UNSIGNED32  rw                                      can-2017c.eds:2570
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A07h:05  UNSIGNED32  rw                                      can-2017c.eds:2552
+/// Mapping entry 5.  1A07h:05  UNSIGNED32  rw                                      can-2017c.eds:2578
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A07h:06  UNSIGNED32  rw                                      can-2017c.eds:2560
+/// Mapping entry 6.  1A07h:06  UNSIGNED32  rw                                      can-2017c.eds:2586
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A07h:07  UNSIGNED32  rw                                      can-2017c.eds:2568
+/// Mapping entry 7.  1A07h:07  UNSIGNED32  rw                                      can-2017c.eds:2594
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A07h:08  UNSIGNED32  rw                                      can-2017c.eds:2576
+/// Mapping entry 8.  1A07h:08  UNSIGNED32  rw                                      can-2017c.eds:2602
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1795,55 +1797,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 9.  1A08h
 namespace tpdo_mapping_parameter_9 {
-/// Number of mapped objects.  1A08h:00  UNSIGNED8  rw                              can-2017c.eds:2589
+/// Number of mapped objects.  1A08h:00  UNSIGNED8  rw                              can-2017c.eds:2615
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A08h:01  UNSIGNED32  rw                                      can-2017c.eds:2597
+/// Mapping entry 1.  1A08h:01  UNSIGNED32  rw                                      can-2017c.eds:2623
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A08h:02  UNSIGNED32  rw                                      can-2017c.eds:2605
+/// Mapping entry 2.  1A08h:02  UNSIGNED32  rw                                      can-2017c.eds:2631
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A08h:03  UNSIGNED32  rw                                      can-2017c.eds:2613
+/// Mapping entry 3.  1A08h:03  UNSIGNED32  rw                                      can-2017c.eds:2639
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A08h:04  UNSIGNED32  rw                                      can-2017c.eds:2621
+/// Mapping entry 4.  1A08h:04  UNSIGNED32  rw                                      can-2017c.eds:2647
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A08h:05  UNSIGNED32  rw                                      can-2017c.eds:2629
+/// Mapping entry 5.  1A08h:05  UNSIGNED32  rw                                      can-2017c.eds:2655
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A08h:06  UNSIGNED32  rw                                      can-2017c.eds:2637
+/// Mapping entry 6.  1A08h:06  UNSIGNED32  rw                                      can-2017c.eds:2663
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A08h:07  UNSIGNED32  rw                                      can-2017c.eds:2645
+/// Mapping entry 7.  1A08h:07  UNSIGNED32  rw                                      can-2017c.eds:2671
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A08h:08  UNSIGNED32  rw                                      can-2017c.eds:2653
+/// Mapping entry 8.  1A08h:08  UNSIGNED32  rw                                      can-2017c.eds:2679
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1853,55 +1855,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 10.  1A09h
 namespace tpdo_mapping_parameter_10 {
-/// Number of mapped objects.  1A09h:00  UNSIGNED8  rw                              can-2017c.eds:2666
+/// Number of mapped objects.  1A09h:00  UNSIGNED8  rw                              can-2017c.eds:2692
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A09h:01  UNSIGNED32  rw                                      can-2017c.eds:2674
+/// Mapping entry 1.  1A09h:01  UNSIGNED32  rw                                      can-2017c.eds:2700
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A09h:02  UNSIGNED32  rw                                      can-2017c.eds:2682
+/// Mapping entry 2.  1A09h:02  UNSIGNED32  rw                                      can-2017c.eds:2708
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A09h:03  UNSIGNED32  rw                                      can-2017c.eds:2690
+/// Mapping entry 3.  1A09h:03  UNSIGNED32  rw                                      can-2017c.eds:2716
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A09h:04  UNSIGNED32  rw                                      can-2017c.eds:2698
+/// Mapping entry 4.  1A09h:04  UNSIGNED32  rw                                      can-2017c.eds:2724
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A09h:05  UNSIGNED32  rw                                      can-2017c.eds:2706
+/// Mapping entry 5.  1A09h:05  UNSIGNED32  rw                                      can-2017c.eds:2732
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A09h:06  UNSIGNED32  rw                                      can-2017c.eds:2714
+/// Mapping entry 6.  1A09h:06  UNSIGNED32  rw                                      can-2017c.eds:2740
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A09h:07  UNSIGNED32  rw                                      can-2017c.eds:2722
+/// Mapping entry 7.  1A09h:07  UNSIGNED32  rw                                      can-2017c.eds:2748
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A09h:08  UNSIGNED32  rw                                      can-2017c.eds:2730
+/// Mapping entry 8.  1A09h:08  UNSIGNED32  rw                                      can-2017c.eds:2756
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1909,7 +1911,7 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 };
 }  // namespace tpdo_mapping_parameter_10
 
-/// Read analogue input 16-bit.  6401h:01..08  INTEGER16  ro  TPDO                  can-2017c.eds:2753
+/// Read analogue input 16-bit.  6401h:01..08  INTEGER16  ro  TPDO                  can-2017c.eds:2780
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct read_analogue_input_16_bit : canopen::Object<0x6401, SubIndex, std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static_assert(SubIndex <= 8 || SubIndex == canopen::whole_array, "read_analogue_input_16_bit has the sub-indices 0..8");

@@ -32,7 +32,7 @@ struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> 
   static constexpr auto name = "Error register";
 };
 
-/// Pre-defined error field.  1003h:01..05  UNSIGNED32  ro                          can-2024c.eds:213
+/// Pre-defined error field.  1003h:01..05  UNSIGNED32  ro                          can-2024c.eds:215
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
   static_assert(SubIndex <= 5 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..5");
@@ -45,49 +45,51 @@ struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Number of errors";
 };
 
-/// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          can-2024c.eds:257
+/// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          can-2024c.eds:259
 struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1005;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
 };
 
-/// Manufacturer device name.  1008h:00  VISIBLE_STRING  ro                         can-2024c.eds:269
+/// Manufacturer device name.  1008h:00  VISIBLE_STRING  ro                         can-2024c.eds:271
 struct manufacturer_device_name : canopen::TypedObject<canopen::VisibleString<16>, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1008;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer device name";
 };
 
-/// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  ro                    can-2024c.eds:278
+/// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  ro                    can-2024c.eds:280
 struct manufacturer_hardware_version : canopen::TypedObject<canopen::VisibleString<6>, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1009;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer hardware version";
 };
 
-/// Manufacturer software version.  100Ah:00  VISIBLE_STRING  ro                    can-2024c.eds:287
+/// Manufacturer software version.  100Ah:00  VISIBLE_STRING  ro                    can-2024c.eds:289
 struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleString<6>, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x100A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer software version";
 };
 
-/// Guard time.  100Ch:00  UNSIGNED16  rw                                           can-2024c.eds:296
+/// Guard time.  100Ch:00  UNSIGNED16  rw                                           can-2024c.eds:298
 struct guard_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x100C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Guard time";
+  static constexpr type low_limit = 0;
+  static constexpr type high_limit = 65535;
 };
 
-/// Life time factor.  100Dh:00  UNSIGNED8  rw                                      can-2024c.eds:305
+/// Life time factor.  100Dh:00  UNSIGNED8  rw                                      can-2024c.eds:310
 struct life_time_factor : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x100D;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Life time factor";
 };
 
-/// Store parameters.  1010h:01..01  UNSIGNED32  rw                                 can-2024c.eds:328
+/// Store parameters.  1010h:01..01  UNSIGNED32  rw                                 can-2024c.eds:333
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..1");
@@ -100,10 +102,10 @@ struct store_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access:
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  can-2024c.eds:328
+/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  can-2024c.eds:333
 using store_parameters_save_all_parameters = store_parameters<1>;
 
-/// Restore default parameters.  1011h:01..01  UNSIGNED32  rw                       can-2024c.eds:351
+/// Restore default parameters.  1011h:01..01  UNSIGNED32  rw                       can-2024c.eds:356
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..1");
@@ -116,17 +118,17 @@ struct restore_default_parameters<0> : canopen::TypedObject<std::uint8_t, canope
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       can-2024c.eds:351
+/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       can-2024c.eds:356
 using restore_default_parameters_restore_all_default_parameters = restore_default_parameters<1>;
 
-/// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          can-2024c.eds:362
+/// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          can-2024c.eds:367
 struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1014;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
-/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              can-2024c.eds:371
+/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              can-2024c.eds:376
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -169,19 +171,19 @@ struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> 
 
 /// SDO server parameter.  1200h
 namespace sdo_server_parameter {
-/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           can-2024c.eds:385
+/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           can-2024c.eds:391
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              can-2024c.eds:393
+/// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              can-2024c.eds:399
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
-/// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              can-2024c.eds:401
+/// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              can-2024c.eds:407
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -191,19 +193,19 @@ struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Ac
 
 /// RPDO communication parameter 1.  1400h
 namespace rpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           can-2024c.eds:419
+/// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           can-2024c.eds:425
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  can-2024c.eds:427
+/// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  can-2024c.eds:433
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1400h:02  UNSIGNED8  rw                                     can-2024c.eds:435
+/// Transmission type.  1400h:02  UNSIGNED8  rw                                     can-2024c.eds:441
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -213,19 +215,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 2.  1401h
 namespace rpdo_communication_parameter_2 {
-/// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           can-2024c.eds:449
+/// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           can-2024c.eds:455
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  can-2024c.eds:457
+/// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  can-2024c.eds:463
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1401h:02  UNSIGNED8  rw                                     can-2024c.eds:465
+/// Transmission type.  1401h:02  UNSIGNED8  rw                                     can-2024c.eds:471
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -235,19 +237,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 3.  1402h
 namespace rpdo_communication_parameter_3 {
-/// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           can-2024c.eds:479
+/// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           can-2024c.eds:485
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  can-2024c.eds:487
+/// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  can-2024c.eds:493
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1402h:02  UNSIGNED8  rw                                     can-2024c.eds:495
+/// Transmission type.  1402h:02  UNSIGNED8  rw                                     can-2024c.eds:501
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -257,19 +259,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 4.  1403h
 namespace rpdo_communication_parameter_4 {
-/// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           can-2024c.eds:509
+/// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           can-2024c.eds:515
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  can-2024c.eds:517
+/// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  can-2024c.eds:523
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1403h:02  UNSIGNED8  rw                                     can-2024c.eds:525
+/// Transmission type.  1403h:02  UNSIGNED8  rw                                     can-2024c.eds:531
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -279,19 +281,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 5.  1404h
 namespace rpdo_communication_parameter_5 {
-/// Highest sub-index supported.  1404h:00  UNSIGNED8  ro                           can-2024c.eds:539
+/// Highest sub-index supported.  1404h:00  UNSIGNED8  ro                           can-2024c.eds:545
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1404;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1404h:01  UNSIGNED32  rw                                  can-2024c.eds:547
+/// COB-ID used by RPDO.  1404h:01  UNSIGNED32  rw                                  can-2024c.eds:553
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1404;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1404h:02  UNSIGNED8  rw                                     can-2024c.eds:555
+/// Transmission type.  1404h:02  UNSIGNED8  rw                                     can-2024c.eds:561
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1404;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -301,19 +303,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 6.  1405h
 namespace rpdo_communication_parameter_6 {
-/// Highest sub-index supported.  1405h:00  UNSIGNED8  ro                           can-2024c.eds:571
+/// Highest sub-index supported.  1405h:00  UNSIGNED8  ro                           can-2024c.eds:577
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1405;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1405h:01  UNSIGNED32  rw                                  can-2024c.eds:579
+/// COB-ID used by RPDO.  1405h:01  UNSIGNED32  rw                                  can-2024c.eds:585
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1405;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1405h:02  UNSIGNED8  rw                                     can-2024c.eds:587
+/// Transmission type.  1405h:02  UNSIGNED8  rw                                     can-2024c.eds:593
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1405;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -323,19 +325,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 7.  1406h
 namespace rpdo_communication_parameter_7 {
-/// Highest sub-index supported.  1406h:00  UNSIGNED8  ro                           can-2024c.eds:601
+/// Highest sub-index supported.  1406h:00  UNSIGNED8  ro                           can-2024c.eds:607
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1406;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1406h:01  UNSIGNED32  rw                                  can-2024c.eds:609
+/// COB-ID used by RPDO.  1406h:01  UNSIGNED32  rw                                  can-2024c.eds:615
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1406;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1406h:02  UNSIGNED8  rw                                     can-2024c.eds:617
+/// Transmission type.  1406h:02  UNSIGNED8  rw                                     can-2024c.eds:623
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1406;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -345,19 +347,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 8.  1407h
 namespace rpdo_communication_parameter_8 {
-/// Highest sub-index supported.  1407h:00  UNSIGNED8  ro                           can-2024c.eds:631
+/// Highest sub-index supported.  1407h:00  UNSIGNED8  ro                           can-2024c.eds:637
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1407;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1407h:01  UNSIGNED32  rw                                  can-2024c.eds:639
+/// COB-ID used by RPDO.  1407h:01  UNSIGNED32  rw                                  can-2024c.eds:645
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1407;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1407h:02  UNSIGNED8  rw                                     can-2024c.eds:647
+/// Transmission type.  1407h:02  UNSIGNED8  rw                                     can-2024c.eds:653
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1407;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -367,19 +369,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 9.  1408h
 namespace rpdo_communication_parameter_9 {
-/// Highest sub-index supported.  1408h:00  UNSIGNED8  ro                           can-2024c.eds:661
+/// Highest sub-index supported.  1408h:00  UNSIGNED8  ro                           can-2024c.eds:667
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1408;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1408h:01  UNSIGNED32  rw                                  can-2024c.eds:669
+/// COB-ID used by RPDO.  1408h:01  UNSIGNED32  rw                                  can-2024c.eds:675
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1408;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1408h:02  UNSIGNED8  rw                                     can-2024c.eds:677
+/// Transmission type.  1408h:02  UNSIGNED8  rw                                     can-2024c.eds:683
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1408;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -389,19 +391,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 10.  1409h
 namespace rpdo_communication_parameter_10 {
-/// Highest sub-index supported.  1409h:00  UNSIGNED8  ro                           can-2024c.eds:691
+/// Highest sub-index supported.  1409h:00  UNSIGNED8  ro                           can-2024c.eds:697
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1409;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1409h:01  UNSIGNED32  rw                                  can-2024c.eds:699
+/// COB-ID used by RPDO.  1409h:01  UNSIGNED32  rw                                  can-2024c.eds:705
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1409;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1409h:02  UNSIGNED8  rw                                     can-2024c.eds:707
+/// Transmission type.  1409h:02  UNSIGNED8  rw                                     can-2024c.eds:713
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1409;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -411,55 +413,55 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO mapping parameter 1.  1600h
 namespace rpdo_mapping_parameter_1 {
-/// Number of mapped objects.  1600h:00  UNSIGNED8  rw                              can-2024c.eds:728
+/// Number of mapped objects.  1600h:00  UNSIGNED8  rw                              can-2024c.eds:734
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      can-2024c.eds:736
+/// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      can-2024c.eds:742
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      can-2024c.eds:744
+/// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      can-2024c.eds:750
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      can-2024c.eds:752
+/// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      can-2024c.eds:758
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      can-2024c.eds:760
+/// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      can-2024c.eds:766
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1600h:05  UNSIGNED32  rw                                      can-2024c.eds:768
+/// Mapping entry 5.  1600h:05  UNSIGNED32  rw                                      can-2024c.eds:774
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1600h:06  UNSIGNED32  rw                                      can-2024c.eds:776
+/// Mapping entry 6.  1600h:06  UNSIGNED32  rw                                      can-2024c.eds:782
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1600h:07  UNSIGNED32  rw                                      can-2024c.eds:784
+/// Mapping entry 7.  1600h:07  UNSIGNED32  rw                                      can-2024c.eds:790
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1600h:08  UNSIGNED32  rw                                      can-2024c.eds:792
+/// Mapping entry 8.  1600h:08  UNSIGNED32  rw                                      can-2024c.eds:798
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -469,55 +471,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 2.  1601h
 namespace rpdo_mapping_parameter_2 {
-/// Number of mapped objects.  1601h:00  UNSIGNED8  rw                              can-2024c.eds:806
+/// Number of mapped objects.  1601h:00  UNSIGNED8  rw                              can-2024c.eds:812
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      can-2024c.eds:814
+/// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      can-2024c.eds:820
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      can-2024c.eds:822
+/// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      can-2024c.eds:828
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      can-2024c.eds:830
+/// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      can-2024c.eds:836
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      can-2024c.eds:838
+/// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      can-2024c.eds:844
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1601h:05  UNSIGNED32  rw                                      can-2024c.eds:846
+/// Mapping entry 5.  1601h:05  UNSIGNED32  rw                                      can-2024c.eds:852
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1601h:06  UNSIGNED32  rw                                      can-2024c.eds:854
+/// Mapping entry 6.  1601h:06  UNSIGNED32  rw                                      can-2024c.eds:860
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1601h:07  UNSIGNED32  rw                                      can-2024c.eds:862
+/// Mapping entry 7.  1601h:07  UNSIGNED32  rw                                      can-2024c.eds:868
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1601h:08  UNSIGNED32  rw                                      can-2024c.eds:870
+/// Mapping entry 8.  1601h:08  UNSIGNED32  rw                                      can-2024c.eds:876
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -527,55 +529,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 3.  1602h
 namespace rpdo_mapping_parameter_3 {
-/// Number of mapped objects.  1602h:00  UNSIGNED8  rw                              can-2024c.eds:883
+/// Number of mapped objects.  1602h:00  UNSIGNED8  rw                              can-2024c.eds:889
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      can-2024c.eds:891
+/// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      can-2024c.eds:897
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      can-2024c.eds:899
+/// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      can-2024c.eds:905
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      can-2024c.eds:907
+/// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      can-2024c.eds:913
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      can-2024c.eds:915
+/// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      can-2024c.eds:921
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1602h:05  UNSIGNED32  rw                                      can-2024c.eds:923
+/// Mapping entry 5.  1602h:05  UNSIGNED32  rw                                      can-2024c.eds:929
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1602h:06  UNSIGNED32  rw                                      can-2024c.eds:931
+/// Mapping entry 6.  1602h:06  UNSIGNED32  rw                                      can-2024c.eds:937
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1602h:07  UNSIGNED32  rw                                      can-2024c.eds:939
+/// Mapping entry 7.  1602h:07  UNSIGNED32  rw                                      can-2024c.eds:945
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1602h:08  UNSIGNED32  rw                                      can-2024c.eds:947
+/// Mapping entry 8.  1602h:08  UNSIGNED32  rw                                      can-2024c.eds:953
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -585,55 +587,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 4.  1603h
 namespace rpdo_mapping_parameter_4 {
-/// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              can-2024c.eds:960
+/// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              can-2024c.eds:966
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      can-2024c.eds:968
+/// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      can-2024c.eds:974
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      can-2024c.eds:976
+/// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      can-2024c.eds:982
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      can-2024c.eds:984
+/// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      can-2024c.eds:990
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      can-2024c.eds:992
+/// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      can-2024c.eds:998
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1603h:05  UNSIGNED32  rw                                      can-2024c.eds:1000
+/// Mapping entry 5.  1603h:05  UNSIGNED32  rw                                      can-2024c.eds:1006
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1603h:06  UNSIGNED32  rw                                      can-2024c.eds:1008
+/// Mapping entry 6.  1603h:06  UNSIGNED32  rw                                      can-2024c.eds:1014
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1603h:07  UNSIGNED32  rw                                      can-2024c.eds:1016
+/// Mapping entry 7.  1603h:07  UNSIGNED32  rw                                      can-2024c.eds:1022
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1603h:08  UNSIGNED32  rw                                      can-2024c.eds:1024
+/// Mapping entry 8.  1603h:08  UNSIGNED32  rw                                      can-2024c.eds:1030
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -643,55 +645,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 5.  1604h
 namespace rpdo_mapping_parameter_5 {
-/// Number of mapped objects.  1604h:00  UNSIGNED8  rw                              can-2024c.eds:1037
+/// Number of mapped objects.  1604h:00  UNSIGNED8  rw                              can-2024c.eds:1043
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1604h:01  UNSIGNED32  rw                                      can-2024c.eds:1045
+/// Mapping entry 1.  1604h:01  UNSIGNED32  rw                                      can-2024c.eds:1051
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1604h:02  UNSIGNED32  rw                                      can-2024c.eds:1053
+/// Mapping entry 2.  1604h:02  UNSIGNED32  rw                                      can-2024c.eds:1059
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1604h:03  UNSIGNED32  rw                                      can-2024c.eds:1061
+/// Mapping entry 3.  1604h:03  UNSIGNED32  rw                                      can-2024c.eds:1067
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1604h:04  UNSIGNED32  rw                                      can-2024c.eds:1069
+/// Mapping entry 4.  1604h:04  UNSIGNED32  rw                                      can-2024c.eds:1075
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1604h:05  UNSIGNED32  rw                                      can-2024c.eds:1077
+/// Mapping entry 5.  1604h:05  UNSIGNED32  rw                                      can-2024c.eds:1083
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1604h:06  UNSIGNED32  rw                                      can-2024c.eds:1085
+/// Mapping entry 6.  1604h:06  UNSIGNED32  rw                                      can-2024c.eds:1091
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1604h:07  UNSIGNED32  rw                                      can-2024c.eds:1093
+/// Mapping entry 7.  1604h:07  UNSIGNED32  rw                                      can-2024c.eds:1099
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1604h:08  UNSIGNED32  rw                                      can-2024c.eds:1101
+/// Mapping entry 8.  1604h:08  UNSIGNED32  rw                                      can-2024c.eds:1107
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -701,55 +703,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 6.  1605h
 namespace rpdo_mapping_parameter_6 {
-/// Number of mapped objects.  1605h:00  UNSIGNED8  rw                              can-2024c.eds:1114
+/// Number of mapped objects.  1605h:00  UNSIGNED8  rw                              can-2024c.eds:1120
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1605h:01  UNSIGNED32  rw                                      can-2024c.eds:1122
+/// Mapping entry 1.  1605h:01  UNSIGNED32  rw                                      can-2024c.eds:1128
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1605h:02  UNSIGNED32  rw                                      can-2024c.eds:1130
+/// Mapping entry 2.  1605h:02  UNSIGNED32  rw                                      can-2024c.eds:1136
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1605h:03  UNSIGNED32  rw                                      can-2024c.eds:1138
+/// Mapping entry 3.  1605h:03  UNSIGNED32  rw                                      can-2024c.eds:1144
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1605h:04  UNSIGNED32  rw                                      can-2024c.eds:1146
+/// Mapping entry 4.  1605h:04  UNSIGNED32  rw                                      can-2024c.eds:1152
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1605h:05  UNSIGNED32  rw                                      can-2024c.eds:1154
+/// Mapping entry 5.  1605h:05  UNSIGNED32  rw                                      can-2024c.eds:1160
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1605h:06  UNSIGNED32  rw                                      can-2024c.eds:1162
+/// Mapping entry 6.  1605h:06  UNSIGNED32  rw                                      can-2024c.eds:1168
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1605h:07  UNSIGNED32  rw                                      can-2024c.eds:1170
+/// Mapping entry 7.  1605h:07  UNSIGNED32  rw                                      can-2024c.eds:1176
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1605h:08  UNSIGNED32  rw                                      can-2024c.eds:1178
+/// Mapping entry 8.  1605h:08  UNSIGNED32  rw                                      can-2024c.eds:1184
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -759,55 +761,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 7.  1606h
 namespace rpdo_mapping_parameter_7 {
-/// Number of mapped objects.  1606h:00  UNSIGNED8  rw                              can-2024c.eds:1191
+/// Number of mapped objects.  1606h:00  UNSIGNED8  rw                              can-2024c.eds:1197
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1606h:01  UNSIGNED32  rw                                      can-2024c.eds:1199
+/// Mapping entry 1.  1606h:01  UNSIGNED32  rw                                      can-2024c.eds:1205
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1606h:02  UNSIGNED32  rw                                      can-2024c.eds:1207
+/// Mapping entry 2.  1606h:02  UNSIGNED32  rw                                      can-2024c.eds:1213
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1606h:03  UNSIGNED32  rw                                      can-2024c.eds:1215
+/// Mapping entry 3.  1606h:03  UNSIGNED32  rw                                      can-2024c.eds:1221
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1606h:04  UNSIGNED32  rw                                      can-2024c.eds:1223
+/// Mapping entry 4.  1606h:04  UNSIGNED32  rw                                      can-2024c.eds:1229
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1606h:05  UNSIGNED32  rw                                      can-2024c.eds:1231
+/// Mapping entry 5.  1606h:05  UNSIGNED32  rw                                      can-2024c.eds:1237
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1606h:06  UNSIGNED32  rw                                      can-2024c.eds:1239
+/// Mapping entry 6.  1606h:06  UNSIGNED32  rw                                      can-2024c.eds:1245
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1606h:07  UNSIGNED32  rw                                      can-2024c.eds:1247
+/// Mapping entry 7.  1606h:07  UNSIGNED32  rw                                      can-2024c.eds:1253
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1606h:08  UNSIGNED32  rw                                      can-2024c.eds:1255
+/// Mapping entry 8.  1606h:08  UNSIGNED32  rw                                      can-2024c.eds:1261
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -817,55 +819,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 8.  1607h
 namespace rpdo_mapping_parameter_8 {
-/// Number of mapped objects.  1607h:00  UNSIGNED8  rw                              can-2024c.eds:1268
+/// Number of mapped objects.  1607h:00  UNSIGNED8  rw                              can-2024c.eds:1274
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1607h:01  UNSIGNED32  rw                                      can-2024c.eds:1276
+/// Mapping entry 1.  1607h:01  UNSIGNED32  rw                                      can-2024c.eds:1282
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1607h:02  UNSIGNED32  rw                                      can-2024c.eds:1284
+/// Mapping entry 2.  1607h:02  UNSIGNED32  rw                                      can-2024c.eds:1290
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1607h:03  UNSIGNED32  rw                                      can-2024c.eds:1292
+/// Mapping entry 3.  1607h:03  UNSIGNED32  rw                                      can-2024c.eds:1298
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1607h:04  UNSIGNED32  rw                                      can-2024c.eds:1300
+/// Mapping entry 4.  1607h:04  UNSIGNED32  rw                                      can-2024c.eds:1306
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1607h:05  UNSIGNED32  rw                                      can-2024c.eds:1308
+/// Mapping entry 5.  1607h:05  UNSIGNED32  rw                                      can-2024c.eds:1314
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1607h:06  UNSIGNED32  rw                                      can-2024c.eds:1316
+/// Mapping entry 6.  1607h:06  UNSIGNED32  rw                                      can-2024c.eds:1322
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1607h:07  UNSIGNED32  rw                                      can-2024c.eds:1324
+/// Mapping entry 7.  1607h:07  UNSIGNED32  rw                                      can-2024c.eds:1330
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1607h:08  UNSIGNED32  rw                                      can-2024c.eds:1332
+/// Mapping entry 8.  1607h:08  UNSIGNED32  rw                                      can-2024c.eds:1338
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -875,55 +877,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 9.  1608h
 namespace rpdo_mapping_parameter_9 {
-/// Number of mapped objects.  1608h:00  UNSIGNED8  rw                              can-2024c.eds:1345
+/// Number of mapped objects.  1608h:00  UNSIGNED8  rw                              can-2024c.eds:1351
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1608h:01  UNSIGNED32  rw                                      can-2024c.eds:1353
+/// Mapping entry 1.  1608h:01  UNSIGNED32  rw                                      can-2024c.eds:1359
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1608h:02  UNSIGNED32  rw                                      can-2024c.eds:1361
+/// Mapping entry 2.  1608h:02  UNSIGNED32  rw                                      can-2024c.eds:1367
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1608h:03  UNSIGNED32  rw                                      can-2024c.eds:1369
+/// Mapping entry 3.  1608h:03  UNSIGNED32  rw                                      can-2024c.eds:1375
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1608h:04  UNSIGNED32  rw                                      can-2024c.eds:1377
+/// Mapping entry 4.  1608h:04  UNSIGNED32  rw                                      can-2024c.eds:1383
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1608h:05  UNSIGNED32  rw                                      can-2024c.eds:1385
+/// Mapping entry 5.  1608h:05  UNSIGNED32  rw                                      can-2024c.eds:1391
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1608h:06  UNSIGNED32  rw                                      can-2024c.eds:1393
+/// Mapping entry 6.  1608h:06  UNSIGNED32  rw                                      can-2024c.eds:1399
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1608h:07  UNSIGNED32  rw                                      can-2024c.eds:1401
+/// Mapping entry 7.  1608h:07  UNSIGNED32  rw                                      can-2024c.eds:1407
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1608h:08  UNSIGNED32  rw                                      can-2024c.eds:1409
+/// Mapping entry 8.  1608h:08  UNSIGNED32  rw                                      can-2024c.eds:1415
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -933,55 +935,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 10.  1609h
 namespace rpdo_mapping_parameter_10 {
-/// Number of mapped objects.  1609h:00  UNSIGNED8  rw                              can-2024c.eds:1422
+/// Number of mapped objects.  1609h:00  UNSIGNED8  rw                              can-2024c.eds:1428
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1609h:01  UNSIGNED32  rw                                      can-2024c.eds:1430
+/// Mapping entry 1.  1609h:01  UNSIGNED32  rw                                      can-2024c.eds:1436
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1609h:02  UNSIGNED32  rw                                      can-2024c.eds:1438
+/// Mapping entry 2.  1609h:02  UNSIGNED32  rw                                      can-2024c.eds:1444
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1609h:03  UNSIGNED32  rw                                      can-2024c.eds:1446
+/// Mapping entry 3.  1609h:03  UNSIGNED32  rw                                      can-2024c.eds:1452
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1609h:04  UNSIGNED32  rw                                      can-2024c.eds:1454
+/// Mapping entry 4.  1609h:04  UNSIGNED32  rw                                      can-2024c.eds:1460
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1609h:05  UNSIGNED32  rw                                      can-2024c.eds:1462
+/// Mapping entry 5.  1609h:05  UNSIGNED32  rw                                      can-2024c.eds:1468
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1609h:06  UNSIGNED32  rw                                      can-2024c.eds:1470
+/// Mapping entry 6.  1609h:06  UNSIGNED32  rw                                      can-2024c.eds:1476
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1609h:07  UNSIGNED32  rw                                      can-2024c.eds:1478
+/// Mapping entry 7.  1609h:07  UNSIGNED32  rw                                      can-2024c.eds:1484
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1609h:08  UNSIGNED32  rw                                      can-2024c.eds:1486
+/// Mapping entry 8.  1609h:08  UNSIGNED32  rw                                      can-2024c.eds:1492
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -991,31 +993,31 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           can-2024c.eds:1505
+/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           can-2024c.eds:1511
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  can-2024c.eds:1513
+/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  can-2024c.eds:1519
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1800h:02  UNSIGNED8  rw                                     can-2024c.eds:1521
+/// Transmission type.  1800h:02  UNSIGNED8  rw                                     can-2024c.eds:1527
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1800h:03  UNSIGNED16  rw                                         can-2024c.eds:1529
+/// Inhibit time.  1800h:03  UNSIGNED16  rw                                         can-2024c.eds:1535
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1800h:05  UNSIGNED16  rw                                          can-2024c.eds:1537
+/// Event timer.  1800h:05  UNSIGNED16  rw                                          can-2024c.eds:1544
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1025,31 +1027,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 2.  1801h
 namespace tpdo_communication_parameter_2 {
-/// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           can-2024c.eds:1551
+/// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           can-2024c.eds:1559
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  can-2024c.eds:1559
+/// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  can-2024c.eds:1567
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1801h:02  UNSIGNED8  rw                                     can-2024c.eds:1567
+/// Transmission type.  1801h:02  UNSIGNED8  rw                                     can-2024c.eds:1575
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1801h:03  UNSIGNED16  rw                                         can-2024c.eds:1575
+/// Inhibit time.  1801h:03  UNSIGNED16  rw                                         can-2024c.eds:1583
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1801h:05  UNSIGNED16  rw                                          can-2024c.eds:1583
+/// Event timer.  1801h:05  UNSIGNED16  rw                                          can-2024c.eds:1592
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1059,31 +1061,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 3.  1802h
 namespace tpdo_communication_parameter_3 {
-/// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           can-2024c.eds:1597
+/// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           can-2024c.eds:1607
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  can-2024c.eds:1605
+/// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  can-2024c.eds:1615
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1802h:02  UNSIGNED8  rw                                     can-2024c.eds:1613
+/// Transmission type.  1802h:02  UNSIGNED8  rw                                     can-2024c.eds:1623
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1802h:03  UNSIGNED16  rw                                         can-2024c.eds:1621
+/// Inhibit time.  1802h:03  UNSIGNED16  rw                                         can-2024c.eds:1631
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1802h:05  UNSIGNED16  rw                                          can-2024c.eds:1629
+/// Event timer.  1802h:05  UNSIGNED16  rw                                          can-2024c.eds:1640
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1093,31 +1095,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 4.  1803h
 namespace tpdo_communication_parameter_4 {
-/// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           can-2024c.eds:1643
+/// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           can-2024c.eds:1655
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  can-2024c.eds:1651
+/// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  can-2024c.eds:1663
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1803h:02  UNSIGNED8  rw                                     can-2024c.eds:1659
+/// Transmission type.  1803h:02  UNSIGNED8  rw                                     can-2024c.eds:1671
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1803h:03  UNSIGNED16  rw                                         can-2024c.eds:1667
+/// Inhibit time.  1803h:03  UNSIGNED16  rw                                         can-2024c.eds:1679
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1803h:05  UNSIGNED16  rw                                          can-2024c.eds:1675
+/// Event timer.  1803h:05  UNSIGNED16  rw                                          can-2024c.eds:1688
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1127,31 +1129,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 5.  1804h
 namespace tpdo_communication_parameter_5 {
-/// Highest sub-index supported.  1804h:00  UNSIGNED8  ro                           can-2024c.eds:1689
+/// Highest sub-index supported.  1804h:00  UNSIGNED8  ro                           can-2024c.eds:1703
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1804h:01  UNSIGNED32  rw                                  can-2024c.eds:1697
+/// COB-ID used by TPDO.  1804h:01  UNSIGNED32  rw                                  can-2024c.eds:1711
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1804h:02  UNSIGNED8  rw                                     can-2024c.eds:1705
+/// Transmission type.  1804h:02  UNSIGNED8  rw                                     can-2024c.eds:1719
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1804h:03  UNSIGNED16  rw                                         can-2024c.eds:1713
+/// Inhibit time.  1804h:03  UNSIGNED16  rw                                         can-2024c.eds:1727
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1804h:05  UNSIGNED16  rw                                          can-2024c.eds:1721
+/// Event timer.  1804h:05  UNSIGNED16  rw                                          can-2024c.eds:1736
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1161,31 +1163,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 6.  1805h
 namespace tpdo_communication_parameter_6 {
-/// Highest sub-index supported.  1805h:00  UNSIGNED8  ro                           can-2024c.eds:1737
+/// Highest sub-index supported.  1805h:00  UNSIGNED8  ro                           can-2024c.eds:1753
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1805h:01  UNSIGNED32  rw                                  can-2024c.eds:1745
+/// COB-ID used by TPDO.  1805h:01  UNSIGNED32  rw                                  can-2024c.eds:1761
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1805h:02  UNSIGNED8  rw                                     can-2024c.eds:1753
+/// Transmission type.  1805h:02  UNSIGNED8  rw                                     can-2024c.eds:1769
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1805h:03  UNSIGNED16  rw                                         can-2024c.eds:1761
+/// Inhibit time.  1805h:03  UNSIGNED16  rw                                         can-2024c.eds:1777
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1805h:05  UNSIGNED16  rw                                          can-2024c.eds:1769
+/// Event timer.  1805h:05  UNSIGNED16  rw                                          can-2024c.eds:1786
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1195,31 +1197,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 7.  1806h
 namespace tpdo_communication_parameter_7 {
-/// Highest sub-index supported.  1806h:00  UNSIGNED8  ro                           can-2024c.eds:1783
+/// Highest sub-index supported.  1806h:00  UNSIGNED8  ro                           can-2024c.eds:1801
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1806h:01  UNSIGNED32  rw                                  can-2024c.eds:1791
+/// COB-ID used by TPDO.  1806h:01  UNSIGNED32  rw                                  can-2024c.eds:1809
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1806h:02  UNSIGNED8  rw                                     can-2024c.eds:1799
+/// Transmission type.  1806h:02  UNSIGNED8  rw                                     can-2024c.eds:1817
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1806h:03  UNSIGNED16  rw                                         can-2024c.eds:1807
+/// Inhibit time.  1806h:03  UNSIGNED16  rw                                         can-2024c.eds:1825
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1806h:05  UNSIGNED16  rw                                          can-2024c.eds:1815
+/// Event timer.  1806h:05  UNSIGNED16  rw                                          can-2024c.eds:1834
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1229,31 +1231,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 8.  1807h
 namespace tpdo_communication_parameter_8 {
-/// Highest sub-index supported.  1807h:00  UNSIGNED8  ro                           can-2024c.eds:1829
+/// Highest sub-index supported.  1807h:00  UNSIGNED8  ro                           can-2024c.eds:1849
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1807h:01  UNSIGNED32  rw                                  can-2024c.eds:1837
+/// COB-ID used by TPDO.  1807h:01  UNSIGNED32  rw                                  can-2024c.eds:1857
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1807h:02  UNSIGNED8  rw                                     can-2024c.eds:1845
+/// Transmission type.  1807h:02  UNSIGNED8  rw                                     can-2024c.eds:1865
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1807h:03  UNSIGNED16  rw                                         can-2024c.eds:1853
+/// Inhibit time.  1807h:03  UNSIGNED16  rw                                         can-2024c.eds:1873
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1807h:05  UNSIGNED16  rw                                          can-2024c.eds:1861
+/// Event timer.  1807h:05  UNSIGNED16  rw                                          can-2024c.eds:1882
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1263,31 +1265,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 9.  1808h
 namespace tpdo_communication_parameter_9 {
-/// Highest sub-index supported.  1808h:00  UNSIGNED8  ro                           can-2024c.eds:1875
+/// Highest sub-index supported.  1808h:00  UNSIGNED8  ro                           can-2024c.eds:1897
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1808h:01  UNSIGNED32  rw                                  can-2024c.eds:1883
+/// COB-ID used by TPDO.  1808h:01  UNSIGNED32  rw                                  can-2024c.eds:1905
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1808h:02  UNSIGNED8  rw                                     can-2024c.eds:1891
+/// Transmission type.  1808h:02  UNSIGNED8  rw                                     can-2024c.eds:1913
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1808h:03  UNSIGNED16  rw                                         can-2024c.eds:1899
+/// Inhibit time.  1808h:03  UNSIGNED16  rw                                         can-2024c.eds:1921
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1808h:05  UNSIGNED16  rw                                          can-2024c.eds:1907
+/// Event timer.  1808h:05  UNSIGNED16  rw                                          can-2024c.eds:1930
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1297,31 +1299,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 10.  1809h
 namespace tpdo_communication_parameter_10 {
-/// Highest sub-index supported.  1809h:00  UNSIGNED8  ro                           can-2024c.eds:1921
+/// Highest sub-index supported.  1809h:00  UNSIGNED8  ro                           can-2024c.eds:1945
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1809h:01  UNSIGNED32  rw                                  can-2024c.eds:1929
+/// COB-ID used by TPDO.  1809h:01  UNSIGNED32  rw                                  can-2024c.eds:1953
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1809h:02  UNSIGNED8  rw                                     can-2024c.eds:1937
+/// Transmission type.  1809h:02  UNSIGNED8  rw                                     can-2024c.eds:1961
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1809h:03  UNSIGNED16  rw                                         can-2024c.eds:1945
+/// Inhibit time.  1809h:03  UNSIGNED16  rw                                         can-2024c.eds:1969
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1809h:05  UNSIGNED16  rw                                          can-2024c.eds:1953
+/// Event timer.  1809h:05  UNSIGNED16  rw                                          can-2024c.eds:1978
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1331,55 +1333,55 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
-/// Number of mapped objects.  1A00h:00  UNSIGNED8  rw                              can-2024c.eds:1974
+/// Number of mapped objects.  1A00h:00  UNSIGNED8  rw                              can-2024c.eds:2000
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      can-2024c.eds:1982
+/// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      can-2024c.eds:2008
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      can-2024c.eds:1990
+/// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      can-2024c.eds:2016
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      can-2024c.eds:1998
+/// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      can-2024c.eds:2024
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      can-2024c.eds:2006
+/// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      can-2024c.eds:2032
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A00h:05  UNSIGNED32  rw                                      can-2024c.eds:2014
+/// Mapping entry 5.  1A00h:05  UNSIGNED32  rw                                      can-2024c.eds:2040
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A00h:06  UNSIGNED32  rw                                      can-2024c.eds:2022
+/// Mapping entry 6.  1A00h:06  UNSIGNED32  rw                                      can-2024c.eds:2048
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A00h:07  UNSIGNED32  rw                                      can-2024c.eds:2030
+/// Mapping entry 7.  1A00h:07  UNSIGNED32  rw                                      can-2024c.eds:2056
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A00h:08  UNSIGNED32  rw                                      can-2024c.eds:2038
+/// Mapping entry 8.  1A00h:08  UNSIGNED32  rw                                      can-2024c.eds:2064
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1389,55 +1391,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 2.  1A01h
 namespace tpdo_mapping_parameter_2 {
-/// Number of mapped objects.  1A01h:00  UNSIGNED8  rw                              can-2024c.eds:2051
+/// Number of mapped objects.  1A01h:00  UNSIGNED8  rw                              can-2024c.eds:2077
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      can-2024c.eds:2059
+/// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      can-2024c.eds:2085
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      can-2024c.eds:2067
+/// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      can-2024c.eds:2093
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      can-2024c.eds:2075
+/// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      can-2024c.eds:2101
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      can-2024c.eds:2083
+/// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      can-2024c.eds:2109
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A01h:05  UNSIGNED32  rw                                      can-2024c.eds:2091
+/// Mapping entry 5.  1A01h:05  UNSIGNED32  rw                                      can-2024c.eds:2117
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A01h:06  UNSIGNED32  rw                                      can-2024c.eds:2099
+/// Mapping entry 6.  1A01h:06  UNSIGNED32  rw                                      can-2024c.eds:2125
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A01h:07  UNSIGNED32  rw                                      can-2024c.eds:2107
+/// Mapping entry 7.  1A01h:07  UNSIGNED32  rw                                      can-2024c.eds:2133
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A01h:08  UNSIGNED32  rw                                      can-2024c.eds:2115
+/// Mapping entry 8.  1A01h:08  UNSIGNED32  rw                                      can-2024c.eds:2141
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1447,55 +1449,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 3.  1A02h
 namespace tpdo_mapping_parameter_3 {
-/// Number of mapped objects.  1A02h:00  UNSIGNED8  rw                              can-2024c.eds:2128
+/// Number of mapped objects.  1A02h:00  UNSIGNED8  rw                              can-2024c.eds:2154
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      can-2024c.eds:2136
+/// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      can-2024c.eds:2162
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      can-2024c.eds:2144
+/// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      can-2024c.eds:2170
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      can-2024c.eds:2152
+/// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      can-2024c.eds:2178
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      can-2024c.eds:2160
+/// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      can-2024c.eds:2186
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A02h:05  UNSIGNED32  rw                                      can-2024c.eds:2168
+/// Mapping entry 5.  1A02h:05  UNSIGNED32  rw                                      can-2024c.eds:2194
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A02h:06  UNSIGNED32  rw                                      can-2024c.eds:2176
+/// Mapping entry 6.  1A02h:06  UNSIGNED32  rw                                      can-2024c.eds:2202
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A02h:07  UNSIGNED32  rw                                      can-2024c.eds:2184
+/// Mapping entry 7.  1A02h:07  UNSIGNED32  rw                                      can-2024c.eds:2210
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A02h:08  UNSIGNED32  rw                                      can-2024c.eds:2192
+/// Mapping entry 8.  1A02h:08  UNSIGNED32  rw                                      can-2024c.eds:2218
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1505,55 +1507,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 4.  1A03h
 namespace tpdo_mapping_parameter_4 {
-/// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              can-2024c.eds:2205
+/// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              can-2024c.eds:2231
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      can-2024c.eds:2213
+/// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      can-2024c.eds:2239
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      can-2024c.eds:2221
+/// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      can-2024c.eds:2247
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      can-2024c.eds:2229
+/// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      can-2024c.eds:2255
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      can-2024c.eds:2237
+/// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      can-2024c.eds:2263
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A03h:05  UNSIGNED32  rw                                      can-2024c.eds:2245
+/// Mapping entry 5.  1A03h:05  UNSIGNED32  rw                                      can-2024c.eds:2271
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A03h:06  UNSIGNED32  rw                                      can-2024c.eds:2253
+/// Mapping entry 6.  1A03h:06  UNSIGNED32  rw                                      can-2024c.eds:2279
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A03h:07  UNSIGNED32  rw                                      can-2024c.eds:2261
+/// Mapping entry 7.  1A03h:07  UNSIGNED32  rw                                      can-2024c.eds:2287
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A03h:08  UNSIGNED32  rw                                      can-2024c.eds:2269
+/// Mapping entry 8.  1A03h:08  UNSIGNED32  rw                                      can-2024c.eds:2295
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1563,55 +1565,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 5.  1A04h
 namespace tpdo_mapping_parameter_5 {
-/// Number of mapped objects.  1A04h:00  UNSIGNED8  rw                              can-2024c.eds:2282
+/// Number of mapped objects.  1A04h:00  UNSIGNED8  rw                              can-2024c.eds:2308
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A04h:01  UNSIGNED32  rw                                      can-2024c.eds:2290
+/// Mapping entry 1.  1A04h:01  UNSIGNED32  rw                                      can-2024c.eds:2316
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A04h:02  UNSIGNED32  rw                                      can-2024c.eds:2298
+/// Mapping entry 2.  1A04h:02  UNSIGNED32  rw                                      can-2024c.eds:2324
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A04h:03  UNSIGNED32  rw                                      can-2024c.eds:2306
+/// Mapping entry 3.  1A04h:03  UNSIGNED32  rw                                      can-2024c.eds:2332
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A04h:04  UNSIGNED32  rw                                      can-2024c.eds:2314
+/// Mapping entry 4.  1A04h:04  UNSIGNED32  rw                                      can-2024c.eds:2340
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A04h:05  UNSIGNED32  rw                                      can-2024c.eds:2322
+/// Mapping entry 5.  1A04h:05  UNSIGNED32  rw                                      can-2024c.eds:2348
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A04h:06  UNSIGNED32  rw                                      can-2024c.eds:2330
+/// Mapping entry 6.  1A04h:06  UNSIGNED32  rw                                      can-2024c.eds:2356
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A04h:07  UNSIGNED32  rw                                      can-2024c.eds:2338
+/// Mapping entry 7.  1A04h:07  UNSIGNED32  rw                                      can-2024c.eds:2364
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A04h:08  UNSIGNED32  rw                                      can-2024c.eds:2346
+/// Mapping entry 8.  1A04h:08  UNSIGNED32  rw                                      can-2024c.eds:2372
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1621,55 +1623,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 6.  1A05h
 namespace tpdo_mapping_parameter_6 {
-/// Number of mapped objects.  1A05h:00  UNSIGNED8  rw                              can-2024c.eds:2359
+/// Number of mapped objects.  1A05h:00  UNSIGNED8  rw                              can-2024c.eds:2385
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A05h:01  UNSIGNED32  rw                                      can-2024c.eds:2367
+/// Mapping entry 1.  1A05h:01  UNSIGNED32  rw                                      can-2024c.eds:2393
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A05h:02  UNSIGNED32  rw                                      can-2024c.eds:2375
+/// Mapping entry 2.  1A05h:02  UNSIGNED32  rw                                      can-2024c.eds:2401
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A05h:03  UNSIGNED32  rw                                      can-2024c.eds:2383
+/// Mapping entry 3.  1A05h:03  UNSIGNED32  rw                                      can-2024c.eds:2409
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A05h:04  UNSIGNED32  rw                                      can-2024c.eds:2391
+/// Mapping entry 4.  1A05h:04  UNSIGNED32  rw                                      can-2024c.eds:2417
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A05h:05  UNSIGNED32  rw                                      can-2024c.eds:2399
+/// Mapping entry 5.  1A05h:05  UNSIGNED32  rw                                      can-2024c.eds:2425
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A05h:06  UNSIGNED32  rw                                      can-2024c.eds:2407
+/// Mapping entry 6.  1A05h:06  UNSIGNED32  rw                                      can-2024c.eds:2433
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A05h:07  UNSIGNED32  rw                                      can-2024c.eds:2415
+/// Mapping entry 7.  1A05h:07  UNSIGNED32  rw                                      can-2024c.eds:2441
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A05h:08  UNSIGNED32  rw                                      can-2024c.eds:2423
+/// Mapping entry 8.  1A05h:08  UNSIGNED32  rw                                      can-2024c.eds:2449
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1679,55 +1681,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 7.  1A06h
 namespace tpdo_mapping_parameter_7 {
-/// Number of mapped objects.  1A06h:00  UNSIGNED8  rw                              can-2024c.eds:2436
+/// Number of mapped objects.  1A06h:00  UNSIGNED8  rw                              can-2024c.eds:2462
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A06h:01  UNSIGNED32  rw                                      can-2024c.eds:2444
+/// Mapping entry 1.  1A06h:01  UNSIGNED32  rw                                      can-2024c.eds:2470
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A06h:02  UNSIGNED32  rw                                      can-2024c.eds:2452
+/// Mapping entry 2.  1A06h:02  UNSIGNED32  rw                                      can-2024c.eds:2478
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A06h:03  UNSIGNED32  rw                                      can-2024c.eds:2460
+/// Mapping entry 3.  1A06h:03  UNSIGNED32  rw                                      can-2024c.eds:2486
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A06h:04  UNSIGNED32  rw                                      can-2024c.eds:2468
+/// Mapping entry 4.  1A06h:04  UNSIGNED32  rw                                      can-2024c.eds:2494
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A06h:05  UNSIGNED32  rw                                      can-2024c.eds:2476
+/// Mapping entry 5.  1A06h:05  UNSIGNED32  rw                                      can-2024c.eds:2502
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A06h:06  UNSIGNED32  rw                                      can-2024c.eds:2484
+/// Mapping entry 6.  1A06h:06  UNSIGNED32  rw                                      can-2024c.eds:2510
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A06h:07  UNSIGNED32  rw                                      can-2024c.eds:2492
+/// Mapping entry 7.  1A06h:07  UNSIGNED32  rw                                      can-2024c.eds:2518
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A06h:08  UNSIGNED32  rw                                      can-2024c.eds:2500
+/// Mapping entry 8.  1A06h:08  UNSIGNED32  rw                                      can-2024c.eds:2526
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1737,55 +1739,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 8.  1A07h
 namespace tpdo_mapping_parameter_8 {
-/// Number of mapped objects.  1A07h:00  UNSIGNED8  rw                              can-2024c.eds:2513
+/// Number of mapped objects.  1A07h:00  UNSIGNED8  rw                              can-2024c.eds:2539
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A07h:01  UNSIGNED32  rw                                      can-2024c.eds:2521
+/// Mapping entry 1.  1A07h:01  UNSIGNED32  rw                                      can-2024c.eds:2547
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A07h:02  UNSIGNED32  rw                                      can-2024c.eds:2529
+/// Mapping entry 2.  1A07h:02  UNSIGNED32  rw                                      can-2024c.eds:2555
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A07h:03  UNSIGNED32  rw                                      can-2024c.eds:2537
+/// Mapping entry 3.  1A07h:03  UNSIGNED32  rw                                      can-2024c.eds:2563
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A07h:04  UNSIGNED32  rw                                      can-2024c.eds:2545
+/// Mapping entry 4.  1A07h:04  UNSIGNED32  rw                                      can-2024c.eds:2571
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A07h:05  UNSIGNED32  rw                                      can-2024c.eds:2553
+/// Mapping entry 5.  1A07h:05  UNSIGNED32  rw                                      can-2024c.eds:2579
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A07h:06  UNSIGNED32  rw                                      can-2024c.eds:2561
+/// Mapping entry 6.  1A07h:06  UNSIGNED32  rw                                      can-2024c.eds:2587
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A07h:07  UNSIGNED32  rw                                      can-2024c.eds:2569
+/// Mapping entry 7.  1A07h:07  UNSIGNED32  rw                                      can-2024c.eds:2595
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A07h:08  UNSIGNED32  rw                                      can-2024c.eds:2577
+/// Mapping entry 8.  1A07h:08  UNSIGNED32  rw                                      can-2024c.eds:2603
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1795,55 +1797,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 9.  1A08h
 namespace tpdo_mapping_parameter_9 {
-/// Number of mapped objects.  1A08h:00  UNSIGNED8  rw                              can-2024c.eds:2590
+/// Number of mapped objects.  1A08h:00  UNSIGNED8  rw                              can-2024c.eds:2616
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A08h:01  UNSIGNED32  rw                                      can-2024c.eds:2598
+/// Mapping entry 1.  1A08h:01  UNSIGNED32  rw                                      can-2024c.eds:2624
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A08h:02  UNSIGNED32  rw                                      can-2024c.eds:2606
+/// Mapping entry 2.  1A08h:02  UNSIGNED32  rw                                      can-2024c.eds:2632
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A08h:03  UNSIGNED32  rw                                      can-2024c.eds:2614
+/// Mapping entry 3.  1A08h:03  UNSIGNED32  rw                                      can-2024c.eds:2640
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A08h:04  UNSIGNED32  rw                                      can-2024c.eds:2622
+/// Mapping entry 4.  1A08h:04  UNSIGNED32  rw                                      can-2024c.eds:2648
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A08h:05  UNSIGNED32  rw                                      can-2024c.eds:2630
+/// Mapping entry 5.  1A08h:05  UNSIGNED32  rw                                      can-2024c.eds:2656
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A08h:06  UNSIGNED32  rw                                      can-2024c.eds:2638
+/// Mapping entry 6.  1A08h:06  UNSIGNED32  rw                                      can-2024c.eds:2664
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A08h:07  UNSIGNED32  rw                                      can-2024c.eds:2646
+/// Mapping entry 7.  1A08h:07  UNSIGNED32  rw                                      can-2024c.eds:2672
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A08h:08  UNSIGNED32  rw                                      can-2024c.eds:2654
+/// Mapping entry 8.  1A08h:08  UNSIGNED32  rw                                      can-2024c.eds:2680
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1853,55 +1855,55 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 10.  1A09h
 namespace tpdo_mapping_parameter_10 {
-/// Number of mapped objects.  1A09h:00  UNSIGNED8  rw                              can-2024c.eds:2667
+/// Number of mapped objects.  1A09h:00  UNSIGNED8  rw                              can-2024c.eds:2693
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A09h:01  UNSIGNED32  rw                                      can-2024c.eds:2675
+/// Mapping entry 1.  1A09h:01  UNSIGNED32  rw                                      can-2024c.eds:2701
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A09h:02  UNSIGNED32  rw                                      can-2024c.eds:2683
+/// Mapping entry 2.  1A09h:02  UNSIGNED32  rw                                      can-2024c.eds:2709
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A09h:03  UNSIGNED32  rw                                      can-2024c.eds:2691
+/// Mapping entry 3.  1A09h:03  UNSIGNED32  rw                                      can-2024c.eds:2717
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A09h:04  UNSIGNED32  rw                                      can-2024c.eds:2699
+/// Mapping entry 4.  1A09h:04  UNSIGNED32  rw                                      can-2024c.eds:2725
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A09h:05  UNSIGNED32  rw                                      can-2024c.eds:2707
+/// Mapping entry 5.  1A09h:05  UNSIGNED32  rw                                      can-2024c.eds:2733
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A09h:06  UNSIGNED32  rw                                      can-2024c.eds:2715
+/// Mapping entry 6.  1A09h:06  UNSIGNED32  rw                                      can-2024c.eds:2741
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A09h:07  UNSIGNED32  rw                                      can-2024c.eds:2723
+/// Mapping entry 7.  1A09h:07  UNSIGNED32  rw                                      can-2024c.eds:2749
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A09h:08  UNSIGNED32  rw                                      can-2024c.eds:2731
+/// Mapping entry 8.  1A09h:08  UNSIGNED32  rw                                      can-2024c.eds:2757
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -1909,7 +1911,7 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 };
 }  // namespace tpdo_mapping_parameter_10
 
-/// Write analogue output 16-bit.  6411h:01..04  INTEGER16  rww  RPDO               can-2024c.eds:2756
+/// Write analogue output 16-bit.  6411h:01..04  INTEGER16  rww  RPDO               can-2024c.eds:2783
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct write_analogue_output_16_bit : canopen::Object<0x6411, SubIndex, std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static_assert(SubIndex <= 4 || SubIndex == canopen::whole_array, "write_analogue_output_16_bit has the sub-indices 0..4");
@@ -1922,7 +1924,7 @@ struct write_analogue_output_16_bit<0> : canopen::TypedObject<std::uint8_t, cano
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Analogue output error mode.  6443h:01..04  UNSIGNED8  rw                        can-2024c.eds:2805
+/// Analogue output error mode.  6443h:01..04  UNSIGNED8  rw                        can-2024c.eds:2840
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct analogue_output_error_mode : canopen::Object<0x6443, SubIndex, std::uint8_t, canopen::Access::rw> {
   static_assert(SubIndex <= 4 || SubIndex == canopen::whole_array, "analogue_output_error_mode has the sub-indices 0..4");
@@ -1935,7 +1937,7 @@ struct analogue_output_error_mode<0> : canopen::TypedObject<std::uint8_t, canope
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Analogue output error value integer.  6444h:01..04  INTEGER32  rw               can-2024c.eds:2853
+/// Analogue output error value integer.  6444h:01..04  INTEGER32  rw               can-2024c.eds:2888
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct analogue_output_error_value_integer : canopen::Object<0x6444, SubIndex, std::int32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 4 || SubIndex == canopen::whole_array, "analogue_output_error_value_integer has the sub-indices 0..4");

@@ -77,6 +77,13 @@ struct Device {
   /// The manufacturer-specific bytes of the EMCY messages that the services send themselves.
   static constexpr std::array<std::uint8_t, 5> emergency_info([[maybe_unused]] std::uint16_t code) { return {}; }
 
+  /// Entries for which 1010h does not follow the access type.
+  static constexpr canopen::Storing storing(std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
+    if (index == 0x607A) return canopen::Storing::always;
+    if (index == 0x60FF) return canopen::Storing::always;
+    return canopen::Storing::by_access;
+  }
+
   static void reset_communication([[maybe_unused]] Values& values) {
     canopen::copy_bytes(&values.communication_preset, &::cpc_tc1::communication_preset, sizeof values.communication_preset);
     canopen::clear_bytes(&values.communication_cleared, sizeof values.communication_cleared);

@@ -18,28 +18,28 @@ namespace cpc_tc1 {
 /// The entries of the object dictionary as types: index, sub-index, C++ type, access and mapping, checked at each use.
 namespace od {
 
-/// Device type.  1000h:00  UNSIGNED32  const                                       cpc-tc1.eds:89
+/// Device type.  1000h:00  UNSIGNED32  const                                       cpc-tc1.eds:85
 struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1000;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
 };
 
-/// Error register.  1001h:00  UNSIGNED8  ro                                        cpc-tc1.eds:101
+/// Error register.  1001h:00  UNSIGNED8  ro                                        cpc-tc1.eds:96
 struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1001;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error register";
 };
 
-/// Manufacturer status register.  1002h:00  UNSIGNED32  ro                         cpc-tc1.eds:204
+/// Manufacturer status register.  1002h:00  UNSIGNED32  ro                         cpc-tc1.eds:198
 struct manufacturer_status_register : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1002;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer status register";
 };
 
-/// Pre-defined error field.  1003h:01..10  UNSIGNED32  ro                          cpc-tc1.eds:231
+/// Pre-defined error field.  1003h:01..10  UNSIGNED32  ro                          cpc-tc1.eds:222
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
   static_assert(SubIndex <= 16 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..16");
@@ -52,7 +52,7 @@ struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Number of errors";
 };
 
-/// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          cpc-tc1.eds:365
+/// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          cpc-tc1.eds:354
 struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1005;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -61,35 +61,35 @@ struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr type high_limit = 0x800007FF;
 };
 
-/// Communication cycle period.  1006h:00  UNSIGNED32  rw                           cpc-tc1.eds:378
+/// Communication cycle period.  1006h:00  UNSIGNED32  rw                           cpc-tc1.eds:367
 struct communication_cycle_period : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1006;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Communication cycle period";
 };
 
-/// Manufacturer device name.  1008h:00  VISIBLE_STRING  const                      cpc-tc1.eds:387
+/// Manufacturer device name.  1008h:00  VISIBLE_STRING  const                      cpc-tc1.eds:377
 struct manufacturer_device_name : canopen::TypedObject<canopen::VisibleString<9>, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1008;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer device name";
 };
 
-/// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  const                 cpc-tc1.eds:396
+/// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  const                 cpc-tc1.eds:386
 struct manufacturer_hardware_version : canopen::TypedObject<canopen::VisibleString<6>, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1009;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer hardware version";
 };
 
-/// Manufacturer software version.  100Ah:00  VISIBLE_STRING  const                 cpc-tc1.eds:406
+/// Manufacturer software version.  100Ah:00  VISIBLE_STRING  const                 cpc-tc1.eds:395
 struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleString<6>, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x100A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer software version";
 };
 
-/// Store parameters.  1010h:01..06  UNSIGNED32  rw                                 cpc-tc1.eds:431
+/// Store parameters.  1010h:01..06  UNSIGNED32  rw                                 cpc-tc1.eds:420
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 6 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..6");
@@ -102,25 +102,25 @@ struct store_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access:
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  cpc-tc1.eds:431
+/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  cpc-tc1.eds:420
 using store_parameters_save_all_parameters = store_parameters<1>;
 
-/// Save communication parameters.  1010h:02  UNSIGNED32  rw                        cpc-tc1.eds:439
+/// Save communication parameters.  1010h:02  UNSIGNED32  rw                        cpc-tc1.eds:428
 using store_parameters_save_communication_parameters = store_parameters<2>;
 
-/// Save application parameters.  1010h:03  UNSIGNED32  rw                          cpc-tc1.eds:447
+/// Save application parameters.  1010h:03  UNSIGNED32  rw                          cpc-tc1.eds:436
 using store_parameters_save_application_parameters = store_parameters<3>;
 
-/// Save RS232 parameters.  1010h:04  UNSIGNED32  rw                                cpc-tc1.eds:455
+/// Save RS232 parameters.  1010h:04  UNSIGNED32  rw                                cpc-tc1.eds:444
 using store_parameters_save_rs232_parameters = store_parameters<4>;
 
-/// Save virtual machine program.  1010h:05  UNSIGNED32  rw                         cpc-tc1.eds:463
+/// Save virtual machine program.  1010h:05  UNSIGNED32  rw                         cpc-tc1.eds:452
 using store_parameters_save_virtual_machine_program = store_parameters<5>;
 
-/// Save error mapping data.  1010h:06  UNSIGNED32  rw                              cpc-tc1.eds:471
+/// Save error mapping data.  1010h:06  UNSIGNED32  rw                              cpc-tc1.eds:460
 using store_parameters_save_error_mapping_data = store_parameters<6>;
 
-/// Restore default parameters.  1011h:01..06  UNSIGNED32  rw                       cpc-tc1.eds:498
+/// Restore default parameters.  1011h:01..06  UNSIGNED32  rw                       cpc-tc1.eds:486
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 6 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..6");
@@ -133,46 +133,46 @@ struct restore_default_parameters<0> : canopen::TypedObject<std::uint8_t, canope
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Restore all parameters.  1011h:01  UNSIGNED32  rw                               cpc-tc1.eds:498
+/// Restore all parameters.  1011h:01  UNSIGNED32  rw                               cpc-tc1.eds:486
 using restore_default_parameters_restore_all_parameters = restore_default_parameters<1>;
 
-/// Restore communication parameters.  1011h:02  UNSIGNED32  rw                     cpc-tc1.eds:506
+/// Restore communication parameters.  1011h:02  UNSIGNED32  rw                     cpc-tc1.eds:494
 using restore_default_parameters_restore_communication_parameters = restore_default_parameters<2>;
 
-/// Restore application parameters.  1011h:03  UNSIGNED32  rw                       cpc-tc1.eds:514
+/// Restore application parameters.  1011h:03  UNSIGNED32  rw                       cpc-tc1.eds:502
 using restore_default_parameters_restore_application_parameters = restore_default_parameters<3>;
 
-/// Restore RS232 parameters.  1011h:04  UNSIGNED32  rw                             cpc-tc1.eds:522
+/// Restore RS232 parameters.  1011h:04  UNSIGNED32  rw                             cpc-tc1.eds:510
 using restore_default_parameters_restore_rs232_parameters = restore_default_parameters<4>;
 
-/// Restore virtual machine program.  1011h:05  UNSIGNED32  rw                      cpc-tc1.eds:530
+/// Restore virtual machine program.  1011h:05  UNSIGNED32  rw                      cpc-tc1.eds:518
 using restore_default_parameters_restore_virtual_machine_program = restore_default_parameters<5>;
 
-/// Restore error mapping data.  1011h:06  UNSIGNED32  rw                           cpc-tc1.eds:538
+/// Restore error mapping data.  1011h:06  UNSIGNED32  rw                           cpc-tc1.eds:526
 using restore_default_parameters_restore_error_mapping_data = restore_default_parameters<6>;
 
-/// High resolution time stamp.  1013h:00  UNSIGNED32  rw  PDO                      cpc-tc1.eds:548
+/// High resolution time stamp.  1013h:00  UNSIGNED32  rw  PDO                      cpc-tc1.eds:535
 struct high_resolution_time_stamp : canopen::TypedObject<std::uint32_t, canopen::Access::rw, canopen::Mappable::both> {
   static constexpr std::uint16_t index = 0x1013;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "High resolution time stamp";
 };
 
-/// COB-ID EMCY.  1014h:00  UNSIGNED32  ro                                          cpc-tc1.eds:561
+/// COB-ID EMCY.  1014h:00  UNSIGNED32  ro                                          cpc-tc1.eds:548
 struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1014;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
-/// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    cpc-tc1.eds:571
+/// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    cpc-tc1.eds:557
 struct inhibit_time_emcy : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1015;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Inhibit time EMCY";
 };
 
-/// Consumer heartbeat time.  1016h:01..04  UNSIGNED32  rw                          cpc-tc1.eds:597
+/// Consumer heartbeat time.  1016h:01..04  UNSIGNED32  rw                          cpc-tc1.eds:584
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 4 || SubIndex == canopen::whole_array, "consumer_heartbeat_time has the sub-indices 0..4");
@@ -185,7 +185,7 @@ struct consumer_heartbeat_time<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              cpc-tc1.eds:630
+/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              cpc-tc1.eds:617
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -194,7 +194,7 @@ struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Ac
 
 /// Identity object.  1018h
 namespace identity_object {
-/// Highest sub-index supported.  1018h:00  UNSIGNED8  ro                           cpc-tc1.eds:116
+/// Highest sub-index supported.  1018h:00  UNSIGNED8  ro                           cpc-tc1.eds:111
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -202,25 +202,25 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type low_limit = 4;
   static constexpr type high_limit = 4;
 };
-/// Vendor-ID.  1018h:01  UNSIGNED32  ro                                            cpc-tc1.eds:126
+/// Vendor-ID.  1018h:01  UNSIGNED32  ro                                            cpc-tc1.eds:121
 struct vendor_id : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Vendor-ID";
 };
-/// Product code.  1018h:02  UNSIGNED32  ro                                         cpc-tc1.eds:134
+/// Product code.  1018h:02  UNSIGNED32  ro                                         cpc-tc1.eds:129
 struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Product code";
 };
-/// Revision number.  1018h:03  UNSIGNED32  ro                                      cpc-tc1.eds:142
+/// Revision number.  1018h:03  UNSIGNED32  ro                                      cpc-tc1.eds:137
 struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
 };
-/// Serial number.  1018h:04  UNSIGNED32  ro                                        cpc-tc1.eds:150
+/// Serial number.  1018h:04  UNSIGNED32  ro                                        cpc-tc1.eds:145
 struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -228,7 +228,7 @@ struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> 
 };
 }  // namespace identity_object
 
-/// Synchronous counter overflow value.  1019h:00  UNSIGNED8  rw                    cpc-tc1.eds:644
+/// Synchronous counter overflow value.  1019h:00  UNSIGNED8  rw                    cpc-tc1.eds:630
 struct synchronous_counter_overflow_value : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1019;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -237,14 +237,14 @@ struct synchronous_counter_overflow_value : canopen::TypedObject<std::uint8_t, c
   static constexpr type high_limit = 240;
 };
 
-/// Store EDS.  1021h:00  DOMAIN  ro                                                cpc-tc1.eds:656
+/// Store EDS.  1021h:00  DOMAIN  ro                                                cpc-tc1.eds:642
 struct store_eds : canopen::TypedObject<canopen::Domain, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1021;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Store EDS";
 };
 
-/// Store format.  1022h:00  UNSIGNED8  ro                                          cpc-tc1.eds:667
+/// Store format.  1022h:00  UNSIGNED8  ro                                          cpc-tc1.eds:652
 struct store_format : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1022;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -253,7 +253,7 @@ struct store_format : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
 
 /// SDO server parameter.  1200h
 namespace sdo_server_parameter {
-/// Highest sub-index supported.  1200h:00  UNSIGNED8  const                        cpc-tc1.eds:684
+/// Highest sub-index supported.  1200h:00  UNSIGNED8  const                        cpc-tc1.eds:669
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -261,13 +261,13 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 2;
 };
-/// COB-ID client to server.  1200h:01  UNSIGNED32  const                           cpc-tc1.eds:694
+/// COB-ID client to server.  1200h:01  UNSIGNED32  const                           cpc-tc1.eds:679
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
-/// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              cpc-tc1.eds:702
+/// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              cpc-tc1.eds:687
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -277,7 +277,7 @@ struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Ac
 
 /// RPDO communication parameter 1.  1400h
 namespace rpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1400h:00  UNSIGNED8  const                        cpc-tc1.eds:718
+/// Highest sub-index supported.  1400h:00  UNSIGNED8  const                        cpc-tc1.eds:703
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -285,13 +285,13 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 2;
 };
-/// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  cpc-tc1.eds:728
+/// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  cpc-tc1.eds:713
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1400h:02  UNSIGNED8  rw                                     cpc-tc1.eds:736
+/// Transmission type.  1400h:02  UNSIGNED8  rw                                     cpc-tc1.eds:721
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -301,7 +301,7 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 2.  1401h
 namespace rpdo_communication_parameter_2 {
-/// Highest sub-index supported.  1401h:00  UNSIGNED8  const                        cpc-tc1.eds:750
+/// Highest sub-index supported.  1401h:00  UNSIGNED8  const                        cpc-tc1.eds:735
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -309,13 +309,13 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 2;
 };
-/// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  cpc-tc1.eds:760
+/// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  cpc-tc1.eds:745
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1401h:02  UNSIGNED8  rw                                     cpc-tc1.eds:768
+/// Transmission type.  1401h:02  UNSIGNED8  rw                                     cpc-tc1.eds:753
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -325,7 +325,7 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 3.  1402h
 namespace rpdo_communication_parameter_3 {
-/// Highest sub-index supported.  1402h:00  UNSIGNED8  const                        cpc-tc1.eds:782
+/// Highest sub-index supported.  1402h:00  UNSIGNED8  const                        cpc-tc1.eds:767
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -333,13 +333,13 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 2;
 };
-/// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  cpc-tc1.eds:792
+/// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  cpc-tc1.eds:777
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1402h:02  UNSIGNED8  rw                                     cpc-tc1.eds:800
+/// Transmission type.  1402h:02  UNSIGNED8  rw                                     cpc-tc1.eds:785
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -349,7 +349,7 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 4.  1403h
 namespace rpdo_communication_parameter_4 {
-/// Highest sub-index supported.  1403h:00  UNSIGNED8  const                        cpc-tc1.eds:814
+/// Highest sub-index supported.  1403h:00  UNSIGNED8  const                        cpc-tc1.eds:799
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -357,13 +357,13 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 2;
 };
-/// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  cpc-tc1.eds:824
+/// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  cpc-tc1.eds:809
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1403h:02  UNSIGNED8  rw                                     cpc-tc1.eds:832
+/// Transmission type.  1403h:02  UNSIGNED8  rw                                     cpc-tc1.eds:817
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -373,7 +373,7 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO mapping parameter 1.  1600h
 namespace rpdo_mapping_parameter_1 {
-/// Number of mapped application objects.  1600h:00  UNSIGNED8  rw                  cpc-tc1.eds:847
+/// Number of mapped application objects.  1600h:00  UNSIGNED8  rw                  cpc-tc1.eds:832
 struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -381,25 +381,25 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
-/// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      cpc-tc1.eds:857
+/// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      cpc-tc1.eds:842
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      cpc-tc1.eds:865
+/// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      cpc-tc1.eds:850
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      cpc-tc1.eds:873
+/// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      cpc-tc1.eds:858
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      cpc-tc1.eds:881
+/// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      cpc-tc1.eds:866
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -409,7 +409,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 2.  1601h
 namespace rpdo_mapping_parameter_2 {
-/// Number of mapped application objects.  1601h:00  UNSIGNED8  rw                  cpc-tc1.eds:895
+/// Number of mapped application objects.  1601h:00  UNSIGNED8  rw                  cpc-tc1.eds:880
 struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -417,25 +417,25 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
-/// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      cpc-tc1.eds:905
+/// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      cpc-tc1.eds:890
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      cpc-tc1.eds:913
+/// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      cpc-tc1.eds:898
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      cpc-tc1.eds:921
+/// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      cpc-tc1.eds:906
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      cpc-tc1.eds:929
+/// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      cpc-tc1.eds:914
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -445,7 +445,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 3.  1602h
 namespace rpdo_mapping_parameter_3 {
-/// Number of mapped application objects.  1602h:00  UNSIGNED8  rw                  cpc-tc1.eds:943
+/// Number of mapped application objects.  1602h:00  UNSIGNED8  rw                  cpc-tc1.eds:928
 struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -453,25 +453,25 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
-/// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      cpc-tc1.eds:953
+/// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      cpc-tc1.eds:938
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      cpc-tc1.eds:961
+/// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      cpc-tc1.eds:946
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      cpc-tc1.eds:969
+/// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      cpc-tc1.eds:954
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      cpc-tc1.eds:977
+/// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      cpc-tc1.eds:962
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -481,7 +481,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 4.  1603h
 namespace rpdo_mapping_parameter_4 {
-/// Number of mapped application objects.  1603h:00  UNSIGNED8  rw                  cpc-tc1.eds:991
+/// Number of mapped application objects.  1603h:00  UNSIGNED8  rw                  cpc-tc1.eds:976
 struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -489,25 +489,25 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
-/// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1001
+/// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      cpc-tc1.eds:986
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1009
+/// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      cpc-tc1.eds:994
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1017
+/// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1002
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1025
+/// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1010
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -517,7 +517,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1800h:00  UNSIGNED8  const                        cpc-tc1.eds:1048
+/// Highest sub-index supported.  1800h:00  UNSIGNED8  const                        cpc-tc1.eds:1031
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -525,25 +525,25 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 5;
 };
-/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1058
+/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1041
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1800h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1066
+/// Transmission type.  1800h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1049
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1800h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1074
+/// Inhibit time.  1800h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1057
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1800h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1082
+/// Event timer.  1800h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1067
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -553,7 +553,7 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 2.  1801h
 namespace tpdo_communication_parameter_2 {
-/// Highest sub-index supported.  1801h:00  UNSIGNED8  const                        cpc-tc1.eds:1096
+/// Highest sub-index supported.  1801h:00  UNSIGNED8  const                        cpc-tc1.eds:1082
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -561,25 +561,25 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 5;
 };
-/// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1106
+/// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1092
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1801h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1114
+/// Transmission type.  1801h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1100
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1801h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1122
+/// Inhibit time.  1801h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1108
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1801h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1130
+/// Event timer.  1801h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1118
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -589,7 +589,7 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 3.  1802h
 namespace tpdo_communication_parameter_3 {
-/// Highest sub-index supported.  1802h:00  UNSIGNED8  const                        cpc-tc1.eds:1144
+/// Highest sub-index supported.  1802h:00  UNSIGNED8  const                        cpc-tc1.eds:1133
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -597,25 +597,25 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 5;
 };
-/// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1154
+/// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1143
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1802h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1162
+/// Transmission type.  1802h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1151
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1802h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1170
+/// Inhibit time.  1802h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1159
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1802h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1178
+/// Event timer.  1802h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1169
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -625,7 +625,7 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 4.  1803h
 namespace tpdo_communication_parameter_4 {
-/// Highest sub-index supported.  1803h:00  UNSIGNED8  const                        cpc-tc1.eds:1192
+/// Highest sub-index supported.  1803h:00  UNSIGNED8  const                        cpc-tc1.eds:1184
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -633,25 +633,25 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 5;
 };
-/// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1202
+/// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1194
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1803h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1210
+/// Transmission type.  1803h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1202
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1803h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1218
+/// Inhibit time.  1803h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1210
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1803h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1226
+/// Event timer.  1803h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1220
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -661,7 +661,7 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
-/// Number of mapped application objects.  1A00h:00  UNSIGNED8  rw                  cpc-tc1.eds:1243
+/// Number of mapped application objects.  1A00h:00  UNSIGNED8  rw                  cpc-tc1.eds:1237
 struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -669,25 +669,25 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
-/// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1253
+/// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1247
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1261
+/// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1255
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1269
+/// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1263
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1277
+/// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1271
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -697,7 +697,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 2.  1A01h
 namespace tpdo_mapping_parameter_2 {
-/// Number of mapped application objects.  1A01h:00  UNSIGNED8  rw                  cpc-tc1.eds:1291
+/// Number of mapped application objects.  1A01h:00  UNSIGNED8  rw                  cpc-tc1.eds:1285
 struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -705,25 +705,25 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
-/// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1301
+/// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1295
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1309
+/// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1303
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1317
+/// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1311
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1325
+/// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1319
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -733,7 +733,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 3.  1A02h
 namespace tpdo_mapping_parameter_3 {
-/// Number of mapped application objects.  1A02h:00  UNSIGNED8  rw                  cpc-tc1.eds:1339
+/// Number of mapped application objects.  1A02h:00  UNSIGNED8  rw                  cpc-tc1.eds:1333
 struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -741,25 +741,25 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
-/// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1349
+/// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1343
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1357
+/// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1351
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1365
+/// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1359
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1373
+/// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1367
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -769,7 +769,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 4.  1A03h
 namespace tpdo_mapping_parameter_4 {
-/// Number of mapped application objects.  1A03h:00  UNSIGNED8  rw                  cpc-tc1.eds:1388
+/// Number of mapped application objects.  1A03h:00  UNSIGNED8  rw                  cpc-tc1.eds:1382
 struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -777,25 +777,25 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 4;
 };
-/// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1398
+/// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1392
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1406
+/// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1400
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1414
+/// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1408
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1422
+/// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1416
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -803,42 +803,42 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 };
 }  // namespace tpdo_mapping_parameter_4
 
-/// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   cpc-tc1.eds:1432
+/// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   cpc-tc1.eds:1425
 struct controlword : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6040;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Controlword";
 };
 
-/// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     cpc-tc1.eds:1442
+/// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     cpc-tc1.eds:1434
 struct statusword : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x6041;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Statusword";
 };
 
-/// Position actual value.  6064h:00  INTEGER32  ro  TPDO                           cpc-tc1.eds:1452
+/// Position actual value.  6064h:00  INTEGER32  ro  TPDO                           cpc-tc1.eds:1443
 struct position_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x6064;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position actual value";
 };
 
-/// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           cpc-tc1.eds:1462
+/// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           cpc-tc1.eds:1452
 struct velocity_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x606C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Velocity actual value";
 };
 
-/// Target position.  607Ah:00  INTEGER32  rww  RPDO                                cpc-tc1.eds:1472
+/// Target position.  607Ah:00  INTEGER32  rww  RPDO                                cpc-tc1.eds:1461
 struct target_position : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x607A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target position";
 };
 
-/// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                cpc-tc1.eds:1482
+/// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                cpc-tc1.eds:1470
 struct target_velocity : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x60FF;
   static constexpr std::uint8_t sub_index = 0x00;

@@ -49,6 +49,8 @@ struct Device {
     departures.drive_additional_modes = 0x00010000;
     departures.emcy_cob_id_writable = 0x00000780;
     departures.emcy_cob_id_writable_while_valid = true;
+    departures.error_history_empty_is_zero = true;
+    departures.error_history_has_info = false;
     departures.pdo_cob_id_writable = 0x80000780;
     departures.sync_cob_id_writable = 0x000007FF;
     return departures;

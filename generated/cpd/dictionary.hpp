@@ -32,10 +32,10 @@ struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> 
   static constexpr auto name = "Error register";
 };
 
-/// Pre-defined error field.  1003h:01..01  UNSIGNED32  ro                          cpd.eds:238
+/// Pre-defined error field.  1003h:01..05  UNSIGNED32  ro                          cpd.eds:239
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
-  static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..1");
+  static_assert(SubIndex <= 5 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..5");
   static constexpr auto name = "Pre-defined error field";
 };
 template <>
@@ -45,52 +45,49 @@ struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Number of errors";
 };
 
-/// Error field.  1003h:01  UNSIGNED32  ro                                          cpd.eds:238
-using pre_defined_error_field_error_field = pre_defined_error_field<1>;
-
-/// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          cpd.eds:250
+/// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          cpd.eds:283
 struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1005;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
 };
 
-/// Manufacturer device name.  1008h:00  VISIBLE_STRING  ro                         cpd.eds:260
+/// Manufacturer device name.  1008h:00  VISIBLE_STRING  ro                         cpd.eds:293
 struct manufacturer_device_name : canopen::TypedObject<canopen::VisibleString<8>, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1008;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer device name";
 };
 
-/// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  ro                    cpd.eds:269
+/// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  ro                    cpd.eds:302
 struct manufacturer_hardware_version : canopen::TypedObject<canopen::VisibleString<8>, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1009;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer hardware version";
 };
 
-/// Manufacturer software version.  100Ah:00  VISIBLE_STRING  ro                    cpd.eds:278
+/// Manufacturer software version.  100Ah:00  VISIBLE_STRING  ro                    cpd.eds:311
 struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleString<8>, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x100A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer software version";
 };
 
-/// Guard time.  100Ch:00  UNSIGNED16  rw                                           cpd.eds:287
+/// Guard time.  100Ch:00  UNSIGNED16  rw                                           cpd.eds:320
 struct guard_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x100C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Guard time";
 };
 
-/// Life time factor.  100Dh:00  UNSIGNED8  rw                                      cpd.eds:298
+/// Life time factor.  100Dh:00  UNSIGNED8  rw                                      cpd.eds:332
 struct life_time_factor : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x100D;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Life time factor";
 };
 
-/// Store parameters.  1010h:01..03  UNSIGNED32  rw                                 cpd.eds:321
+/// Store parameters.  1010h:01..03  UNSIGNED32  rw                                 cpd.eds:355
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 3 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..3");
@@ -103,16 +100,16 @@ struct store_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access:
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  cpd.eds:321
+/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  cpd.eds:355
 using store_parameters_save_all_parameters = store_parameters<1>;
 
-/// Save communication parameters.  1010h:02  UNSIGNED32  rw                        cpd.eds:329
+/// Save communication parameters.  1010h:02  UNSIGNED32  rw                        cpd.eds:363
 using store_parameters_save_communication_parameters = store_parameters<2>;
 
-/// Save application parameters.  1010h:03  UNSIGNED32  rw                          cpd.eds:337
+/// Save application parameters.  1010h:03  UNSIGNED32  rw                          cpd.eds:371
 using store_parameters_save_application_parameters = store_parameters<3>;
 
-/// Restore default parameters.  1011h:01..03  UNSIGNED32  rw                       cpd.eds:360
+/// Restore default parameters.  1011h:01..03  UNSIGNED32  rw                       cpd.eds:394
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 3 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..3");
@@ -125,30 +122,30 @@ struct restore_default_parameters<0> : canopen::TypedObject<std::uint8_t, canope
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       cpd.eds:360
+/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       cpd.eds:394
 using restore_default_parameters_restore_all_default_parameters = restore_default_parameters<1>;
 
-/// Restore communication default parameters.  1011h:02  UNSIGNED32  rw             cpd.eds:368
+/// Restore communication default parameters.  1011h:02  UNSIGNED32  rw             cpd.eds:402
 using restore_default_parameters_restore_communication_default_parameters = restore_default_parameters<2>;
 
-/// Restore application default parameters.  1011h:03  UNSIGNED32  rw               cpd.eds:376
+/// Restore application default parameters.  1011h:03  UNSIGNED32  rw               cpd.eds:410
 using restore_default_parameters_restore_application_default_parameters = restore_default_parameters<3>;
 
-/// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          cpd.eds:389
+/// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          cpd.eds:423
 struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1014;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
-/// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    cpd.eds:398
+/// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    cpd.eds:432
 struct inhibit_time_emcy : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1015;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Inhibit time EMCY";
 };
 
-/// Consumer heartbeat time.  1016h:01..03  UNSIGNED32  rw                          cpd.eds:422
+/// Consumer heartbeat time.  1016h:01..03  UNSIGNED32  rw                          cpd.eds:458
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 3 || SubIndex == canopen::whole_array, "consumer_heartbeat_time has the sub-indices 0..3");
@@ -161,7 +158,7 @@ struct consumer_heartbeat_time<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              cpd.eds:448
+/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              cpd.eds:484
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -202,7 +199,7 @@ struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> 
 };
 }  // namespace identity_object
 
-/// Verify configuration.  1020h:01..02  UNSIGNED32  rw                             cpd.eds:472
+/// Verify configuration.  1020h:01..02  UNSIGNED32  rw                             cpd.eds:509
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct verify_configuration : canopen::Object<0x1020, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "verify_configuration has the sub-indices 0..2");
@@ -215,13 +212,13 @@ struct verify_configuration<0> : canopen::TypedObject<std::uint8_t, canopen::Acc
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Configuration date.  1020h:01  UNSIGNED32  rw                                   cpd.eds:472
+/// Configuration date.  1020h:01  UNSIGNED32  rw                                   cpd.eds:509
 using verify_configuration_configuration_date = verify_configuration<1>;
 
-/// Configuration time.  1020h:02  UNSIGNED32  rw                                   cpd.eds:480
+/// Configuration time.  1020h:02  UNSIGNED32  rw                                   cpd.eds:517
 using verify_configuration_configuration_time = verify_configuration<2>;
 
-/// Error behaviour.  1029h:01..01  UNSIGNED8  rw                                   cpd.eds:504
+/// Error behaviour.  1029h:01..01  UNSIGNED8  rw                                   cpd.eds:541
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct error_behaviour : canopen::Object<0x1029, SubIndex, std::uint8_t, canopen::Access::rw> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "error_behaviour has the sub-indices 0..1");
@@ -234,24 +231,24 @@ struct error_behaviour<0> : canopen::TypedObject<std::uint8_t, canopen::Access::
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Communication error.  1029h:01  UNSIGNED8  rw                                   cpd.eds:504
+/// Communication error.  1029h:01  UNSIGNED8  rw                                   cpd.eds:541
 using error_behaviour_communication_error = error_behaviour<1>;
 
 /// SDO server parameter 1.  1200h
 namespace sdo_server_parameter_1 {
-/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           cpd.eds:518
+/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           cpd.eds:555
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              cpd.eds:526
+/// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              cpd.eds:563
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
-/// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              cpd.eds:534
+/// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              cpd.eds:571
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -261,25 +258,25 @@ struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Ac
 
 /// SDO server parameter 2.  1201h
 namespace sdo_server_parameter_2 {
-/// Highest sub-index supported.  1201h:00  UNSIGNED8  ro                           cpd.eds:548
+/// Highest sub-index supported.  1201h:00  UNSIGNED8  ro                           cpd.eds:585
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1201;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID client to server.  1201h:01  UNSIGNED32  rw                              cpd.eds:556
+/// COB-ID client to server.  1201h:01  UNSIGNED32  rw                              cpd.eds:593
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1201;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
-/// COB-ID server to client.  1201h:02  UNSIGNED32  rw                              cpd.eds:564
+/// COB-ID server to client.  1201h:02  UNSIGNED32  rw                              cpd.eds:601
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1201;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client";
 };
-/// Node-ID of the SDO client.  1201h:03  UNSIGNED8  rw                             cpd.eds:574
+/// Node-ID of the SDO client.  1201h:03  UNSIGNED8  rw                             cpd.eds:611
 struct node_id_of_the_sdo_client : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1201;
   static constexpr std::uint8_t sub_index = 0x03;
@@ -291,19 +288,19 @@ struct node_id_of_the_sdo_client : canopen::TypedObject<std::uint8_t, canopen::A
 
 /// RPDO communication parameter 1.  1400h
 namespace rpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           cpd.eds:592
+/// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           cpd.eds:629
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  cpd.eds:600
+/// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  cpd.eds:637
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1400h:02  UNSIGNED8  rw                                     cpd.eds:608
+/// Transmission type.  1400h:02  UNSIGNED8  rw                                     cpd.eds:645
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -313,19 +310,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 2.  1401h
 namespace rpdo_communication_parameter_2 {
-/// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           cpd.eds:631
+/// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           cpd.eds:668
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  cpd.eds:639
+/// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  cpd.eds:676
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1401h:02  UNSIGNED8  rw                                     cpd.eds:647
+/// Transmission type.  1401h:02  UNSIGNED8  rw                                     cpd.eds:684
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -335,19 +332,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 3.  1402h
 namespace rpdo_communication_parameter_3 {
-/// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           cpd.eds:670
+/// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           cpd.eds:707
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  cpd.eds:678
+/// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  cpd.eds:715
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1402h:02  UNSIGNED8  rw                                     cpd.eds:686
+/// Transmission type.  1402h:02  UNSIGNED8  rw                                     cpd.eds:723
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -357,19 +354,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 4.  1403h
 namespace rpdo_communication_parameter_4 {
-/// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           cpd.eds:706
+/// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           cpd.eds:743
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  cpd.eds:714
+/// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  cpd.eds:751
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1403h:02  UNSIGNED8  ro                                     cpd.eds:722
+/// Transmission type.  1403h:02  UNSIGNED8  ro                                     cpd.eds:759
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -379,7 +376,7 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO mapping parameter 1.  1600h
 namespace rpdo_mapping_parameter_1 {
-/// Number of mapped objects.  1600h:00  UNSIGNED8  ro                              cpd.eds:740
+/// Number of mapped objects.  1600h:00  UNSIGNED8  ro                              cpd.eds:777
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -387,7 +384,7 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1600h:01  UNSIGNED32  ro                                      cpd.eds:750
+/// Mapping entry 1.  1600h:01  UNSIGNED32  ro                                      cpd.eds:787
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x01;
@@ -397,7 +394,7 @@ struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 
 /// RPDO mapping parameter 2.  1601h
 namespace rpdo_mapping_parameter_2 {
-/// Number of mapped objects.  1601h:00  UNSIGNED8  ro                              cpd.eds:769
+/// Number of mapped objects.  1601h:00  UNSIGNED8  ro                              cpd.eds:806
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -405,25 +402,25 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1601h:01  UNSIGNED32  ro                                      cpd.eds:779
+/// Mapping entry 1.  1601h:01  UNSIGNED32  ro                                      cpd.eds:816
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1601h:02  UNSIGNED32  ro                                      cpd.eds:787
+/// Mapping entry 2.  1601h:02  UNSIGNED32  ro                                      cpd.eds:824
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1601h:03  UNSIGNED32  ro                                      cpd.eds:795
+/// Mapping entry 3.  1601h:03  UNSIGNED32  ro                                      cpd.eds:832
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1601h:04  UNSIGNED32  ro                                      cpd.eds:803
+/// Mapping entry 4.  1601h:04  UNSIGNED32  ro                                      cpd.eds:840
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -433,7 +430,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 
 /// RPDO mapping parameter 3.  1602h
 namespace rpdo_mapping_parameter_3 {
-/// Number of mapped objects.  1602h:00  UNSIGNED8  ro                              cpd.eds:820
+/// Number of mapped objects.  1602h:00  UNSIGNED8  ro                              cpd.eds:857
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -441,25 +438,25 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1602h:01  UNSIGNED32  ro                                      cpd.eds:830
+/// Mapping entry 1.  1602h:01  UNSIGNED32  ro                                      cpd.eds:867
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1602h:02  UNSIGNED32  ro                                      cpd.eds:838
+/// Mapping entry 2.  1602h:02  UNSIGNED32  ro                                      cpd.eds:875
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1602h:03  UNSIGNED32  ro                                      cpd.eds:846
+/// Mapping entry 3.  1602h:03  UNSIGNED32  ro                                      cpd.eds:883
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1602h:04  UNSIGNED32  ro                                      cpd.eds:854
+/// Mapping entry 4.  1602h:04  UNSIGNED32  ro                                      cpd.eds:891
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -469,31 +466,31 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 
 /// RPDO mapping parameter 4.  1603h
 namespace rpdo_mapping_parameter_4 {
-/// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              cpd.eds:871
+/// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              cpd.eds:908
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      cpd.eds:879
+/// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      cpd.eds:916
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      cpd.eds:887
+/// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      cpd.eds:924
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      cpd.eds:895
+/// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      cpd.eds:932
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      cpd.eds:903
+/// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      cpd.eds:940
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -503,31 +500,31 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           cpd.eds:919
+/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           cpd.eds:956
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  cpd.eds:927
+/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  cpd.eds:964
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1800h:02  UNSIGNED8  rw                                     cpd.eds:935
+/// Transmission type.  1800h:02  UNSIGNED8  rw                                     cpd.eds:972
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1800h:03  UNSIGNED16  rw                                         cpd.eds:943
+/// Inhibit time.  1800h:03  UNSIGNED16  rw                                         cpd.eds:980
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1800h:05  UNSIGNED16  rw                                          cpd.eds:951
+/// Event timer.  1800h:05  UNSIGNED16  rw                                          cpd.eds:990
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -537,31 +534,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 2.  1801h
 namespace tpdo_communication_parameter_2 {
-/// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           cpd.eds:972
+/// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           cpd.eds:1012
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  cpd.eds:980
+/// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  cpd.eds:1020
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1801h:02  UNSIGNED8  rw                                     cpd.eds:988
+/// Transmission type.  1801h:02  UNSIGNED8  rw                                     cpd.eds:1028
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1801h:03  UNSIGNED16  rw                                         cpd.eds:996
+/// Inhibit time.  1801h:03  UNSIGNED16  rw                                         cpd.eds:1036
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1801h:05  UNSIGNED16  rw                                          cpd.eds:1004
+/// Event timer.  1801h:05  UNSIGNED16  rw                                          cpd.eds:1046
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -571,31 +568,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 3.  1802h
 namespace tpdo_communication_parameter_3 {
-/// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           cpd.eds:1025
+/// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           cpd.eds:1068
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  cpd.eds:1033
+/// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  cpd.eds:1076
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1802h:02  UNSIGNED8  rw                                     cpd.eds:1041
+/// Transmission type.  1802h:02  UNSIGNED8  rw                                     cpd.eds:1084
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1802h:03  UNSIGNED16  rw                                         cpd.eds:1049
+/// Inhibit time.  1802h:03  UNSIGNED16  rw                                         cpd.eds:1092
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1802h:05  UNSIGNED16  rw                                          cpd.eds:1057
+/// Event timer.  1802h:05  UNSIGNED16  rw                                          cpd.eds:1102
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -605,31 +602,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 4.  1803h
 namespace tpdo_communication_parameter_4 {
-/// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           cpd.eds:1077
+/// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           cpd.eds:1123
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  cpd.eds:1085
+/// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  cpd.eds:1131
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1803h:02  UNSIGNED8  ro                                     cpd.eds:1093
+/// Transmission type.  1803h:02  UNSIGNED8  ro                                     cpd.eds:1139
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1803h:03  UNSIGNED16  rw                                         cpd.eds:1101
+/// Inhibit time.  1803h:03  UNSIGNED16  rw                                         cpd.eds:1147
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1803h:05  UNSIGNED16  rw                                          cpd.eds:1109
+/// Event timer.  1803h:05  UNSIGNED16  rw                                          cpd.eds:1157
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -639,7 +636,7 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
-/// Number of mapped objects.  1A00h:00  UNSIGNED8  ro                              cpd.eds:1125
+/// Number of mapped objects.  1A00h:00  UNSIGNED8  ro                              cpd.eds:1174
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -647,7 +644,7 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1A00h:01  UNSIGNED32  ro                                      cpd.eds:1135
+/// Mapping entry 1.  1A00h:01  UNSIGNED32  ro                                      cpd.eds:1184
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
@@ -657,7 +654,7 @@ struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 
 /// TPDO mapping parameter 2.  1A01h
 namespace tpdo_mapping_parameter_2 {
-/// Number of mapped objects.  1A01h:00  UNSIGNED8  ro                              cpd.eds:1153
+/// Number of mapped objects.  1A01h:00  UNSIGNED8  ro                              cpd.eds:1202
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -665,25 +662,25 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1A01h:01  UNSIGNED32  ro                                      cpd.eds:1163
+/// Mapping entry 1.  1A01h:01  UNSIGNED32  ro                                      cpd.eds:1212
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A01h:02  UNSIGNED32  ro                                      cpd.eds:1171
+/// Mapping entry 2.  1A01h:02  UNSIGNED32  ro                                      cpd.eds:1220
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A01h:03  UNSIGNED32  ro                                      cpd.eds:1179
+/// Mapping entry 3.  1A01h:03  UNSIGNED32  ro                                      cpd.eds:1228
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A01h:04  UNSIGNED32  ro                                      cpd.eds:1187
+/// Mapping entry 4.  1A01h:04  UNSIGNED32  ro                                      cpd.eds:1236
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -693,7 +690,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 
 /// TPDO mapping parameter 3.  1A02h
 namespace tpdo_mapping_parameter_3 {
-/// Number of mapped objects.  1A02h:00  UNSIGNED8  ro                              cpd.eds:1204
+/// Number of mapped objects.  1A02h:00  UNSIGNED8  ro                              cpd.eds:1253
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -701,25 +698,25 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type low_limit = 1;
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1A02h:01  UNSIGNED32  ro                                      cpd.eds:1214
+/// Mapping entry 1.  1A02h:01  UNSIGNED32  ro                                      cpd.eds:1263
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A02h:02  UNSIGNED32  ro                                      cpd.eds:1222
+/// Mapping entry 2.  1A02h:02  UNSIGNED32  ro                                      cpd.eds:1271
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A02h:03  UNSIGNED32  ro                                      cpd.eds:1230
+/// Mapping entry 3.  1A02h:03  UNSIGNED32  ro                                      cpd.eds:1279
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A02h:04  UNSIGNED32  ro                                      cpd.eds:1238
+/// Mapping entry 4.  1A02h:04  UNSIGNED32  ro                                      cpd.eds:1287
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -729,31 +726,31 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 
 /// TPDO mapping parameter 4.  1A03h
 namespace tpdo_mapping_parameter_4 {
-/// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              cpd.eds:1254
+/// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              cpd.eds:1303
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
 };
-/// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      cpd.eds:1262
+/// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      cpd.eds:1311
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      cpd.eds:1270
+/// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      cpd.eds:1319
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      cpd.eds:1278
+/// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      cpd.eds:1327
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      cpd.eds:1286
+/// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      cpd.eds:1335
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -761,7 +758,7 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 };
 }  // namespace tpdo_mapping_parameter_4
 
-/// Drive status.  2041h:00  UNSIGNED16  ro                                         cpd.eds:1576
+/// Drive status.  2041h:00  UNSIGNED16  ro                                         cpd.eds:1660
 struct drive_status : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x2041;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -770,19 +767,19 @@ struct drive_status : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
 
 /// Parameter storage.  3004h
 namespace parameter_storage {
-/// Highest sub-index supported.  3004h:00  UNSIGNED8  ro                           cpd.eds:1592
+/// Highest sub-index supported.  3004h:00  UNSIGNED8  ro                           cpd.eds:1677
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3004;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Save settings to EEPROM.  3004h:01  UNSIGNED16  rw                              cpd.eds:1600
+/// Save settings to EEPROM.  3004h:01  UNSIGNED16  rw                              cpd.eds:1685
 struct save_settings_to_eeprom : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3004;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Save settings to EEPROM";
 };
-/// Reset user settings.  3004h:08  UNSIGNED16  rw                                  cpd.eds:1608
+/// Reset user settings.  3004h:08  UNSIGNED16  rw                                  cpd.eds:1694
 struct reset_user_settings : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3004;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -792,13 +789,13 @@ struct reset_user_settings : canopen::TypedObject<std::uint16_t, canopen::Access
 
 /// Position interface.  3005h
 namespace position_interface {
-/// Highest sub-index supported.  3005h:00  UNSIGNED8  ro                           cpd.eds:1622
+/// Highest sub-index supported.  3005h:00  UNSIGNED8  ro                           cpd.eds:1709
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3005;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Signal selection.  3005h:02  UNSIGNED16  rw                                     cpd.eds:1630
+/// Signal selection.  3005h:02  UNSIGNED16  rw                                     cpd.eds:1717
 struct signal_selection : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3005;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -808,13 +805,13 @@ struct signal_selection : canopen::TypedObject<std::uint16_t, canopen::Access::r
 
 /// Motion settings.  3006h
 namespace motion_settings {
-/// Highest sub-index supported.  3006h:00  UNSIGNED8  ro                           cpd.eds:1647
+/// Highest sub-index supported.  3006h:00  UNSIGNED8  ro                           cpd.eds:1734
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3006;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Negative limit switch contact.  3006h:0F  UNSIGNED16  rw                        cpd.eds:1655
+/// Negative limit switch contact.  3006h:0F  UNSIGNED16  rw                        cpd.eds:1742
 struct negative_limit_switch_contact : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3006;
   static constexpr std::uint8_t sub_index = 0x0F;
@@ -822,7 +819,7 @@ struct negative_limit_switch_contact : canopen::TypedObject<std::uint16_t, canop
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 2;
 };
-/// Positive limit switch contact.  3006h:10  UNSIGNED16  rw                        cpd.eds:1665
+/// Positive limit switch contact.  3006h:10  UNSIGNED16  rw                        cpd.eds:1753
 struct positive_limit_switch_contact : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3006;
   static constexpr std::uint8_t sub_index = 0x10;
@@ -830,7 +827,7 @@ struct positive_limit_switch_contact : canopen::TypedObject<std::uint16_t, canop
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 2;
 };
-/// Direction of rotation inversion.  3006h:12  UNSIGNED16  rw                      cpd.eds:1675
+/// Direction of rotation inversion.  3006h:12  UNSIGNED16  rw                      cpd.eds:1764
 struct direction_of_rotation_inversion : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3006;
   static constexpr std::uint8_t sub_index = 0x12;
@@ -840,13 +837,13 @@ struct direction_of_rotation_inversion : canopen::TypedObject<std::uint16_t, can
 
 /// Inputs and outputs.  3008h
 namespace inputs_and_outputs {
-/// Highest sub-index supported.  3008h:00  UNSIGNED8  ro                           cpd.eds:1690
+/// Highest sub-index supported.  3008h:00  UNSIGNED8  ro                           cpd.eds:1780
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3008;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Digital inputs and outputs.  3008h:01  UNSIGNED16  ro  TPDO                     cpd.eds:1698
+/// Digital inputs and outputs.  3008h:01  UNSIGNED16  ro  TPDO                     cpd.eds:1788
 struct digital_inputs_and_outputs : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x3008;
   static constexpr std::uint8_t sub_index = 0x01;
@@ -856,19 +853,19 @@ struct digital_inputs_and_outputs : canopen::TypedObject<std::uint16_t, canopen:
 
 /// Analogue inputs.  3009h
 namespace analogue_inputs {
-/// Highest sub-index supported.  3009h:00  UNSIGNED8  ro                           cpd.eds:1712
+/// Highest sub-index supported.  3009h:00  UNSIGNED8  ro                           cpd.eds:1803
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3009;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Analogue input ANA1.  3009h:01  INTEGER16  ro  TPDO                             cpd.eds:1720
+/// Analogue input ANA1.  3009h:01  INTEGER16  ro  TPDO                             cpd.eds:1811
 struct analogue_input_ana1 : canopen::TypedObject<std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x3009;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Analogue input ANA1";
 };
-/// Analogue input ANA2.  3009h:05  INTEGER16  ro  TPDO                             cpd.eds:1728
+/// Analogue input ANA2.  3009h:05  INTEGER16  ro  TPDO                             cpd.eds:1821
 struct analogue_input_ana2 : canopen::TypedObject<std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x3009;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -878,19 +875,19 @@ struct analogue_input_ana2 : canopen::TypedObject<std::int16_t, canopen::Access:
 
 /// Current limits.  3011h
 namespace current_limits {
-/// Highest sub-index supported.  3011h:00  UNSIGNED8  ro                           cpd.eds:1742
+/// Highest sub-index supported.  3011h:00  UNSIGNED8  ro                           cpd.eds:1837
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3011;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Quick stop current limit.  3011h:05  UNSIGNED16  rw                             cpd.eds:1750
+/// Quick stop current limit.  3011h:05  UNSIGNED16  rw                             cpd.eds:1845
 struct quick_stop_current_limit : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3011;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Quick stop current limit";
 };
-/// Stop current limit.  3011h:06  UNSIGNED16  rw                                   cpd.eds:1758
+/// Stop current limit.  3011h:06  UNSIGNED16  rw                                   cpd.eds:1856
 struct stop_current_limit : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3011;
   static constexpr std::uint8_t sub_index = 0x06;
@@ -900,31 +897,31 @@ struct stop_current_limit : canopen::TypedObject<std::uint16_t, canopen::Access:
 
 /// Operating mode settings.  301Bh
 namespace operating_mode_settings {
-/// Highest sub-index supported.  301Bh:00  UNSIGNED8  ro                           cpd.eds:1773
+/// Highest sub-index supported.  301Bh:00  UNSIGNED8  ro                           cpd.eds:1874
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Manual movement activation.  301Bh:09  UNSIGNED16  rww  RPDO                    cpd.eds:1781
+/// Manual movement activation.  301Bh:09  UNSIGNED16  rww  RPDO                    cpd.eds:1882
 struct manual_movement_activation : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x09;
   static constexpr auto name = "Manual movement activation";
 };
-/// Current setpoint specification.  301Bh:10  UNSIGNED16  rw                       cpd.eds:1789
+/// Current setpoint specification.  301Bh:10  UNSIGNED16  rw                       cpd.eds:1891
 struct current_setpoint_specification : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x10;
   static constexpr auto name = "Current setpoint specification";
 };
-/// Speed setpoint specification.  301Bh:11  UNSIGNED16  rw                         cpd.eds:1797
+/// Speed setpoint specification.  301Bh:11  UNSIGNED16  rw                         cpd.eds:1899
 struct speed_setpoint_specification : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x11;
   static constexpr auto name = "Speed setpoint specification";
 };
-/// Gear activation.  301Bh:12  UNSIGNED16  rw                                      cpd.eds:1805
+/// Gear activation.  301Bh:12  UNSIGNED16  rw                                      cpd.eds:1907
 struct gear_activation : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x12;
@@ -934,37 +931,37 @@ struct gear_activation : canopen::TypedObject<std::uint16_t, canopen::Access::rw
 
 /// Monitoring status.  301Ch
 namespace monitoring_status {
-/// Highest sub-index supported.  301Ch:00  UNSIGNED8  ro                           cpd.eds:1820
+/// Highest sub-index supported.  301Ch:00  UNSIGNED8  ro                           cpd.eds:1922
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Action status.  301Ch:04  UNSIGNED16  ro  TPDO                                  cpd.eds:1828
+/// Action status.  301Ch:04  UNSIGNED16  ro  TPDO                                  cpd.eds:1930
 struct action_status : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Action status";
 };
-/// Active monitoring signals.  301Ch:07  UNSIGNED16  ro                            cpd.eds:1836
+/// Active monitoring signals.  301Ch:07  UNSIGNED16  ro                            cpd.eds:1939
 struct active_monitoring_signals : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Active monitoring signals";
 };
-/// Latched monitoring signals.  301Ch:08  UNSIGNED16  ro                           cpd.eds:1844
+/// Latched monitoring signals.  301Ch:08  UNSIGNED16  ro                           cpd.eds:1948
 struct latched_monitoring_signals : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Latched monitoring signals";
 };
-/// Active warnings.  301Ch:0B  UNSIGNED16  ro                                      cpd.eds:1852
+/// Active warnings.  301Ch:0B  UNSIGNED16  ro                                      cpd.eds:1957
 struct active_warnings : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x0B;
   static constexpr auto name = "Active warnings";
 };
-/// Latched warnings.  301Ch:0C  UNSIGNED16  ro                                     cpd.eds:1860
+/// Latched warnings.  301Ch:0C  UNSIGNED16  ro                                     cpd.eds:1966
 struct latched_warnings : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x0C;
@@ -974,13 +971,13 @@ struct latched_warnings : canopen::TypedObject<std::uint16_t, canopen::Access::r
 
 /// Motion generator.  301Fh
 namespace motion_generator {
-/// Highest sub-index supported.  301Fh:00  UNSIGNED8  ro                           cpd.eds:1874
+/// Highest sub-index supported.  301Fh:00  UNSIGNED8  ro                           cpd.eds:1981
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x301F;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Ramp position actual value.  301Fh:02  INTEGER32  ro  TPDO                      cpd.eds:1882
+/// Ramp position actual value.  301Fh:02  INTEGER32  ro  TPDO                      cpd.eds:1989
 struct ramp_position_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x301F;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -990,13 +987,13 @@ struct ramp_position_actual_value : canopen::TypedObject<std::int32_t, canopen::
 
 /// Current control.  3020h
 namespace current_control {
-/// Highest sub-index supported.  3020h:00  UNSIGNED8  ro                           cpd.eds:1896
+/// Highest sub-index supported.  3020h:00  UNSIGNED8  ro                           cpd.eds:2004
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3020;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Current setpoint.  3020h:04  INTEGER16  rww  RPDO                               cpd.eds:1904
+/// Current setpoint.  3020h:04  INTEGER16  rww  RPDO                               cpd.eds:2012
 struct current_setpoint : canopen::TypedObject<std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x3020;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -1006,13 +1003,13 @@ struct current_setpoint : canopen::TypedObject<std::int16_t, canopen::Access::rw
 
 /// Speed control.  3021h
 namespace speed_control {
-/// Highest sub-index supported.  3021h:00  UNSIGNED8  ro                           cpd.eds:1918
+/// Highest sub-index supported.  3021h:00  UNSIGNED8  ro                           cpd.eds:2029
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3021;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Speed setpoint.  3021h:04  INTEGER16  rww  RPDO                                 cpd.eds:1926
+/// Speed setpoint.  3021h:04  INTEGER16  rww  RPDO                                 cpd.eds:2037
 struct speed_setpoint : canopen::TypedObject<std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x3021;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -1022,19 +1019,19 @@ struct speed_setpoint : canopen::TypedObject<std::int16_t, canopen::Access::rww,
 
 /// Electronic gear.  3026h
 namespace electronic_gear {
-/// Highest sub-index supported.  3026h:00  UNSIGNED8  ro                           cpd.eds:1941
+/// Highest sub-index supported.  3026h:00  UNSIGNED8  ro                           cpd.eds:2054
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3026;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Gear denominator.  3026h:03  INTEGER32  rww  RPDO                               cpd.eds:1949
+/// Gear denominator.  3026h:03  INTEGER32  rww  RPDO                               cpd.eds:2062
 struct gear_denominator : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x3026;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Gear denominator";
 };
-/// Gear numerator.  3026h:04  INTEGER32  rww  RPDO                                 cpd.eds:1957
+/// Gear numerator.  3026h:04  INTEGER32  rww  RPDO                                 cpd.eds:2071
 struct gear_numerator : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x3026;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -1044,19 +1041,19 @@ struct gear_numerator : canopen::TypedObject<std::int32_t, canopen::Access::rww,
 
 /// Manual movement.  3029h
 namespace manual_movement {
-/// Highest sub-index supported.  3029h:00  UNSIGNED8  ro                           cpd.eds:1971
+/// Highest sub-index supported.  3029h:00  UNSIGNED8  ro                           cpd.eds:2086
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x3029;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Slow speed.  3029h:04  UNSIGNED16  rw                                           cpd.eds:1979
+/// Slow speed.  3029h:04  UNSIGNED16  rw                                           cpd.eds:2094
 struct slow_speed : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3029;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Slow speed";
 };
-/// Fast speed.  3029h:05  UNSIGNED16  rw                                           cpd.eds:1987
+/// Fast speed.  3029h:05  UNSIGNED16  rw                                           cpd.eds:2103
 struct fast_speed : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x3029;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1066,13 +1063,13 @@ struct fast_speed : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// Error memory control.  303Bh
 namespace error_memory_control {
-/// Highest sub-index supported.  303Bh:00  UNSIGNED8  ro                           cpd.eds:2002
+/// Highest sub-index supported.  303Bh:00  UNSIGNED8  ro                           cpd.eds:2119
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x303B;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Error memory reset.  303Bh:05  UNSIGNED16  rw                                   cpd.eds:2010
+/// Error memory reset.  303Bh:05  UNSIGNED16  rw                                   cpd.eds:2127
 struct error_memory_reset : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x303B;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -1082,13 +1079,13 @@ struct error_memory_reset : canopen::TypedObject<std::uint16_t, canopen::Access:
 
 /// Error memory.  303Ch
 namespace error_memory {
-/// Highest sub-index supported.  303Ch:00  UNSIGNED8  ro                           cpd.eds:2024
+/// Highest sub-index supported.  303Ch:00  UNSIGNED8  ro                           cpd.eds:2142
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x303C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Error number.  303Ch:01  UNSIGNED16  ro                                         cpd.eds:2032
+/// Error number.  303Ch:01  UNSIGNED16  ro                                         cpd.eds:2150
 struct error_number : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x303C;
   static constexpr std::uint8_t sub_index = 0x01;
@@ -1096,28 +1093,28 @@ struct error_number : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
 };
 }  // namespace error_memory
 
-/// Error code.  603Fh:00  UNSIGNED16  ro                                           cpd.eds:1295
+/// Error code.  603Fh:00  UNSIGNED16  ro                                           cpd.eds:1344
 struct error_code : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x603F;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error code";
 };
 
-/// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   cpd.eds:1304
+/// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   cpd.eds:1354
 struct controlword : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6040;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Controlword";
 };
 
-/// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     cpd.eds:1314
+/// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     cpd.eds:1365
 struct statusword : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x6041;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Statusword";
 };
 
-/// Modes of operation.  6060h:00  INTEGER8  rw                                     cpd.eds:1325
+/// Modes of operation.  6060h:00  INTEGER8  rw                                     cpd.eds:1377
 struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6060;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -1125,63 +1122,63 @@ struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::r
   static constexpr canopen::ValueRange accepted[] = {{-128, 1}, {3, 3}, {6, 6}};
 };
 
-/// Modes of operation display.  6061h:00  INTEGER8  ro  TPDO                       cpd.eds:1335
+/// Modes of operation display.  6061h:00  INTEGER8  ro  TPDO                       cpd.eds:1388
 struct modes_of_operation_display : canopen::TypedObject<std::int8_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x6061;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Modes of operation display";
 };
 
-/// Position actual value.  6064h:00  INTEGER32  ro  TPDO                           cpd.eds:1344
+/// Position actual value.  6064h:00  INTEGER32  ro  TPDO                           cpd.eds:1398
 struct position_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x6064;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position actual value";
 };
 
-/// Following error window.  6065h:00  UNSIGNED32  rw                               cpd.eds:1353
+/// Following error window.  6065h:00  UNSIGNED32  rw                               cpd.eds:1408
 struct following_error_window : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6065;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Following error window";
 };
 
-/// Position window.  6067h:00  UNSIGNED32  rw                                      cpd.eds:1362
+/// Position window.  6067h:00  UNSIGNED32  rw                                      cpd.eds:1419
 struct position_window : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6067;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position window";
 };
 
-/// Position window time.  6068h:00  UNSIGNED16  rw                                 cpd.eds:1371
+/// Position window time.  6068h:00  UNSIGNED16  rw                                 cpd.eds:1429
 struct position_window_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6068;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position window time";
 };
 
-/// Velocity demand value.  606Bh:00  INTEGER32  ro                                 cpd.eds:1380
+/// Velocity demand value.  606Bh:00  INTEGER32  ro                                 cpd.eds:1440
 struct velocity_demand_value : canopen::TypedObject<std::int32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x606B;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Velocity demand value";
 };
 
-/// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           cpd.eds:1389
+/// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           cpd.eds:1450
 struct velocity_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x606C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Velocity actual value";
 };
 
-/// Target position.  607Ah:00  INTEGER32  rww  RPDO                                cpd.eds:1398
+/// Target position.  607Ah:00  INTEGER32  rww  RPDO                                cpd.eds:1461
 struct target_position : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x607A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target position";
 };
 
-/// Software position limit.  607Dh:01..02  INTEGER32  rw                           cpd.eds:1424
+/// Software position limit.  607Dh:01..02  INTEGER32  rw                           cpd.eds:1488
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct software_position_limit : canopen::Object<0x607D, SubIndex, std::int32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "software_position_limit has the sub-indices 0..2");
@@ -1194,55 +1191,55 @@ struct software_position_limit<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Min position limit.  607Dh:01  INTEGER32  rw                                    cpd.eds:1424
+/// Min position limit.  607Dh:01  INTEGER32  rw                                    cpd.eds:1488
 using software_position_limit_min_position_limit = software_position_limit<1>;
 
-/// Max position limit.  607Dh:02  INTEGER32  rw                                    cpd.eds:1432
+/// Max position limit.  607Dh:02  INTEGER32  rw                                    cpd.eds:1497
 using software_position_limit_max_position_limit = software_position_limit<2>;
 
-/// Max profile velocity.  607Fh:00  UNSIGNED32  rw                                 cpd.eds:1441
+/// Max profile velocity.  607Fh:00  UNSIGNED32  rw                                 cpd.eds:1507
 struct max_profile_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x607F;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Max profile velocity";
 };
 
-/// Profile velocity.  6081h:00  UNSIGNED32  rww  RPDO                              cpd.eds:1450
+/// Profile velocity.  6081h:00  UNSIGNED32  rww  RPDO                              cpd.eds:1518
 struct profile_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6081;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile velocity";
 };
 
-/// Profile acceleration.  6083h:00  UNSIGNED32  rw                                 cpd.eds:1460
+/// Profile acceleration.  6083h:00  UNSIGNED32  rw                                 cpd.eds:1530
 struct profile_acceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6083;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile acceleration";
 };
 
-/// Profile deceleration.  6084h:00  UNSIGNED32  rw                                 cpd.eds:1470
+/// Profile deceleration.  6084h:00  UNSIGNED32  rw                                 cpd.eds:1542
 struct profile_deceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6084;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile deceleration";
 };
 
-/// Motion profile type.  6086h:00  INTEGER16  rw                                   cpd.eds:1479
+/// Motion profile type.  6086h:00  INTEGER16  rw                                   cpd.eds:1553
 struct motion_profile_type : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6086;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Motion profile type";
 };
 
-/// Homing method.  6098h:00  INTEGER8  rw                                          cpd.eds:1488
+/// Homing method.  6098h:00  INTEGER8  rw                                          cpd.eds:1563
 struct homing_method : canopen::TypedObject<std::int8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6098;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Homing method";
 };
 
-/// Homing speeds.  6099h:01..02  UNSIGNED32  rw                                    cpd.eds:1510
+/// Homing speeds.  6099h:01..02  UNSIGNED32  rw                                    cpd.eds:1586
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct homing_speeds : canopen::Object<0x6099, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "homing_speeds has the sub-indices 0..2");
@@ -1255,27 +1252,27 @@ struct homing_speeds<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Speed during search for switch.  6099h:01  UNSIGNED32  rw                       cpd.eds:1510
+/// Speed during search for switch.  6099h:01  UNSIGNED32  rw                       cpd.eds:1586
 using homing_speeds_speed_during_search_for_switch = homing_speeds<1>;
 
-/// Speed during search for zero.  6099h:02  UNSIGNED32  rw                         cpd.eds:1518
+/// Speed during search for zero.  6099h:02  UNSIGNED32  rw                         cpd.eds:1596
 using homing_speeds_speed_during_search_for_zero = homing_speeds<2>;
 
-/// Following error actual value.  60F4h:00  INTEGER32  ro                          cpd.eds:1527
+/// Following error actual value.  60F4h:00  INTEGER32  ro                          cpd.eds:1607
 struct following_error_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x60F4;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Following error actual value";
 };
 
-/// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                cpd.eds:1536
+/// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                cpd.eds:1617
 struct target_velocity : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x60FF;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target velocity";
 };
 
-/// Supported drive modes.  6502h:00  UNSIGNED32  ro                                cpd.eds:1546
+/// Supported drive modes.  6502h:00  UNSIGNED32  ro                                cpd.eds:1629
 struct supported_drive_modes : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x6502;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -1288,7 +1285,7 @@ struct supported_drive_modes : canopen::TypedObject<std::uint32_t, canopen::Acce
 using Objects = canopen::ObjectRows<
     od::device_type,
     od::error_register,
-    canopen::ArrayObjects<od::pre_defined_error_field, 1>,
+    canopen::ArrayObjects<od::pre_defined_error_field, 5>,
     od::cob_id_sync,
     od::manufacturer_device_name,
     od::manufacturer_hardware_version,
@@ -1452,7 +1449,7 @@ using Objects = canopen::ObjectRows<
 
 /// Pre-defined error field: values in RAM.
 struct PreDefinedErrorField {
-  std::array<std::uint32_t, 1> elements;
+  std::array<std::uint32_t, 5> elements;
   std::uint8_t highest_sub_index;
 };
 
@@ -1639,6 +1636,7 @@ struct Values {
   struct ApplicationPreset {
     ElectronicGear electronic_gear;                                 ///< 3026h  Electronic gear
     std::uint32_t supported_drive_modes;                            ///< 6502h:00  Supported drive modes
+    MotionSettings motion_settings;                                 ///< 3006h  Motion settings
   } application_preset;
   /// 2000h..FFFFh that start from zero.
   struct ApplicationCleared {
@@ -1660,7 +1658,6 @@ struct Values {
     std::uint16_t drive_status;                                     ///< 2041h:00  Drive status
     ParameterStorage parameter_storage;                             ///< 3004h  Parameter storage
     PositionInterface position_interface;                           ///< 3005h  Position interface
-    MotionSettings motion_settings;                                 ///< 3006h  Motion settings
     InputsAndOutputs inputs_and_outputs;                            ///< 3008h  Inputs and outputs
     AnalogueInputs analogue_inputs;                                 ///< 3009h  Analogue inputs
     CurrentLimits current_limits;                                   ///< 3011h  Current limits
@@ -1701,6 +1698,7 @@ inline constexpr Values::CommunicationPreset communication_preset{
 inline constexpr Values::ApplicationPreset application_preset{
     .electronic_gear = {.gear_denominator = 1, .gear_numerator = 1},
     .supported_drive_modes = 0x00000025,
+    .motion_settings = {.negative_limit_switch_contact = 1, .positive_limit_switch_contact = 1, .direction_of_rotation_inversion = 0},
 };
 
 /// Constants that do not fit into a word of the tables.
@@ -1828,7 +1826,7 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, application_cleared.drive_status) | u16 | ro,  // 2041h:00
     record | shape(15) | offsetof(Values, application_cleared.parameter_storage),  // 3004h  Parameter storage
     record | shape(16) | offsetof(Values, application_cleared.position_interface),  // 3005h  Position interface
-    record | shape(17) | offsetof(Values, application_cleared.motion_settings),  // 3006h  Motion settings
+    record | shape(17) | offsetof(Values, application_preset.motion_settings),  // 3006h  Motion settings
     record | shape(18) | offsetof(Values, application_cleared.inputs_and_outputs),  // 3008h  Inputs and outputs
     record | shape(19) | offsetof(Values, application_cleared.analogue_inputs),  // 3009h  Analogue inputs
     record | shape(20) | offsetof(Values, application_cleared.current_limits),  // 3011h  Current limits
@@ -2036,7 +2034,7 @@ inline constexpr canopen::entry::Word subs[] = {
 };
 
 inline constexpr canopen::Shape shapes[] = {
-    {.subs = 0, .highest = 1, .stride = 4},  // 1003h
+    {.subs = 0, .highest = 5, .stride = 4},  // 1003h
     {.subs = 2, .highest = 3, .stride = 0},  // 1010h
     {.subs = 6, .highest = 3, .stride = 4},  // 1016h
     {.subs = 8, .highest = 4, .stride = 0},  // 1018h
@@ -2070,7 +2068,7 @@ inline constexpr canopen::Shape shapes[] = {
 };
 
 inline constexpr canopen::Limits limits[] = {
-    {canopen::object_key(0x1003, 0x00), 0x0, 0x1},  // 0..1
+    {canopen::object_key(0x1003, 0x00), 0x0, 0x5},  // 0..5
     {canopen::object_key(0x1201, 0x03), 0x1, 0x7F},  // 1..127
     {canopen::object_key(0x3006, 0x0F), 0x0, 0x2},  // 0..2
     {canopen::object_key(0x3006, 0x10), 0x0, 0x2},  // 0..2

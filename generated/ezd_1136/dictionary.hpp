@@ -18,21 +18,21 @@ namespace ezd_1136 {
 /// The entries of the object dictionary as types: index, sub-index, C++ type, access and mapping, checked at each use.
 namespace od {
 
-/// Device type.  1000h:00  UNSIGNED32  ro                                          ezd-1136.eds:79
+/// Device type.  1000h:00  UNSIGNED32  ro                                          ezd-1136.eds:81
 struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1000;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
 };
 
-/// Error register.  1001h:00  UNSIGNED8  ro                                        ezd-1136.eds:89
+/// Error register.  1001h:00  UNSIGNED8  ro                                        ezd-1136.eds:91
 struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1001;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error register";
 };
 
-/// Pre-defined error field.  1003h:01..08  UNSIGNED32  ro                          ezd-1136.eds:226
+/// Pre-defined error field.  1003h:01..08  UNSIGNED32  ro                          ezd-1136.eds:228
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
   static_assert(SubIndex <= 8 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..8");
@@ -45,63 +45,63 @@ struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Number of errors";
 };
 
-/// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          ezd-1136.eds:291
+/// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          ezd-1136.eds:293
 struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1005;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
 };
 
-/// Communication cycle period.  1006h:00  UNSIGNED32  rw                           ezd-1136.eds:301
+/// Communication cycle period.  1006h:00  UNSIGNED32  rw                           ezd-1136.eds:303
 struct communication_cycle_period : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1006;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Communication cycle period";
 };
 
-/// Manufacturer device name.  1008h:00  VISIBLE_STRING  const                      ezd-1136.eds:311
+/// Manufacturer device name.  1008h:00  VISIBLE_STRING  const                      ezd-1136.eds:313
 struct manufacturer_device_name : canopen::TypedObject<canopen::VisibleString<8>, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1008;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer device name";
 };
 
-/// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  const                 ezd-1136.eds:320
+/// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  const                 ezd-1136.eds:322
 struct manufacturer_hardware_version : canopen::TypedObject<canopen::VisibleString<3>, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x1009;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer hardware version";
 };
 
-/// Manufacturer software version.  100Ah:00  VISIBLE_STRING  const                 ezd-1136.eds:329
+/// Manufacturer software version.  100Ah:00  VISIBLE_STRING  const                 ezd-1136.eds:331
 struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleString<3>, canopen::Access::constant> {
   static constexpr std::uint16_t index = 0x100A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer software version";
 };
 
-/// Guard time.  100Ch:00  UNSIGNED16  rw                                           ezd-1136.eds:338
+/// Guard time.  100Ch:00  UNSIGNED16  rw                                           ezd-1136.eds:340
 struct guard_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x100C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Guard time";
 };
 
-/// Life time factor.  100Dh:00  UNSIGNED8  rw                                      ezd-1136.eds:348
+/// Life time factor.  100Dh:00  UNSIGNED8  rw                                      ezd-1136.eds:351
 struct life_time_factor : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x100D;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Life time factor";
 };
 
-/// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          ezd-1136.eds:357
+/// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          ezd-1136.eds:360
 struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1014;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
-/// Consumer heartbeat time.  1016h:01..01  UNSIGNED32  rw                          ezd-1136.eds:383
+/// Consumer heartbeat time.  1016h:01..01  UNSIGNED32  rw                          ezd-1136.eds:386
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "consumer_heartbeat_time has the sub-indices 0..1");
@@ -114,7 +114,7 @@ struct consumer_heartbeat_time<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              ezd-1136.eds:393
+/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              ezd-1136.eds:396
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -123,31 +123,31 @@ struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Ac
 
 /// Identity object.  1018h
 namespace identity_object {
-/// Highest sub-index supported.  1018h:00  UNSIGNED8  ro                           ezd-1136.eds:103
+/// Highest sub-index supported.  1018h:00  UNSIGNED8  ro                           ezd-1136.eds:105
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// Vendor-ID.  1018h:01  UNSIGNED32  ro                                            ezd-1136.eds:112
+/// Vendor-ID.  1018h:01  UNSIGNED32  ro                                            ezd-1136.eds:114
 struct vendor_id : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Vendor-ID";
 };
-/// Product code.  1018h:02  UNSIGNED32  ro                                         ezd-1136.eds:121
+/// Product code.  1018h:02  UNSIGNED32  ro                                         ezd-1136.eds:123
 struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Product code";
 };
-/// Revision number.  1018h:03  UNSIGNED32  ro                                      ezd-1136.eds:130
+/// Revision number.  1018h:03  UNSIGNED32  ro                                      ezd-1136.eds:132
 struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
 };
-/// Serial number.  1018h:04  UNSIGNED32  ro                                        ezd-1136.eds:139
+/// Serial number.  1018h:04  UNSIGNED32  ro                                        ezd-1136.eds:141
 struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -157,19 +157,19 @@ struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> 
 
 /// SDO server parameter.  1200h
 namespace sdo_server_parameter {
-/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           ezd-1136.eds:407
+/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           ezd-1136.eds:411
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              ezd-1136.eds:415
+/// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              ezd-1136.eds:419
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
-/// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              ezd-1136.eds:423
+/// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              ezd-1136.eds:427
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -179,19 +179,19 @@ struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Ac
 
 /// RPDO communication parameter 1.  1400h
 namespace rpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           ezd-1136.eds:437
+/// Highest sub-index supported.  1400h:00  UNSIGNED8  ro                           ezd-1136.eds:441
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  ezd-1136.eds:446
+/// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  ezd-1136.eds:450
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1400h:02  UNSIGNED8  rw                                     ezd-1136.eds:456
+/// Transmission type.  1400h:02  UNSIGNED8  rw                                     ezd-1136.eds:460
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -201,19 +201,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 2.  1401h
 namespace rpdo_communication_parameter_2 {
-/// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           ezd-1136.eds:470
+/// Highest sub-index supported.  1401h:00  UNSIGNED8  ro                           ezd-1136.eds:474
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  ezd-1136.eds:478
+/// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  ezd-1136.eds:482
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1401h:02  UNSIGNED8  rw                                     ezd-1136.eds:486
+/// Transmission type.  1401h:02  UNSIGNED8  rw                                     ezd-1136.eds:490
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -223,19 +223,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 3.  1402h
 namespace rpdo_communication_parameter_3 {
-/// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           ezd-1136.eds:500
+/// Highest sub-index supported.  1402h:00  UNSIGNED8  ro                           ezd-1136.eds:504
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  ezd-1136.eds:508
+/// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  ezd-1136.eds:512
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1402h:02  UNSIGNED8  rw                                     ezd-1136.eds:516
+/// Transmission type.  1402h:02  UNSIGNED8  rw                                     ezd-1136.eds:520
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -245,19 +245,19 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO communication parameter 4.  1403h
 namespace rpdo_communication_parameter_4 {
-/// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           ezd-1136.eds:530
+/// Highest sub-index supported.  1403h:00  UNSIGNED8  ro                           ezd-1136.eds:534
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  ezd-1136.eds:538
+/// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  ezd-1136.eds:542
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
-/// Transmission type.  1403h:02  UNSIGNED8  rw                                     ezd-1136.eds:546
+/// Transmission type.  1403h:02  UNSIGNED8  rw                                     ezd-1136.eds:550
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -267,56 +267,56 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
 
 /// RPDO mapping parameter 1.  1600h
 namespace rpdo_mapping_parameter_1 {
-/// Number of mapped objects.  1600h:00  UNSIGNED8  rw                              ezd-1136.eds:561
+/// Number of mapped objects.  1600h:00  UNSIGNED8  rw                              ezd-1136.eds:565
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      ezd-1136.eds:570
+/// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      ezd-1136.eds:574
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      ezd-1136.eds:578
+/// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      ezd-1136.eds:582
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      ezd-1136.eds:586
+/// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      ezd-1136.eds:590
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      ezd-1136.eds:594
+/// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      ezd-1136.eds:598
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1600h:05  UNSIGNED32  rw                                      ezd-1136.eds:602
+/// Mapping entry 5.  1600h:05  UNSIGNED32  rw                                      ezd-1136.eds:606
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1600h:06  UNSIGNED32  rw                                      ezd-1136.eds:610
+/// Mapping entry 6.  1600h:06  UNSIGNED32  rw                                      ezd-1136.eds:614
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1600h:07  UNSIGNED32  rw                                      ezd-1136.eds:618
+/// Mapping entry 7.  1600h:07  UNSIGNED32  rw                                      ezd-1136.eds:622
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1600h:08  UNSIGNED32  rw                                      ezd-1136.eds:626
+/// Mapping entry 8.  1600h:08  UNSIGNED32  rw                                      ezd-1136.eds:630
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -326,56 +326,56 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 2.  1601h
 namespace rpdo_mapping_parameter_2 {
-/// Number of mapped objects.  1601h:00  UNSIGNED8  rw                              ezd-1136.eds:640
+/// Number of mapped objects.  1601h:00  UNSIGNED8  rw                              ezd-1136.eds:644
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      ezd-1136.eds:649
+/// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      ezd-1136.eds:653
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      ezd-1136.eds:657
+/// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      ezd-1136.eds:661
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      ezd-1136.eds:665
+/// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      ezd-1136.eds:669
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      ezd-1136.eds:673
+/// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      ezd-1136.eds:677
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1601h:05  UNSIGNED32  rw                                      ezd-1136.eds:681
+/// Mapping entry 5.  1601h:05  UNSIGNED32  rw                                      ezd-1136.eds:685
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1601h:06  UNSIGNED32  rw                                      ezd-1136.eds:689
+/// Mapping entry 6.  1601h:06  UNSIGNED32  rw                                      ezd-1136.eds:693
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1601h:07  UNSIGNED32  rw                                      ezd-1136.eds:697
+/// Mapping entry 7.  1601h:07  UNSIGNED32  rw                                      ezd-1136.eds:701
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1601h:08  UNSIGNED32  rw                                      ezd-1136.eds:705
+/// Mapping entry 8.  1601h:08  UNSIGNED32  rw                                      ezd-1136.eds:709
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -385,56 +385,56 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 3.  1602h
 namespace rpdo_mapping_parameter_3 {
-/// Number of mapped objects.  1602h:00  UNSIGNED8  rw                              ezd-1136.eds:719
+/// Number of mapped objects.  1602h:00  UNSIGNED8  rw                              ezd-1136.eds:723
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      ezd-1136.eds:728
+/// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      ezd-1136.eds:732
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      ezd-1136.eds:736
+/// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      ezd-1136.eds:740
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      ezd-1136.eds:744
+/// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      ezd-1136.eds:748
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      ezd-1136.eds:752
+/// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      ezd-1136.eds:756
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1602h:05  UNSIGNED32  rw                                      ezd-1136.eds:760
+/// Mapping entry 5.  1602h:05  UNSIGNED32  rw                                      ezd-1136.eds:764
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1602h:06  UNSIGNED32  rw                                      ezd-1136.eds:768
+/// Mapping entry 6.  1602h:06  UNSIGNED32  rw                                      ezd-1136.eds:772
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1602h:07  UNSIGNED32  rw                                      ezd-1136.eds:776
+/// Mapping entry 7.  1602h:07  UNSIGNED32  rw                                      ezd-1136.eds:780
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1602h:08  UNSIGNED32  rw                                      ezd-1136.eds:784
+/// Mapping entry 8.  1602h:08  UNSIGNED32  rw                                      ezd-1136.eds:788
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -444,56 +444,56 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// RPDO mapping parameter 4.  1603h
 namespace rpdo_mapping_parameter_4 {
-/// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              ezd-1136.eds:798
+/// Number of mapped objects.  1603h:00  UNSIGNED8  rw                              ezd-1136.eds:802
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      ezd-1136.eds:807
+/// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      ezd-1136.eds:811
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      ezd-1136.eds:815
+/// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      ezd-1136.eds:819
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      ezd-1136.eds:823
+/// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      ezd-1136.eds:827
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      ezd-1136.eds:831
+/// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      ezd-1136.eds:835
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1603h:05  UNSIGNED32  rw                                      ezd-1136.eds:839
+/// Mapping entry 5.  1603h:05  UNSIGNED32  rw                                      ezd-1136.eds:843
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1603h:06  UNSIGNED32  rw                                      ezd-1136.eds:847
+/// Mapping entry 6.  1603h:06  UNSIGNED32  rw                                      ezd-1136.eds:851
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1603h:07  UNSIGNED32  rw                                      ezd-1136.eds:855
+/// Mapping entry 7.  1603h:07  UNSIGNED32  rw                                      ezd-1136.eds:859
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1603h:08  UNSIGNED32  rw                                      ezd-1136.eds:863
+/// Mapping entry 8.  1603h:08  UNSIGNED32  rw                                      ezd-1136.eds:867
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -503,31 +503,31 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           ezd-1136.eds:877
+/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           ezd-1136.eds:881
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  ezd-1136.eds:886
+/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  ezd-1136.eds:890
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1800h:02  UNSIGNED8  rw                                     ezd-1136.eds:896
+/// Transmission type.  1800h:02  UNSIGNED8  rw                                     ezd-1136.eds:900
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1800h:03  UNSIGNED16  rw                                         ezd-1136.eds:905
+/// Inhibit time.  1800h:03  UNSIGNED16  rw                                         ezd-1136.eds:909
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1800h:05  UNSIGNED16  rw                                          ezd-1136.eds:914
+/// Event timer.  1800h:05  UNSIGNED16  rw                                          ezd-1136.eds:920
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -537,31 +537,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 2.  1801h
 namespace tpdo_communication_parameter_2 {
-/// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           ezd-1136.eds:928
+/// Highest sub-index supported.  1801h:00  UNSIGNED8  ro                           ezd-1136.eds:934
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  ezd-1136.eds:936
+/// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  ezd-1136.eds:942
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1801h:02  UNSIGNED8  rw                                     ezd-1136.eds:944
+/// Transmission type.  1801h:02  UNSIGNED8  rw                                     ezd-1136.eds:950
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1801h:03  UNSIGNED16  rw                                         ezd-1136.eds:953
+/// Inhibit time.  1801h:03  UNSIGNED16  rw                                         ezd-1136.eds:959
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1801h:05  UNSIGNED16  rw                                          ezd-1136.eds:961
+/// Event timer.  1801h:05  UNSIGNED16  rw                                          ezd-1136.eds:969
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -571,31 +571,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 3.  1802h
 namespace tpdo_communication_parameter_3 {
-/// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           ezd-1136.eds:975
+/// Highest sub-index supported.  1802h:00  UNSIGNED8  ro                           ezd-1136.eds:983
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  ezd-1136.eds:983
+/// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  ezd-1136.eds:991
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1802h:02  UNSIGNED8  rw                                     ezd-1136.eds:991
+/// Transmission type.  1802h:02  UNSIGNED8  rw                                     ezd-1136.eds:999
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1802h:03  UNSIGNED16  rw                                         ezd-1136.eds:999
+/// Inhibit time.  1802h:03  UNSIGNED16  rw                                         ezd-1136.eds:1007
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1802h:05  UNSIGNED16  rw                                          ezd-1136.eds:1007
+/// Event timer.  1802h:05  UNSIGNED16  rw                                          ezd-1136.eds:1017
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -605,31 +605,31 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO communication parameter 4.  1803h
 namespace tpdo_communication_parameter_4 {
-/// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           ezd-1136.eds:1022
+/// Highest sub-index supported.  1803h:00  UNSIGNED8  ro                           ezd-1136.eds:1032
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
 };
-/// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  ezd-1136.eds:1030
+/// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  ezd-1136.eds:1040
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1803h:02  UNSIGNED8  rw                                     ezd-1136.eds:1038
+/// Transmission type.  1803h:02  UNSIGNED8  rw                                     ezd-1136.eds:1048
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
-/// Inhibit time.  1803h:03  UNSIGNED16  rw                                         ezd-1136.eds:1046
+/// Inhibit time.  1803h:03  UNSIGNED16  rw                                         ezd-1136.eds:1056
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
-/// Event timer.  1803h:05  UNSIGNED16  rw                                          ezd-1136.eds:1054
+/// Event timer.  1803h:05  UNSIGNED16  rw                                          ezd-1136.eds:1066
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -639,56 +639,56 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
-/// Number of mapped objects.  1A00h:00  UNSIGNED8  rw                              ezd-1136.eds:1069
+/// Number of mapped objects.  1A00h:00  UNSIGNED8  rw                              ezd-1136.eds:1081
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      ezd-1136.eds:1078
+/// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      ezd-1136.eds:1090
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      ezd-1136.eds:1086
+/// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      ezd-1136.eds:1098
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      ezd-1136.eds:1094
+/// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      ezd-1136.eds:1106
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      ezd-1136.eds:1102
+/// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      ezd-1136.eds:1114
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A00h:05  UNSIGNED32  rw                                      ezd-1136.eds:1110
+/// Mapping entry 5.  1A00h:05  UNSIGNED32  rw                                      ezd-1136.eds:1122
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A00h:06  UNSIGNED32  rw                                      ezd-1136.eds:1118
+/// Mapping entry 6.  1A00h:06  UNSIGNED32  rw                                      ezd-1136.eds:1130
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A00h:07  UNSIGNED32  rw                                      ezd-1136.eds:1126
+/// Mapping entry 7.  1A00h:07  UNSIGNED32  rw                                      ezd-1136.eds:1138
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A00h:08  UNSIGNED32  rw                                      ezd-1136.eds:1134
+/// Mapping entry 8.  1A00h:08  UNSIGNED32  rw                                      ezd-1136.eds:1146
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -698,56 +698,56 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 2.  1A01h
 namespace tpdo_mapping_parameter_2 {
-/// Number of mapped objects.  1A01h:00  UNSIGNED8  rw                              ezd-1136.eds:1148
+/// Number of mapped objects.  1A01h:00  UNSIGNED8  rw                              ezd-1136.eds:1160
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      ezd-1136.eds:1157
+/// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      ezd-1136.eds:1169
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      ezd-1136.eds:1165
+/// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      ezd-1136.eds:1177
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      ezd-1136.eds:1173
+/// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      ezd-1136.eds:1185
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      ezd-1136.eds:1181
+/// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      ezd-1136.eds:1193
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A01h:05  UNSIGNED32  rw                                      ezd-1136.eds:1189
+/// Mapping entry 5.  1A01h:05  UNSIGNED32  rw                                      ezd-1136.eds:1201
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A01h:06  UNSIGNED32  rw                                      ezd-1136.eds:1197
+/// Mapping entry 6.  1A01h:06  UNSIGNED32  rw                                      ezd-1136.eds:1209
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A01h:07  UNSIGNED32  rw                                      ezd-1136.eds:1205
+/// Mapping entry 7.  1A01h:07  UNSIGNED32  rw                                      ezd-1136.eds:1217
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A01h:08  UNSIGNED32  rw                                      ezd-1136.eds:1213
+/// Mapping entry 8.  1A01h:08  UNSIGNED32  rw                                      ezd-1136.eds:1225
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -757,56 +757,56 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 3.  1A02h
 namespace tpdo_mapping_parameter_3 {
-/// Number of mapped objects.  1A02h:00  UNSIGNED8  rw                              ezd-1136.eds:1227
+/// Number of mapped objects.  1A02h:00  UNSIGNED8  rw                              ezd-1136.eds:1239
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      ezd-1136.eds:1236
+/// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      ezd-1136.eds:1248
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      ezd-1136.eds:1244
+/// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      ezd-1136.eds:1256
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      ezd-1136.eds:1252
+/// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      ezd-1136.eds:1264
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      ezd-1136.eds:1260
+/// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      ezd-1136.eds:1272
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A02h:05  UNSIGNED32  rw                                      ezd-1136.eds:1268
+/// Mapping entry 5.  1A02h:05  UNSIGNED32  rw                                      ezd-1136.eds:1280
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A02h:06  UNSIGNED32  rw                                      ezd-1136.eds:1276
+/// Mapping entry 6.  1A02h:06  UNSIGNED32  rw                                      ezd-1136.eds:1288
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A02h:07  UNSIGNED32  rw                                      ezd-1136.eds:1284
+/// Mapping entry 7.  1A02h:07  UNSIGNED32  rw                                      ezd-1136.eds:1296
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A02h:08  UNSIGNED32  rw                                      ezd-1136.eds:1292
+/// Mapping entry 8.  1A02h:08  UNSIGNED32  rw                                      ezd-1136.eds:1304
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -816,56 +816,56 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 
 /// TPDO mapping parameter 4.  1A03h
 namespace tpdo_mapping_parameter_4 {
-/// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              ezd-1136.eds:1306
+/// Number of mapped objects.  1A03h:00  UNSIGNED8  rw                              ezd-1136.eds:1318
 struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped objects";
   static constexpr type high_limit = 8;
 };
-/// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      ezd-1136.eds:1315
+/// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      ezd-1136.eds:1327
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
-/// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      ezd-1136.eds:1323
+/// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      ezd-1136.eds:1335
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
-/// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      ezd-1136.eds:1331
+/// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      ezd-1136.eds:1343
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
-/// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      ezd-1136.eds:1339
+/// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      ezd-1136.eds:1351
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
-/// Mapping entry 5.  1A03h:05  UNSIGNED32  rw                                      ezd-1136.eds:1347
+/// Mapping entry 5.  1A03h:05  UNSIGNED32  rw                                      ezd-1136.eds:1359
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
-/// Mapping entry 6.  1A03h:06  UNSIGNED32  rw                                      ezd-1136.eds:1355
+/// Mapping entry 6.  1A03h:06  UNSIGNED32  rw                                      ezd-1136.eds:1367
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
-/// Mapping entry 7.  1A03h:07  UNSIGNED32  rw                                      ezd-1136.eds:1363
+/// Mapping entry 7.  1A03h:07  UNSIGNED32  rw                                      ezd-1136.eds:1375
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
-/// Mapping entry 8.  1A03h:08  UNSIGNED32  rw                                      ezd-1136.eds:1371
+/// Mapping entry 8.  1A03h:08  UNSIGNED32  rw                                      ezd-1136.eds:1383
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x08;
@@ -873,56 +873,56 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 };
 }  // namespace tpdo_mapping_parameter_4
 
-/// Integrated current.  2064h:00  INTEGER16  ro                                    ezd-1136.eds:1795
+/// Integrated current.  2064h:00  INTEGER16  ro                                    ezd-1136.eds:1831
 struct integrated_current : canopen::TypedObject<std::int16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x2064;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Integrated current";
 };
 
-/// Bus voltage.  2065h:00  UNSIGNED16  ro                                          ezd-1136.eds:1804
+/// Bus voltage.  2065h:00  UNSIGNED16  ro                                          ezd-1136.eds:1842
 struct bus_voltage : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x2065;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Bus voltage";
 };
 
-/// Drive error code.  206Ch:00  UNSIGNED16  ro                                     ezd-1136.eds:1813
+/// Drive error code.  206Ch:00  UNSIGNED16  ro                                     ezd-1136.eds:1853
 struct drive_error_code : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x206C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Drive error code";
 };
 
-/// Run state.  206Dh:00  INTEGER16  ro                                             ezd-1136.eds:1823
+/// Run state.  206Dh:00  INTEGER16  ro                                             ezd-1136.eds:1863
 struct run_state : canopen::TypedObject<std::int16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x206D;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Run state";
 };
 
-/// Locked rotor detection.  207Ch:00  UNSIGNED16  ro  TPDO                         ezd-1136.eds:1832
+/// Locked rotor detection.  207Ch:00  UNSIGNED16  ro  TPDO                         ezd-1136.eds:1872
 struct locked_rotor_detection : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x207C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Locked rotor detection";
 };
 
-/// Analog voltage.  2090h:00  UNSIGNED16  ro                                       ezd-1136.eds:1841
+/// Analog voltage.  2090h:00  UNSIGNED16  ro                                       ezd-1136.eds:1881
 struct analog_voltage : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x2090;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Analog voltage";
 };
 
-/// Current loop Kpt.  20C8h:00  UNSIGNED16  rw                                     ezd-1136.eds:1850
+/// Current loop Kpt.  20C8h:00  UNSIGNED16  rw                                     ezd-1136.eds:1892
 struct current_loop_kpt : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20C8;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current loop Kpt";
 };
 
-/// Running direction.  20C9h:00  UNSIGNED16  rw                                    ezd-1136.eds:1860
+/// Running direction.  20C9h:00  UNSIGNED16  rw                                    ezd-1136.eds:1902
 struct running_direction : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20C9;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -930,7 +930,7 @@ struct running_direction : canopen::TypedObject<std::uint16_t, canopen::Access::
   static constexpr type high_limit = 3;
 };
 
-/// Control mode.  20CEh:00  UNSIGNED16  wo                                         ezd-1136.eds:1872
+/// Control mode.  20CEh:00  UNSIGNED16  wo                                         ezd-1136.eds:1915
 struct control_mode : canopen::TypedObject<std::uint16_t, canopen::Access::wo> {
   static constexpr std::uint16_t index = 0x20CE;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -938,21 +938,21 @@ struct control_mode : canopen::TypedObject<std::uint16_t, canopen::Access::wo> {
   static constexpr type high_limit = 6;
 };
 
-/// L1e6.  20D0h:00  UNSIGNED16  rw                                                 ezd-1136.eds:1882
+/// L1e6.  20D0h:00  UNSIGNED16  rw                                                 ezd-1136.eds:1925
 struct l1e6 : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20D0;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "L1e6";
 };
 
-/// R1e3.  20D1h:00  UNSIGNED16  rw                                                 ezd-1136.eds:1891
+/// R1e3.  20D1h:00  UNSIGNED16  rw                                                 ezd-1136.eds:1934
 struct r1e3 : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20D1;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "R1e3";
 };
 
-/// Idle current.  20D5h:00  UNSIGNED16  rw                                         ezd-1136.eds:1901
+/// Idle current.  20D5h:00  UNSIGNED16  rw                                         ezd-1136.eds:1944
 struct idle_current : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20D5;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -961,14 +961,14 @@ struct idle_current : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr type high_limit = 100;
 };
 
-/// Current loop KiS.  20D7h:00  UNSIGNED16  rw                                     ezd-1136.eds:1912
+/// Current loop KiS.  20D7h:00  UNSIGNED16  rw                                     ezd-1136.eds:1956
 struct current_loop_ki_s : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20D7;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current loop KiS";
 };
 
-/// Motor mode setting.  20D9h:00  INTEGER16  rw                                    ezd-1136.eds:1921
+/// Motor mode setting.  20D9h:00  INTEGER16  rw                                    ezd-1136.eds:1965
 struct motor_mode_setting : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20D9;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -977,35 +977,35 @@ struct motor_mode_setting : canopen::TypedObject<std::int16_t, canopen::Access::
   static constexpr type high_limit = 1;
 };
 
-/// LRD threshold speed.  20DBh:00  UNSIGNED16  rw                                  ezd-1136.eds:1932
+/// LRD threshold speed.  20DBh:00  UNSIGNED16  rw                                  ezd-1136.eds:1976
 struct lrd_threshold_speed : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20DB;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "LRD threshold speed";
 };
 
-/// LRD threshold gain.  20DCh:00  UNSIGNED16  rw                                   ezd-1136.eds:1941
+/// LRD threshold gain.  20DCh:00  UNSIGNED16  rw                                   ezd-1136.eds:1985
 struct lrd_threshold_gain : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20DC;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "LRD threshold gain";
 };
 
-/// LRD maximum count.  20DDh:00  UNSIGNED16  rw                                    ezd-1136.eds:1950
+/// LRD maximum count.  20DDh:00  UNSIGNED16  rw                                    ezd-1136.eds:1994
 struct lrd_maximum_count : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20DD;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "LRD maximum count";
 };
 
-/// Current loop Kp maximum.  20DEh:00  UNSIGNED16  rw                              ezd-1136.eds:1959
+/// Current loop Kp maximum.  20DEh:00  UNSIGNED16  rw                              ezd-1136.eds:2003
 struct current_loop_kp_maximum : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20DE;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current loop Kp maximum";
 };
 
-/// Filter coefficient.  20E0h:00  UNSIGNED16  rw                                   ezd-1136.eds:1969
+/// Filter coefficient.  20E0h:00  UNSIGNED16  rw                                   ezd-1136.eds:2013
 struct filter_coefficient : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20E0;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -1013,21 +1013,21 @@ struct filter_coefficient : canopen::TypedObject<std::uint16_t, canopen::Access:
   static constexpr type high_limit = 700;
 };
 
-/// Current amplification setting.  20E1h:00  UNSIGNED16  rw                        ezd-1136.eds:1979
+/// Current amplification setting.  20E1h:00  UNSIGNED16  rw                        ezd-1136.eds:2023
 struct current_amplification_setting : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20E1;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current amplification setting";
 };
 
-/// Current loop Ki maximum.  20E4h:00  UNSIGNED16  rw                              ezd-1136.eds:1988
+/// Current loop Ki maximum.  20E4h:00  UNSIGNED16  rw                              ezd-1136.eds:2032
 struct current_loop_ki_maximum : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20E4;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current loop Ki maximum";
 };
 
-/// Current command setting.  20F1h:00  INTEGER16  rw                               ezd-1136.eds:1997
+/// Current command setting.  20F1h:00  INTEGER16  rw                               ezd-1136.eds:2041
 struct current_command_setting : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20F1;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -1036,7 +1036,7 @@ struct current_command_setting : canopen::TypedObject<std::int16_t, canopen::Acc
   static constexpr type high_limit = 6500;
 };
 
-/// Resolution setting.  20F2h:00  UNSIGNED32  rw                                   ezd-1136.eds:2008
+/// Resolution setting.  20F2h:00  UNSIGNED32  rw                                   ezd-1136.eds:2054
 struct resolution_setting : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20F2;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -1045,7 +1045,7 @@ struct resolution_setting : canopen::TypedObject<std::uint32_t, canopen::Access:
   static constexpr type high_limit = 102400;
 };
 
-/// Half current time.  20F5h:00  UNSIGNED16  rw                                    ezd-1136.eds:2020
+/// Half current time.  20F5h:00  UNSIGNED16  rw                                    ezd-1136.eds:2067
 struct half_current_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20F5;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -1054,182 +1054,182 @@ struct half_current_time : canopen::TypedObject<std::uint16_t, canopen::Access::
   static constexpr type high_limit = 30000;
 };
 
-/// Encoder resolution.  20F6h:00  UNSIGNED16  rw                                   ezd-1136.eds:2031
+/// Encoder resolution.  20F6h:00  UNSIGNED16  rw                                   ezd-1136.eds:2079
 struct encoder_resolution : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20F6;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Encoder resolution";
 };
 
-/// In position range.  20F7h:00  UNSIGNED16  rw                                    ezd-1136.eds:2040
+/// In position range.  20F7h:00  UNSIGNED16  rw                                    ezd-1136.eds:2088
 struct in_position_range : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20F7;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "In position range";
 };
 
-/// Maximum field weakening.  20F8h:00  UNSIGNED16  rw                              ezd-1136.eds:2049
+/// Maximum field weakening.  20F8h:00  UNSIGNED16  rw                              ezd-1136.eds:2097
 struct maximum_field_weakening : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20F8;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Maximum field weakening";
 };
 
-/// Speed loop Kp.  20FBh:00  UNSIGNED16  rw                                        ezd-1136.eds:2058
+/// Speed loop Kp.  20FBh:00  UNSIGNED16  rw                                        ezd-1136.eds:2106
 struct speed_loop_kp : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20FB;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Speed loop Kp";
 };
 
-/// Speed loop Ki.  20FCh:00  UNSIGNED16  rw                                        ezd-1136.eds:2067
+/// Speed loop Ki.  20FCh:00  UNSIGNED16  rw                                        ezd-1136.eds:2115
 struct speed_loop_ki : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20FC;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Speed loop Ki";
 };
 
-/// Speed loop Kd.  20FDh:00  UNSIGNED16  rw                                        ezd-1136.eds:2076
+/// Speed loop Kd.  20FDh:00  UNSIGNED16  rw                                        ezd-1136.eds:2124
 struct speed_loop_kd : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20FD;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Speed loop Kd";
 };
 
-/// Maximum speed.  20FEh:00  INTEGER16  rw                                         ezd-1136.eds:2085
+/// Maximum speed.  20FEh:00  INTEGER16  rw                                         ezd-1136.eds:2133
 struct maximum_speed : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20FE;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Maximum speed";
 };
 
-/// Position loop Kp.  20FFh:00  UNSIGNED16  rw                                     ezd-1136.eds:2094
+/// Position loop Kp.  20FFh:00  UNSIGNED16  rw                                     ezd-1136.eds:2142
 struct position_loop_kp : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x20FF;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position loop Kp";
 };
 
-/// Position loop Ki.  2100h:00  UNSIGNED16  rw                                     ezd-1136.eds:2103
+/// Position loop Ki.  2100h:00  UNSIGNED16  rw                                     ezd-1136.eds:2151
 struct position_loop_ki : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2100;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position loop Ki";
 };
 
-/// Position loop Kd.  2101h:00  UNSIGNED16  rw                                     ezd-1136.eds:2112
+/// Position loop Kd.  2101h:00  UNSIGNED16  rw                                     ezd-1136.eds:2160
 struct position_loop_kd : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2101;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position loop Kd";
 };
 
-/// Position error threshold.  2102h:00  UNSIGNED16  rw                             ezd-1136.eds:2121
+/// Position error threshold.  2102h:00  UNSIGNED16  rw                             ezd-1136.eds:2169
 struct position_error_threshold : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2102;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position error threshold";
 };
 
-/// Reference torque.  2103h:00  INTEGER16  rw                                      ezd-1136.eds:2130
+/// Reference torque.  2103h:00  INTEGER16  rw                                      ezd-1136.eds:2178
 struct reference_torque : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2103;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Reference torque";
 };
 
-/// Damping filter gain.  2108h:00  UNSIGNED16  rw                                  ezd-1136.eds:2139
+/// Damping filter gain.  2108h:00  UNSIGNED16  rw                                  ezd-1136.eds:2187
 struct damping_filter_gain : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2108;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Damping filter gain";
 };
 
-/// Damping gain.  2109h:00  UNSIGNED16  rw                                         ezd-1136.eds:2148
+/// Damping gain.  2109h:00  UNSIGNED16  rw                                         ezd-1136.eds:2196
 struct damping_gain : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2109;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Damping gain";
 };
 
-/// Current filter gain.  2110h:00  UNSIGNED16  rw                                  ezd-1136.eds:2157
+/// Current filter gain.  2110h:00  UNSIGNED16  rw                                  ezd-1136.eds:2205
 struct current_filter_gain : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2110;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current filter gain";
 };
 
-/// AR gain.  2113h:00  UNSIGNED16  rw                                              ezd-1136.eds:2166
+/// AR gain.  2113h:00  UNSIGNED16  rw                                              ezd-1136.eds:2214
 struct ar_gain : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2113;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "AR gain";
 };
 
-/// AR adjustment.  2114h:00  UNSIGNED16  rw                                        ezd-1136.eds:2175
+/// AR adjustment.  2114h:00  UNSIGNED16  rw                                        ezd-1136.eds:2223
 struct ar_adjustment : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2114;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "AR adjustment";
 };
 
-/// APM gain.  2115h:00  UNSIGNED16  rw                                             ezd-1136.eds:2184
+/// APM gain.  2115h:00  UNSIGNED16  rw                                             ezd-1136.eds:2232
 struct apm_gain : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2115;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "APM gain";
 };
 
-/// Brake mode.  2116h:00  UNSIGNED16  rw                                           ezd-1136.eds:2193
+/// Brake mode.  2116h:00  UNSIGNED16  rw                                           ezd-1136.eds:2241
 struct brake_mode : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2116;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Brake mode";
 };
 
-/// Brake voltage.  2117h:00  UNSIGNED16  rw                                        ezd-1136.eds:2202
+/// Brake voltage.  2117h:00  UNSIGNED16  rw                                        ezd-1136.eds:2250
 struct brake_voltage : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2117;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Brake voltage";
 };
 
-/// Brake voltage 2.  2118h:00  UNSIGNED16  rw                                      ezd-1136.eds:2211
+/// Brake voltage 2.  2118h:00  UNSIGNED16  rw                                      ezd-1136.eds:2259
 struct brake_voltage_2 : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2118;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Brake voltage 2";
 };
 
-/// Brake idle time.  2119h:00  UNSIGNED16  rw                                      ezd-1136.eds:2220
+/// Brake idle time.  2119h:00  UNSIGNED16  rw                                      ezd-1136.eds:2268
 struct brake_idle_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2119;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Brake idle time";
 };
 
-/// Brake activation delay.  211Ah:00  UNSIGNED16  rw                               ezd-1136.eds:2229
+/// Brake activation delay.  211Ah:00  UNSIGNED16  rw                               ezd-1136.eds:2277
 struct brake_activation_delay : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x211A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Brake activation delay";
 };
 
-/// Check torque timer.  211Eh:00  INTEGER16  rw                                    ezd-1136.eds:2238
+/// Check torque timer.  211Eh:00  INTEGER16  rw                                    ezd-1136.eds:2286
 struct check_torque_timer : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x211E;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Check torque timer";
 };
 
-/// Torque speed.  211Fh:00  INTEGER16  rw                                          ezd-1136.eds:2247
+/// Torque speed.  211Fh:00  INTEGER16  rw                                          ezd-1136.eds:2295
 struct torque_speed : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x211F;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Torque speed";
 };
 
-/// Automatic parameter detection.  2127h:00  UNSIGNED16  rw                        ezd-1136.eds:2256
+/// Automatic parameter detection.  2127h:00  UNSIGNED16  rw                        ezd-1136.eds:2304
 struct automatic_parameter_detection : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x2127;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -1237,11 +1237,12 @@ struct automatic_parameter_detection : canopen::TypedObject<std::uint16_t, canop
   static constexpr type high_limit = 1;
 };
 
-/// Digital input functions.  2190h:01..08  UNSIGNED16  rw                          ezd-1136.eds:2279
+/// Digital input functions.  2190h:01..08  UNSIGNED16  rw                          ezd-1136.eds:2328
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct digital_input_functions : canopen::Object<0x2190, SubIndex, std::uint16_t, canopen::Access::rw> {
   static_assert(SubIndex <= 8 || SubIndex == canopen::whole_array, "digital_input_functions has the sub-indices 0..8");
   static constexpr auto name = "Digital input functions";
+  static constexpr typename digital_input_functions::type high_limit = 4;
 };
 template <>
 struct digital_input_functions<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
@@ -1250,11 +1251,12 @@ struct digital_input_functions<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Digital output functions.  21A4h:01..05  UNSIGNED16  rw                         ezd-1136.eds:2357
+/// Digital output functions.  21A4h:01..05  UNSIGNED16  rw                         ezd-1136.eds:2415
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct digital_output_functions : canopen::Object<0x21A4, SubIndex, std::uint16_t, canopen::Access::rw> {
   static_assert(SubIndex <= 5 || SubIndex == canopen::whole_array, "digital_output_functions has the sub-indices 0..5");
   static constexpr auto name = "Digital output functions";
+  static constexpr typename digital_output_functions::type high_limit = 3;
 };
 template <>
 struct digital_output_functions<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
@@ -1263,77 +1265,79 @@ struct digital_output_functions<0> : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Digital input logic.  21ADh:00  UNSIGNED16  wo                                  ezd-1136.eds:2398
+/// Digital input logic.  21ADh:00  UNSIGNED16  wo                                  ezd-1136.eds:2462
 struct digital_input_logic : canopen::TypedObject<std::uint16_t, canopen::Access::wo> {
   static constexpr std::uint16_t index = 0x21AD;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Digital input logic";
+  static constexpr type high_limit = 0x00FF;
 };
 
-/// Digital output logic.  21AEh:00  UNSIGNED16  wo                                 ezd-1136.eds:2407
+/// Digital output logic.  21AEh:00  UNSIGNED16  wo                                 ezd-1136.eds:2473
 struct digital_output_logic : canopen::TypedObject<std::uint16_t, canopen::Access::wo> {
   static constexpr std::uint16_t index = 0x21AE;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Digital output logic";
+  static constexpr type high_limit = 0x001F;
 };
 
-/// Global variable 1.  21E0h:00  INTEGER32  rw                                     ezd-1136.eds:2416
+/// Global variable 1.  21E0h:00  INTEGER32  rw                                     ezd-1136.eds:2483
 struct global_variable_1 : canopen::TypedObject<std::int32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x21E0;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Global variable 1";
 };
 
-/// Global variable 2.  21E2h:00  INTEGER32  rw                                     ezd-1136.eds:2425
+/// Global variable 2.  21E2h:00  INTEGER32  rw                                     ezd-1136.eds:2492
 struct global_variable_2 : canopen::TypedObject<std::int32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x21E2;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Global variable 2";
 };
 
-/// Global variable 3.  21E4h:00  INTEGER32  rw                                     ezd-1136.eds:2434
+/// Global variable 3.  21E4h:00  INTEGER32  rw                                     ezd-1136.eds:2501
 struct global_variable_3 : canopen::TypedObject<std::int32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x21E4;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Global variable 3";
 };
 
-/// Global variable 4.  21E6h:00  INTEGER32  rw                                     ezd-1136.eds:2443
+/// Global variable 4.  21E6h:00  INTEGER32  rw                                     ezd-1136.eds:2510
 struct global_variable_4 : canopen::TypedObject<std::int32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x21E6;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Global variable 4";
 };
 
-/// Global variable 5.  21E8h:00  INTEGER32  rw                                     ezd-1136.eds:2452
+/// Global variable 5.  21E8h:00  INTEGER32  rw                                     ezd-1136.eds:2519
 struct global_variable_5 : canopen::TypedObject<std::int32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x21E8;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Global variable 5";
 };
 
-/// Error code.  603Fh:00  UNSIGNED16  ro  TPDO                                     ezd-1136.eds:1381
+/// Error code.  603Fh:00  UNSIGNED16  ro  TPDO                                     ezd-1136.eds:1393
 struct error_code : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x603F;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error code";
 };
 
-/// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   ezd-1136.eds:1391
+/// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   ezd-1136.eds:1403
 struct controlword : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6040;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Controlword";
 };
 
-/// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     ezd-1136.eds:1400
+/// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     ezd-1136.eds:1412
 struct statusword : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x6041;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Statusword";
 };
 
-/// Quick stop option code.  605Ah:00  INTEGER16  rw                                ezd-1136.eds:1409
+/// Quick stop option code.  605Ah:00  INTEGER16  rw                                ezd-1136.eds:1421
 struct quick_stop_option_code : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x605A;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -1342,28 +1346,28 @@ struct quick_stop_option_code : canopen::TypedObject<std::int16_t, canopen::Acce
   static constexpr type high_limit = 6;
 };
 
-/// Shutdown option code.  605Bh:00  INTEGER16  rw                                  ezd-1136.eds:1420
+/// Shutdown option code.  605Bh:00  INTEGER16  rw                                  ezd-1136.eds:1432
 struct shutdown_option_code : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x605B;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Shutdown option code";
 };
 
-/// Disable operation option code.  605Ch:00  INTEGER16  rw                         ezd-1136.eds:1429
+/// Disable operation option code.  605Ch:00  INTEGER16  rw                         ezd-1136.eds:1441
 struct disable_operation_option_code : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x605C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Disable operation option code";
 };
 
-/// Fault reaction option code.  605Eh:00  INTEGER16  rw                            ezd-1136.eds:1438
+/// Fault reaction option code.  605Eh:00  INTEGER16  rw                            ezd-1136.eds:1450
 struct fault_reaction_option_code : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x605E;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Fault reaction option code";
 };
 
-/// Modes of operation.  6060h:00  INTEGER8  rww  RPDO                              ezd-1136.eds:1448
+/// Modes of operation.  6060h:00  INTEGER8  rww  RPDO                              ezd-1136.eds:1460
 struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6060;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -1373,63 +1377,63 @@ struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::r
   static constexpr canopen::ValueRange accepted[] = {{0, 1}, {3, 3}, {6, 6}, {8, 8}};
 };
 
-/// Modes of operation display.  6061h:00  INTEGER8  ro  TPDO                       ezd-1136.eds:1459
+/// Modes of operation display.  6061h:00  INTEGER8  ro  TPDO                       ezd-1136.eds:1471
 struct modes_of_operation_display : canopen::TypedObject<std::int8_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x6061;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Modes of operation display";
 };
 
-/// Position actual value.  6064h:00  INTEGER32  ro  TPDO                           ezd-1136.eds:1468
+/// Position actual value.  6064h:00  INTEGER32  ro  TPDO                           ezd-1136.eds:1480
 struct position_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x6064;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position actual value";
 };
 
-/// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           ezd-1136.eds:1477
+/// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           ezd-1136.eds:1490
 struct velocity_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x606C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Velocity actual value";
 };
 
-/// Target torque.  6071h:00  INTEGER16  rww  RPDO                                  ezd-1136.eds:1487
+/// Target torque.  6071h:00  INTEGER16  rww  RPDO                                  ezd-1136.eds:1502
 struct target_torque : canopen::TypedObject<std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6071;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target torque";
 };
 
-/// Torque demand value.  6074h:00  INTEGER16  ro                                   ezd-1136.eds:1496
+/// Torque demand value.  6074h:00  INTEGER16  ro                                   ezd-1136.eds:1511
 struct torque_demand_value : canopen::TypedObject<std::int16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x6074;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Torque demand value";
 };
 
-/// Current actual value.  6078h:00  INTEGER16  ro                                  ezd-1136.eds:1505
+/// Current actual value.  6078h:00  INTEGER16  ro                                  ezd-1136.eds:1520
 struct current_actual_value : canopen::TypedObject<std::int16_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x6078;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current actual value";
 };
 
-/// Target position.  607Ah:00  INTEGER32  rww  RPDO                                ezd-1136.eds:1514
+/// Target position.  607Ah:00  INTEGER32  rww  RPDO                                ezd-1136.eds:1529
 struct target_position : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x607A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target position";
 };
 
-/// Home offset.  607Ch:00  INTEGER32  rww  RPDO                                    ezd-1136.eds:1524
+/// Home offset.  607Ch:00  INTEGER32  rww  RPDO                                    ezd-1136.eds:1540
 struct home_offset : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x607C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Home offset";
 };
 
-/// Software position limit.  607Dh:01..02  INTEGER32  rw                           ezd-1136.eds:1546
+/// Software position limit.  607Dh:01..02  INTEGER32  rw                           ezd-1136.eds:1563
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct software_position_limit : canopen::Object<0x607D, SubIndex, std::int32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "software_position_limit has the sub-indices 0..2");
@@ -1442,62 +1446,62 @@ struct software_position_limit<0> : canopen::TypedObject<std::uint8_t, canopen::
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Minimum software position limit.  607Dh:01  INTEGER32  rw                       ezd-1136.eds:1546
+/// Minimum software position limit.  607Dh:01  INTEGER32  rw                       ezd-1136.eds:1563
 using software_position_limit_minimum_software_position_limit = software_position_limit<1>;
 
-/// Maximum software position limit.  607Dh:02  INTEGER32  rw                       ezd-1136.eds:1554
+/// Maximum software position limit.  607Dh:02  INTEGER32  rw                       ezd-1136.eds:1572
 using software_position_limit_maximum_software_position_limit = software_position_limit<2>;
 
-/// Profile velocity.  6081h:00  UNSIGNED32  rww  RPDO                              ezd-1136.eds:1563
+/// Profile velocity.  6081h:00  UNSIGNED32  rww  RPDO                              ezd-1136.eds:1582
 struct profile_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6081;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile velocity";
 };
 
-/// End velocity.  6082h:00  UNSIGNED32  rww  RPDO                                  ezd-1136.eds:1573
+/// End velocity.  6082h:00  UNSIGNED32  rww  RPDO                                  ezd-1136.eds:1595
 struct end_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6082;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "End velocity";
 };
 
-/// Profile acceleration.  6083h:00  UNSIGNED32  rww  RPDO                          ezd-1136.eds:1583
+/// Profile acceleration.  6083h:00  UNSIGNED32  rww  RPDO                          ezd-1136.eds:1607
 struct profile_acceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6083;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile acceleration";
 };
 
-/// Profile deceleration.  6084h:00  UNSIGNED32  rww  RPDO                          ezd-1136.eds:1592
+/// Profile deceleration.  6084h:00  UNSIGNED32  rww  RPDO                          ezd-1136.eds:1617
 struct profile_deceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6084;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile deceleration";
 };
 
-/// Quick stop deceleration.  6085h:00  UNSIGNED32  rww  RPDO                       ezd-1136.eds:1601
+/// Quick stop deceleration.  6085h:00  UNSIGNED32  rww  RPDO                       ezd-1136.eds:1627
 struct quick_stop_deceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6085;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Quick stop deceleration";
 };
 
-/// Torque slope.  6087h:00  UNSIGNED32  rww  RPDO                                  ezd-1136.eds:1610
+/// Torque slope.  6087h:00  UNSIGNED32  rww  RPDO                                  ezd-1136.eds:1637
 struct torque_slope : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6087;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Torque slope";
 };
 
-/// Homing method.  6098h:00  INTEGER8  rww  RPDO                                   ezd-1136.eds:1619
+/// Homing method.  6098h:00  INTEGER8  rww  RPDO                                   ezd-1136.eds:1646
 struct homing_method : canopen::TypedObject<std::int8_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x6098;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Homing method";
 };
 
-/// Homing speeds.  6099h:01..02  UNSIGNED32  rww  RPDO                             ezd-1136.eds:1641
+/// Homing speeds.  6099h:01..02  UNSIGNED32  rww  RPDO                             ezd-1136.eds:1668
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct homing_speeds : canopen::Object<0x6099, SubIndex, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "homing_speeds has the sub-indices 0..2");
@@ -1510,34 +1514,34 @@ struct homing_speeds<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Speed during search for switch.  6099h:01  UNSIGNED32  rww  RPDO                ezd-1136.eds:1641
+/// Speed during search for switch.  6099h:01  UNSIGNED32  rww  RPDO                ezd-1136.eds:1668
 using homing_speeds_speed_during_search_for_switch = homing_speeds<1>;
 
-/// Speed during search for zero.  6099h:02  UNSIGNED32  rww  RPDO                  ezd-1136.eds:1649
+/// Speed during search for zero.  6099h:02  UNSIGNED32  rww  RPDO                  ezd-1136.eds:1678
 using homing_speeds_speed_during_search_for_zero = homing_speeds<2>;
 
-/// Homing acceleration.  609Ah:00  UNSIGNED32  rww  RPDO                           ezd-1136.eds:1658
+/// Homing acceleration.  609Ah:00  UNSIGNED32  rww  RPDO                           ezd-1136.eds:1689
 struct homing_acceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x609A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Homing acceleration";
 };
 
-/// Position offset.  60B0h:00  INTEGER32  rww  RPDO                                ezd-1136.eds:1667
+/// Position offset.  60B0h:00  INTEGER32  rww  RPDO                                ezd-1136.eds:1699
 struct position_offset : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x60B0;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position offset";
 };
 
-/// Digital inputs.  60FDh:00  UNSIGNED32  ro  TPDO                                 ezd-1136.eds:1676
+/// Digital inputs.  60FDh:00  UNSIGNED32  ro  TPDO                                 ezd-1136.eds:1709
 struct digital_inputs : canopen::TypedObject<std::uint32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static constexpr std::uint16_t index = 0x60FD;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Digital inputs";
 };
 
-/// Digital outputs.  60FEh:01..02  UNSIGNED32  rww  RPDO                           ezd-1136.eds:1698
+/// Digital outputs.  60FEh:01..02  UNSIGNED32  rww  RPDO                           ezd-1136.eds:1732
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct digital_outputs : canopen::Object<0x60FE, SubIndex, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "digital_outputs has the sub-indices 0..2");
@@ -1550,20 +1554,20 @@ struct digital_outputs<0> : canopen::TypedObject<std::uint8_t, canopen::Access::
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Physical outputs.  60FEh:01  UNSIGNED32  rww  RPDO                              ezd-1136.eds:1698
+/// Physical outputs.  60FEh:01  UNSIGNED32  rww  RPDO                              ezd-1136.eds:1732
 using digital_outputs_physical_outputs = digital_outputs<1>;
 
-/// Bit mask.  60FEh:02  UNSIGNED32  rww  RPDO                                      ezd-1136.eds:1706
+/// Bit mask.  60FEh:02  UNSIGNED32  rww  RPDO                                      ezd-1136.eds:1740
 using digital_outputs_bit_mask = digital_outputs<2>;
 
-/// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                ezd-1136.eds:1715
+/// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                ezd-1136.eds:1749
 struct target_velocity : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
   static constexpr std::uint16_t index = 0x60FF;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target velocity";
 };
 
-/// Supported drive modes.  6502h:00  UNSIGNED32  ro                                ezd-1136.eds:1724
+/// Supported drive modes.  6502h:00  UNSIGNED32  ro                                ezd-1136.eds:1760
 struct supported_drive_modes : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x6502;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -1866,12 +1870,16 @@ struct Values {
     std::uint32_t resolution_setting;                               ///< 20F2h:00  Resolution setting
     std::array<std::int32_t, 2> software_position_limit;            ///< 607Dh:01..02  Software position limit
     std::uint32_t supported_drive_modes;                            ///< 6502h:00  Supported drive modes
+    std::int16_t run_state;                                         ///< 206Dh:00  Run state
     std::uint16_t idle_current;                                     ///< 20D5h:00  Idle current
+    std::int16_t motor_mode_setting;                                ///< 20D9h:00  Motor mode setting
     std::uint16_t filter_coefficient;                               ///< 20E0h:00  Filter coefficient
     std::int16_t current_command_setting;                           ///< 20F1h:00  Current command setting
     std::uint16_t half_current_time;                                ///< 20F5h:00  Half current time
+    std::uint16_t encoder_resolution;                               ///< 20F6h:00  Encoder resolution
     std::int16_t check_torque_timer;                                ///< 211Eh:00  Check torque timer
     std::int16_t torque_speed;                                      ///< 211Fh:00  Torque speed
+    std::array<std::uint16_t, 8> digital_input_functions;           ///< 2190h:01..08  Digital input functions
     std::int16_t quick_stop_option_code;                            ///< 605Ah:00  Quick stop option code
     std::int16_t disable_operation_option_code;                     ///< 605Ch:00  Disable operation option code
     std::int16_t fault_reaction_option_code;                        ///< 605Eh:00  Fault reaction option code
@@ -1904,7 +1912,6 @@ struct Values {
     std::int16_t integrated_current;                                ///< 2064h:00  Integrated current
     std::uint16_t bus_voltage;                                      ///< 2065h:00  Bus voltage
     std::uint16_t drive_error_code;                                 ///< 206Ch:00  Drive error code
-    std::int16_t run_state;                                         ///< 206Dh:00  Run state
     std::uint16_t locked_rotor_detection;                           ///< 207Ch:00  Locked rotor detection
     std::uint16_t analog_voltage;                                   ///< 2090h:00  Analog voltage
     std::uint16_t current_loop_kpt;                                 ///< 20C8h:00  Current loop Kpt
@@ -1913,14 +1920,12 @@ struct Values {
     std::uint16_t l1e6;                                             ///< 20D0h:00  L1e6
     std::uint16_t r1e3;                                             ///< 20D1h:00  R1e3
     std::uint16_t current_loop_ki_s;                                ///< 20D7h:00  Current loop KiS
-    std::int16_t motor_mode_setting;                                ///< 20D9h:00  Motor mode setting
     std::uint16_t lrd_threshold_speed;                              ///< 20DBh:00  LRD threshold speed
     std::uint16_t lrd_threshold_gain;                               ///< 20DCh:00  LRD threshold gain
     std::uint16_t lrd_maximum_count;                                ///< 20DDh:00  LRD maximum count
     std::uint16_t current_loop_kp_maximum;                          ///< 20DEh:00  Current loop Kp maximum
     std::uint16_t current_amplification_setting;                    ///< 20E1h:00  Current amplification setting
     std::uint16_t current_loop_ki_maximum;                          ///< 20E4h:00  Current loop Ki maximum
-    std::uint16_t encoder_resolution;                               ///< 20F6h:00  Encoder resolution
     std::uint16_t in_position_range;                                ///< 20F7h:00  In position range
     std::uint16_t maximum_field_weakening;                          ///< 20F8h:00  Maximum field weakening
     std::uint16_t speed_loop_kp;                                    ///< 20FBh:00  Speed loop Kp
@@ -1944,7 +1949,6 @@ struct Values {
     std::uint16_t brake_idle_time;                                  ///< 2119h:00  Brake idle time
     std::uint16_t brake_activation_delay;                           ///< 211Ah:00  Brake activation delay
     std::uint16_t automatic_parameter_detection;                    ///< 2127h:00  Automatic parameter detection
-    std::array<std::uint16_t, 8> digital_input_functions;           ///< 2190h:01..08  Digital input functions
     std::array<std::uint16_t, 5> digital_output_functions;          ///< 21A4h:01..05  Digital output functions
     std::uint16_t digital_input_logic;                              ///< 21ADh:00  Digital input logic
     std::uint16_t digital_output_logic;                             ///< 21AEh:00  Digital output logic
@@ -1985,12 +1989,16 @@ inline constexpr Values::ApplicationPreset application_preset{
     .resolution_setting = 4000,
     .software_position_limit = {{-2000000000, 2000000000}},
     .supported_drive_modes = 0x00000025,
+    .run_state = 4,
     .idle_current = 50,
+    .motor_mode_setting = 1,
     .filter_coefficient = 50,
     .current_command_setting = 1500,
     .half_current_time = 200,
+    .encoder_resolution = 4000,
     .check_torque_timer = 10,
     .torque_speed = 500,
+    .digital_input_functions = {{1, 2, 3, 4, 0, 0, 0, 0}},
     .quick_stop_option_code = 2,
     .disable_operation_option_code = 1,
     .fault_reaction_option_code = 2,
@@ -2126,7 +2134,7 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, application_cleared.integrated_current) | i16 | ro,  // 2064h:00
     ram | offsetof(Values, application_cleared.bus_voltage) | u16 | ro,  // 2065h:00
     ram | offsetof(Values, application_cleared.drive_error_code) | u16 | ro,  // 206Ch:00
-    ram | offsetof(Values, application_cleared.run_state) | i16 | ro,  // 206Dh:00
+    ram | offsetof(Values, application_preset.run_state) | i16 | ro,  // 206Dh:00
     ram | offsetof(Values, application_cleared.locked_rotor_detection) | u16 | ro | tpdo,  // 207Ch:00
     ram | offsetof(Values, application_cleared.analog_voltage) | u16 | ro,  // 2090h:00
     ram | offsetof(Values, application_cleared.current_loop_kpt) | u16 | rw,  // 20C8h:00
@@ -2136,7 +2144,7 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, application_cleared.r1e3) | u16 | rw,  // 20D1h:00
     ram | offsetof(Values, application_preset.idle_current) | u16 | rw | limited,  // 20D5h:00
     ram | offsetof(Values, application_cleared.current_loop_ki_s) | u16 | rw,  // 20D7h:00
-    ram | offsetof(Values, application_cleared.motor_mode_setting) | i16 | rw | limited,  // 20D9h:00
+    ram | offsetof(Values, application_preset.motor_mode_setting) | i16 | rw | limited,  // 20D9h:00
     ram | offsetof(Values, application_cleared.lrd_threshold_speed) | u16 | rw,  // 20DBh:00
     ram | offsetof(Values, application_cleared.lrd_threshold_gain) | u16 | rw,  // 20DCh:00
     ram | offsetof(Values, application_cleared.lrd_maximum_count) | u16 | rw,  // 20DDh:00
@@ -2147,7 +2155,7 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, application_preset.current_command_setting) | i16 | rw | limited,  // 20F1h:00
     ram | offsetof(Values, application_preset.resolution_setting) | u32 | rw | limited,  // 20F2h:00
     ram | offsetof(Values, application_preset.half_current_time) | u16 | rw | limited,  // 20F5h:00
-    ram | offsetof(Values, application_cleared.encoder_resolution) | u16 | rw,  // 20F6h:00
+    ram | offsetof(Values, application_preset.encoder_resolution) | u16 | rw,  // 20F6h:00
     ram | offsetof(Values, application_cleared.in_position_range) | u16 | rw,  // 20F7h:00
     ram | offsetof(Values, application_cleared.maximum_field_weakening) | u16 | rw,  // 20F8h:00
     ram | offsetof(Values, application_cleared.speed_loop_kp) | u16 | rw,  // 20FBh:00
@@ -2173,10 +2181,10 @@ inline constexpr canopen::entry::Word entries[] = {
     ram | offsetof(Values, application_preset.check_torque_timer) | i16 | rw,  // 211Eh:00
     ram | offsetof(Values, application_preset.torque_speed) | i16 | rw,  // 211Fh:00
     ram | offsetof(Values, application_cleared.automatic_parameter_detection) | u16 | rw | limited,  // 2127h:00
-    array | shape(7) | offsetof(Values, application_cleared.digital_input_functions),  // 2190h  Digital input functions
+    array | shape(7) | offsetof(Values, application_preset.digital_input_functions),  // 2190h  Digital input functions
     array | shape(8) | offsetof(Values, application_cleared.digital_output_functions),  // 21A4h  Digital output functions
-    ram | offsetof(Values, application_cleared.digital_input_logic) | u16 | wo,  // 21ADh:00
-    ram | offsetof(Values, application_cleared.digital_output_logic) | u16 | wo,  // 21AEh:00
+    ram | offsetof(Values, application_cleared.digital_input_logic) | u16 | wo | limited,  // 21ADh:00
+    ram | offsetof(Values, application_cleared.digital_output_logic) | u16 | wo | limited,  // 21AEh:00
     ram | offsetof(Values, application_cleared.global_variable_1) | i32 | rw,  // 21E0h:00
     ram | offsetof(Values, application_cleared.global_variable_2) | i32 | rw,  // 21E2h:00
     ram | offsetof(Values, application_cleared.global_variable_3) | i32 | rw,  // 21E4h:00
@@ -2247,9 +2255,9 @@ inline constexpr canopen::entry::Word subs[] = {
     gap,
     ram | offsetof(TpdoCommunicationParameter, event_timer) | u16 | rw,
     immediate | 8 | u8 | ro,  // 2190h
-    ram | u16 | rw,
+    ram | u16 | rw | limited,
     immediate | 5 | u8 | ro,  // 21A4h
-    ram | u16 | rw,
+    ram | u16 | rw | limited,
     immediate | 2 | u8 | ro,  // 607Dh
     ram | i32 | rw,
     immediate | 2 | u8 | ro,  // 6099h
@@ -2280,6 +2288,10 @@ inline constexpr canopen::Limits limits[] = {
     {canopen::object_key(0x20F2, 0x00), 0xC8, 0x19000},  // 200..102400
     {canopen::object_key(0x20F5, 0x00), 0x1, 0x7530},  // 1..30000
     {canopen::object_key(0x2127, 0x00), 0x0, 0x1},  // ..1
+    {canopen::object_key(0x2190, 0x01), 0x0, 0x4},  // ..4
+    {canopen::object_key(0x21A4, 0x01), 0x0, 0x3},  // ..3
+    {canopen::object_key(0x21AD, 0x00), 0x0, 0xFF},  // ..0x00FF
+    {canopen::object_key(0x21AE, 0x00), 0x0, 0x1F},  // ..0x001F
     {canopen::object_key(0x605A, 0x00), 0x1, 0x6},  // 1..6
     {canopen::object_key(0x6060, 0x00), 0x1, 0x8},  // 1..8
 };

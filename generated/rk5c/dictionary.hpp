@@ -18,14 +18,16 @@ namespace rk5c {
 /// The entries of the object dictionary as types: index, sub-index, C++ type, access and mapping, checked at each use.
 namespace od {
 
-/// Device type.  1000h:00  UNSIGNED32  ro                                          rk5c.eds:79
+/// Device type.  1000h:00  UNSIGNED32  ro                                          rk5c.eds:80
 struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1000;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
+  static constexpr type low_limit = 0x000A0196;
+  static constexpr type high_limit = 0x000A0196;
 };
 
-/// Error register.  1001h:00  UNSIGNED8  ro                                        rk5c.eds:90
+/// Error register.  1001h:00  UNSIGNED8  ro                                        rk5c.eds:93
 struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1001;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -34,7 +36,7 @@ struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> 
   static constexpr type high_limit = 0x81;
 };
 
-/// Manufacturer status register.  1002h:00  UNSIGNED32  ro                         rk5c.eds:181
+/// Manufacturer status register.  1002h:00  UNSIGNED32  ro                         rk5c.eds:190
 struct manufacturer_status_register : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1002;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -43,35 +45,35 @@ struct manufacturer_status_register : canopen::TypedObject<std::uint32_t, canope
   static constexpr type high_limit = 0x0000007F;
 };
 
-/// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          rk5c.eds:195
+/// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          rk5c.eds:204
 struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1005;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
 };
 
-/// Manufacturer device name.  1008h:00  VISIBLE_STRING  ro                         rk5c.eds:204
+/// Manufacturer device name.  1008h:00  VISIBLE_STRING  ro                         rk5c.eds:213
 struct manufacturer_device_name : canopen::TypedObject<canopen::VisibleString<4>, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1008;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer device name";
 };
 
-/// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  ro                    rk5c.eds:213
+/// Manufacturer hardware version.  1009h:00  VISIBLE_STRING  ro                    rk5c.eds:222
 struct manufacturer_hardware_version : canopen::TypedObject<canopen::VisibleString<3>, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1009;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer hardware version";
 };
 
-/// Manufacturer software version.  100Ah:00  VISIBLE_STRING  ro                    rk5c.eds:222
+/// Manufacturer software version.  100Ah:00  VISIBLE_STRING  ro                    rk5c.eds:231
 struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleString<3>, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x100A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer software version";
 };
 
-/// Store parameters.  1010h:01..01  UNSIGNED32  rw                                 rk5c.eds:245
+/// Store parameters.  1010h:01..01  UNSIGNED32  rw                                 rk5c.eds:256
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..1");
@@ -84,10 +86,10 @@ struct store_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access:
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  rk5c.eds:245
+/// Save all parameters.  1010h:01  UNSIGNED32  rw                                  rk5c.eds:256
 using store_parameters_save_all_parameters = store_parameters<1>;
 
-/// Restore default parameters.  1011h:01..01  UNSIGNED32  rw                       rk5c.eds:270
+/// Restore default parameters.  1011h:01..01  UNSIGNED32  rw                       rk5c.eds:283
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..1");
@@ -100,57 +102,67 @@ struct restore_default_parameters<0> : canopen::TypedObject<std::uint8_t, canope
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       rk5c.eds:270
+/// Restore all default parameters.  1011h:01  UNSIGNED32  rw                       rk5c.eds:283
 using restore_default_parameters_restore_all_default_parameters = restore_default_parameters<1>;
 
-/// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          rk5c.eds:280
+/// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          rk5c.eds:293
 struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1014;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
-/// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    rk5c.eds:289
+/// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    rk5c.eds:302
 struct inhibit_time_emcy : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1015;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Inhibit time EMCY";
+  static constexpr type low_limit = 0;
+  static constexpr type high_limit = 65535;
 };
 
-/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              rk5c.eds:298
+/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              rk5c.eds:315
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Producer heartbeat time";
+  static constexpr type low_limit = 0;
+  static constexpr type high_limit = 65535;
 };
 
 /// Identity object.  1018h
 namespace identity_object {
-/// Highest sub-index supported.  1018h:00  UNSIGNED8  ro                           rk5c.eds:109
+/// Highest sub-index supported.  1018h:00  UNSIGNED8  ro                           rk5c.eds:112
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
+  static constexpr type low_limit = 4;
+  static constexpr type high_limit = 4;
 };
-/// Vendor-ID.  1018h:01  UNSIGNED32  ro                                            rk5c.eds:118
+/// Vendor-ID.  1018h:01  UNSIGNED32  ro                                            rk5c.eds:123
 struct vendor_id : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Vendor-ID";
+  static constexpr type low_limit = 0x00000093;
+  static constexpr type high_limit = 0x00000093;
 };
-/// Product code.  1018h:02  UNSIGNED32  ro                                         rk5c.eds:127
+/// Product code.  1018h:02  UNSIGNED32  ro                                         rk5c.eds:134
 struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Product code";
+  static constexpr type low_limit = 0x43354B52;
+  static constexpr type high_limit = 0x43354B52;
 };
-/// Revision number.  1018h:03  UNSIGNED32  ro                                      rk5c.eds:136
+/// Revision number.  1018h:03  UNSIGNED32  ro                                      rk5c.eds:145
 struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
 };
-/// Serial number.  1018h:04  UNSIGNED32  ro                                        rk5c.eds:146
+/// Serial number.  1018h:04  UNSIGNED32  ro                                        rk5c.eds:155
 struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x04;
@@ -160,13 +172,15 @@ struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> 
 
 /// SDO server parameter.  1200h
 namespace sdo_server_parameter {
-/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           rk5c.eds:313
+/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           rk5c.eds:333
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
+  static constexpr type low_limit = 2;
+  static constexpr type high_limit = 2;
 };
-/// COB-ID client to server (rx).  1200h:01  UNSIGNED32  ro                         rk5c.eds:322
+/// COB-ID client to server (rx).  1200h:01  UNSIGNED32  ro                         rk5c.eds:344
 struct cob_id_client_to_server_rx : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
@@ -174,7 +188,7 @@ struct cob_id_client_to_server_rx : canopen::TypedObject<std::uint32_t, canopen:
   static constexpr type low_limit = 0x00000601;
   static constexpr type high_limit = 0x0000067F;
 };
-/// COB-ID server to client (tx).  1200h:02  UNSIGNED32  ro                         rk5c.eds:335
+/// COB-ID server to client (tx).  1200h:02  UNSIGNED32  ro                         rk5c.eds:357
 struct cob_id_server_to_client_tx : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -186,62 +200,76 @@ struct cob_id_server_to_client_tx : canopen::TypedObject<std::uint32_t, canopen:
 
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           rk5c.eds:351
+/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           rk5c.eds:373
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Highest sub-index supported";
+  static constexpr type low_limit = 5;
+  static constexpr type high_limit = 5;
 };
-/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  rk5c.eds:361
+/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  rk5c.eds:385
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1800h:02  UNSIGNED8  rw                                     rk5c.eds:373
+/// Transmission type.  1800h:02  UNSIGNED8  rw                                     rk5c.eds:397
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
+  static constexpr type low_limit = 0;
+  static constexpr type high_limit = 255;
 };
-/// Event timer.  1800h:05  UNSIGNED16  rw                                          rk5c.eds:382
+/// Event timer.  1800h:05  UNSIGNED16  rw                                          rk5c.eds:408
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
+  static constexpr type low_limit = 0;
+  static constexpr type high_limit = 65535;
 };
 }  // namespace tpdo_communication_parameter_1
 
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
-/// Number of mapped application objects.  1A00h:00  UNSIGNED8  ro                  rk5c.eds:398
+/// Number of mapped application objects.  1A00h:00  UNSIGNED8  ro                  rk5c.eds:427
 struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of mapped application objects";
+  static constexpr type low_limit = 2;
+  static constexpr type high_limit = 2;
 };
-/// Mapping entry 1.  1A00h:01  UNSIGNED32  ro                                      rk5c.eds:407
+/// Mapping entry 1.  1A00h:01  UNSIGNED32  ro                                      rk5c.eds:438
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
+  static constexpr type low_limit = 0x60200120;
+  static constexpr type high_limit = 0x60200120;
 };
-/// Mapping entry 2.  1A00h:02  UNSIGNED32  ro                                      rk5c.eds:416
+/// Mapping entry 2.  1A00h:02  UNSIGNED32  ro                                      rk5c.eds:449
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
+  static constexpr type low_limit = 0x60300110;
+  static constexpr type high_limit = 0x60300110;
 };
 }  // namespace tpdo_mapping_parameter_1
 
-/// Number of cursors.  2000h:00  UNSIGNED8  ro                                     rk5c.eds:556
+/// Number of cursors.  2000h:00  UNSIGNED8  ro                                     rk5c.eds:623
 struct number_of_cursors : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x2000;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Number of cursors";
+  static constexpr type low_limit = 1;
+  static constexpr type high_limit = 1;
 };
 
-/// Linear encoder measuring step settings.  6005h:01..02  UNSIGNED32  ro           rk5c.eds:443
+/// Linear encoder measuring step settings.  6005h:01..02  UNSIGNED32  ro           rk5c.eds:481
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct linear_encoder_measuring_step_settings : canopen::Object<0x6005, SubIndex, std::uint32_t, canopen::Access::ro> {
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "linear_encoder_measuring_step_settings has the sub-indices 0..2");
@@ -254,17 +282,19 @@ struct linear_encoder_measuring_step_settings<0> : canopen::TypedObject<std::uin
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Position step setting.  6005h:01  UNSIGNED32  ro                                rk5c.eds:443
+/// Position step setting.  6005h:01  UNSIGNED32  ro                                rk5c.eds:481
 using linear_encoder_measuring_step_settings_position_step_setting = linear_encoder_measuring_step_settings<1>;
 
-/// Speed step setting.  6005h:02  UNSIGNED32  ro                                   rk5c.eds:452
+/// Speed step setting.  6005h:02  UNSIGNED32  ro                                   rk5c.eds:492
 using linear_encoder_measuring_step_settings_speed_step_setting = linear_encoder_measuring_step_settings<2>;
 
-/// Preset values for multi-sensor devices.  6010h:01..01  INTEGER32  rw            rk5c.eds:475
+/// Preset values for multi-sensor devices.  6010h:01..01  INTEGER32  rw            rk5c.eds:519
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct preset_values_for_multi_sensor_devices : canopen::Object<0x6010, SubIndex, std::int32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "preset_values_for_multi_sensor_devices has the sub-indices 0..1");
   static constexpr auto name = "Preset values for multi-sensor devices";
+  static constexpr typename preset_values_for_multi_sensor_devices::type low_limit = -2147483648;
+  static constexpr typename preset_values_for_multi_sensor_devices::type high_limit = 2147483647;
 };
 template <>
 struct preset_values_for_multi_sensor_devices<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
@@ -273,11 +303,13 @@ struct preset_values_for_multi_sensor_devices<0> : canopen::TypedObject<std::uin
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Position values for multi-sensor devices.  6020h:01..01  INTEGER32  ro  TPDO    rk5c.eds:498
+/// Position values for multi-sensor devices.  6020h:01..01  INTEGER32  ro  TPDO    rk5c.eds:548
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct position_values_for_multi_sensor_devices : canopen::Object<0x6020, SubIndex, std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "position_values_for_multi_sensor_devices has the sub-indices 0..1");
   static constexpr auto name = "Position values for multi-sensor devices";
+  static constexpr typename position_values_for_multi_sensor_devices::type low_limit = -2147483648;
+  static constexpr typename position_values_for_multi_sensor_devices::type high_limit = 2147483647;
 };
 template <>
 struct position_values_for_multi_sensor_devices<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
@@ -286,11 +318,13 @@ struct position_values_for_multi_sensor_devices<0> : canopen::TypedObject<std::u
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Speed value.  6030h:01..01  INTEGER16  ro  TPDO                                 rk5c.eds:522
+/// Speed value.  6030h:01..01  INTEGER16  ro  TPDO                                 rk5c.eds:578
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct speed_value : canopen::Object<0x6030, SubIndex, std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "speed_value has the sub-indices 0..1");
   static constexpr auto name = "Speed value";
+  static constexpr typename speed_value::type low_limit = -32768;
+  static constexpr typename speed_value::type high_limit = 32767;
 };
 template <>
 struct speed_value<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
@@ -299,18 +333,22 @@ struct speed_value<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> 
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Cyclic timer.  6200h:00  UNSIGNED16  rw                                         rk5c.eds:531
+/// Cyclic timer.  6200h:00  UNSIGNED16  rw                                         rk5c.eds:591
 struct cyclic_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6200;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Cyclic timer";
+  static constexpr type low_limit = 0;
+  static constexpr type high_limit = 65535;
 };
 
-/// Measuring step.  6501h:00  UNSIGNED32  ro                                       rk5c.eds:543
+/// Measuring step.  6501h:00  UNSIGNED32  ro                                       rk5c.eds:606
 struct measuring_step : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x6501;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Measuring step";
+  static constexpr type low_limit = 100000;
+  static constexpr type high_limit = 100000;
 };
 
 }  // namespace od
@@ -380,13 +418,13 @@ struct TpdoMappingParameter {
 struct Values {
   /// 1000h..1FFFh with a default other than zero.
   struct CommunicationPreset {
+    std::uint32_t manufacturer_status_register;                     ///< 1002h:00  Manufacturer status register
     std::uint32_t cob_id_sync;                                      ///< 1005h:00  COB-ID SYNC
     std::uint32_t cob_id_emcy;                                      ///< 1014h:00  COB-ID EMCY
     TpdoCommunicationParameter tpdo_communication_parameter_1;      ///< 1800h  TPDO communication parameter 1
   } communication_preset;
   /// 1000h..1FFFh that start from zero.
   struct CommunicationCleared {
-    std::uint32_t manufacturer_status_register;                     ///< 1002h:00  Manufacturer status register
     IdentityObject identity_object;                                 ///< 1018h  Identity object
     std::uint16_t inhibit_time_emcy;                                ///< 1015h:00  Inhibit time EMCY
     std::uint16_t producer_heartbeat_time;                          ///< 1017h:00  Producer heartbeat time
@@ -409,6 +447,7 @@ struct Values {
 
 /// Default values, copied on reset; node-ID-dependent ones without the node-ID.
 inline constexpr Values::CommunicationPreset communication_preset{
+    .manufacturer_status_register = 0x00000001,
     .cob_id_sync = 0x00000080,
     .cob_id_emcy = 0x00000080,
     .tpdo_communication_parameter_1 = {.cob_id_used_by_tpdo = 0x00000180, .event_timer = 1, .transmission_type = 0xFE},
@@ -478,7 +517,7 @@ inline constexpr canopen::Run runs[] = {
 inline constexpr canopen::entry::Word entries[] = {
     rom | offsetof(Constants, device_type) | u32 | ro,  // 1000h:00
     ram | offsetof(Values, communication_cleared.error_register) | u8 | ro,  // 1001h:00
-    ram | offsetof(Values, communication_cleared.manufacturer_status_register) | u32 | ro,  // 1002h:00
+    ram | offsetof(Values, communication_preset.manufacturer_status_register) | u32 | ro,  // 1002h:00
     ram | offsetof(Values, communication_preset.cob_id_sync) | u32 | rw,  // 1005h:00
     rom | offsetof(Constants, manufacturer_device_name) | visible_string | ro,  // 1008h:00
     rom | offsetof(Constants, manufacturer_hardware_version) | visible_string | ro,  // 1009h:00

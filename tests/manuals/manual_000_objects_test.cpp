@@ -22,8 +22,8 @@ constexpr std::uint32_t invalid_value = 0x0609'0030;
 
 // Object dictionary
 
-// shows 000.6, 000.7, 000.10, 000.11, 000.21, 000.28, 000.111, 000.130, 000.135, 000.137, 000.141, 000.142, 000.145
-// shows 000.155, 000.162, 000.166..000.169
+// shows 000.6, 000.7, 000.10, 000.11, 000.21, 000.28, 000.111, 000.130, 000.135, 000.137, 000.141, 000.142
+// shows 000.145, 000.155, 000.162, 000.166..000.169
 TEST(Manual000, HasTheObjectsOfChapter12) {
   constexpr manual::Entry entries[] = {
       {0x1000, 0, 4, ro, 0x0042'0192}, {0x1001, 0, 1, ro, 0},    {0x1002, 0, 4, ro, 0}, {0x1003, 0, 1, rw, 0},
@@ -92,7 +92,7 @@ constexpr IndexRange missing_objects[] = {
     {0x1023, 0x1029}, {0x1280, 0x12FF}, {0x1FA0, 0x1FCF}, {0x1FD0, 0x1FFF},
 };
 
-// shows 000.4, 000.6, 000.180, 000.181
+// shows 000.4, 000.6, 000.180, 000.181, 000.340
 TEST(Manual000, HasNoObjectsOfWhatIsNotImplemented) {
   Drive drive;
   for (const auto& [first, last] : missing_objects) {
@@ -102,7 +102,7 @@ TEST(Manual000, HasNoObjectsOfWhatIsNotImplemented) {
   }
 }
 
-// shows 000.84, 000.172, 000.176
+// shows 000.84, 000.172, 000.176, 000.324, 000.348
 TEST(Manual000, RefusesEveryAccessToSubIndex4OfATpdo) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 40 00 18 04 00 00 00 00"), "585 80 00 18 04 11 00 09 06");
@@ -110,7 +110,7 @@ TEST(Manual000, RefusesEveryAccessToSubIndex4OfATpdo) {
   EXPECT_EQ(drive.ask("605 40 00 18 06 00 00 00 00"), "585 80 00 18 06 11 00 09 06");
 }
 
-// shows 000.26, 000.55
+// shows 000.26, 000.55, 000.222, 000.227..000.230
 TEST(Manual000, SendsItsNameWithoutA00h) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 40 08 10 00 00 00 00 00"), "585 41 08 10 00 09 00 00 00");
@@ -142,7 +142,8 @@ TEST(Manual000, HasNoBlockTransfer) {
   EXPECT_EQ(drive.ask("605 C2 05 10 00 04 00 00 00"), "585 80 05 10 00 01 00 04 05");
 }
 
-// shows 000.46, 000.47, 000.51, 000.53, 000.54, 000.56, 000.57, 000.59, 000.183
+// shows 000.46, 000.47, 000.51, 000.53, 000.54, 000.56, 000.57, 000.59, 000.183, 000.204, 000.222
+// shows 000.224..000.226
 TEST(Manual000, DownloadsExpeditedAndInSegments) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 05 10 00 A0 00 00 00"), "585 60 05 10 00 00 00 00 00");
@@ -174,7 +175,7 @@ TEST(Manual000, ANewDownloadEndsTheOldOne) {
   EXPECT_EQ(drive.node.get<od::communication_cycle_period>(), 10000u);
 }
 
-// shows 000.49
+// shows 000.49, 000.227
 TEST(Manual000, ANewUploadEndsTheOldOne) {
   Drive drive;
   drive.ask("605 40 08 10 00 00 00 00 00");
@@ -183,7 +184,7 @@ TEST(Manual000, ANewUploadEndsTheOldOne) {
   EXPECT_EQ(drive.ask("605 60 00 00 00 00 00 00 00"), "585 03 30 30 2E 31 30 30 00");
 }
 
-// shows 000.45, 000.50, 000.58
+// shows 000.45, 000.50, 000.58, 000.227, 000.231
 TEST(Manual000, AnAbortEndsATransferAndIsNotAnswered) {
   Drive drive;
   drive.ask("605 40 08 10 00 00 00 00 00");
@@ -195,7 +196,7 @@ TEST(Manual000, AnAbortEndsATransferAndIsNotAnswered) {
   EXPECT_EQ(drive.node.get<od::cob_id_sync>(), 0x80u);
 }
 
-// shows 000.52
+// shows 000.52, 000.231, 000.351
 TEST(Manual000, AToggleBitThatDoesNotAlternateEndsTheTransfer) {
   Drive drive;
   drive.ask("605 21 05 10 00 04 00 00 00");
@@ -204,7 +205,7 @@ TEST(Manual000, AToggleBitThatDoesNotAlternateEndsTheTransfer) {
   EXPECT_EQ(drive.node.get<od::cob_id_sync>(), 0x80u);
 }
 
-// shows 000.62
+// shows 000.62, 000.223
 TEST(Manual000, RefusesWrongLengths) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 17 10 00 00 00 00 00"), "585 80 17 10 00 12 00 07 06");
@@ -213,7 +214,7 @@ TEST(Manual000, RefusesWrongLengths) {
   EXPECT_EQ(drive.ask("605 0B A2 00 00 00 00 00 00"), "585 80 05 10 00 10 00 07 06");
 }
 
-// shows 000.63, 000.77
+// shows 000.63, 000.77, 000.306, 000.318
 TEST(Manual000, RefusesInvalidAndHighValues) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 2F 00 14 02 F1 00 00 00"), "585 80 00 14 02 30 00 09 06");
@@ -228,7 +229,7 @@ TEST(Manual000, RefusesInvalidAndHighValues) {
 
 // COB-IDs
 
-// shows 000.8, 000.10, 000.12
+// shows 000.8, 000.10, 000.12, 000.197
 TEST(Manual000, SyncAndPdosTakeNewCanIds) {
   Drive drive;
   start_with(drive, 0x1800, 1);
@@ -249,7 +250,7 @@ TEST(Manual000, SyncAndPdosTakeNewCanIds) {
 constexpr std::uint32_t restricted[] = {0x000, 0x001, 0x07F, 0x101, 0x180, 0x581, 0x5FF, 0x601,
                                         0x67F, 0x6E0, 0x6FF, 0x701, 0x77F, 0x780, 0x7FF};
 
-// shows 000.15, 000.16
+// shows 000.15, 000.16, 000.185, 000.337
 TEST(Manual000, RefusesRestrictedCanIds) {
   Drive drive;
   write(drive, 0x1400, 1, 4, 0x8000'0205);
@@ -261,7 +262,7 @@ TEST(Manual000, RefusesRestrictedCanIds) {
   }
 }
 
-// shows 000.81
+// shows 000.81, 000.341
 TEST(Manual000, AnRpdoIgnoresBit30AndHasNoBit29) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 00 14 01 05 02 00 40"), "585 60 00 14 01 00 00 00 00");
@@ -271,7 +272,7 @@ TEST(Manual000, AnRpdoIgnoresBit30AndHasNoBit29) {
   EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
 }
 
-// shows 000.83, 000.173
+// shows 000.83, 000.173, 000.341
 TEST(Manual000, ATpdoKeepsItsCanIdWhileItIsValid) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 00 18 01 86 01 00 40"), "585 80 00 18 01 30 00 09 06");

@@ -21,7 +21,7 @@ constexpr std::uint32_t not_mappable = 0x0604'0041;
 
 // PDO
 
-// shows 000.34, 000.35, 000.36
+// shows 000.34..000.36
 TEST(Manual000, ServesPdosInOperationalOnly) {
   Drive drive;
   drive.ask("205 0F 00");
@@ -38,7 +38,7 @@ TEST(Manual000, ServesPdosInOperationalOnly) {
   EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
 }
 
-// shows 000.86, 000.88
+// shows 000.86, 000.88, 000.232
 TEST(Manual000, PdosHaveTheLengthAndOrderOfTheirMapping) {
   Drive drive;
   write(drive, 0x1401, 1, 4, 0x305);
@@ -57,7 +57,7 @@ TEST(Manual000, PdosHaveTheLengthAndOrderOfTheirMapping) {
   EXPECT_EQ(drive.ask("505"), "");
 }
 
-// shows 000.66
+// shows 000.66, 000.306
 TEST(Manual000, TakesSynchronousRpdosAtTheNextSync) {
   for (const std::uint32_t type : {0u, 1u, 240u}) {
     Drive drive;
@@ -70,7 +70,7 @@ TEST(Manual000, TakesSynchronousRpdosAtTheNextSync) {
   }
 }
 
-// shows 000.67
+// shows 000.67, 000.306
 TEST(Manual000, TakesEventDrivenRpdosAtOnce) {
   for (const std::uint32_t type : {254u, 255u}) {
     Drive drive;
@@ -92,7 +92,7 @@ TEST(Manual000, SendsTypeNAtEveryNthSync) {
   }
 }
 
-// shows 000.69, 000.174
+// shows 000.69, 000.174, 000.318
 TEST(Manual000, SendsTypes0And1AtEverySync) {
   for (const std::uint32_t type : {0u, 1u}) {
     Drive drive;
@@ -112,7 +112,7 @@ TEST(Manual000, SamplesAtTheSync) {
   EXPECT_EQ(drive.ask("080"), "185 02 00");
 }
 
-// shows 000.72, 000.76
+// shows 000.72, 000.76, 000.233
 TEST(Manual000, SendsEventDrivenTpdosAtAChangeAndByTheirTimer) {
   for (const std::uint32_t type : {254u, 255u}) {
     Drive drive;
@@ -156,7 +156,7 @@ TEST(Manual000, TakesLongerRpdosAndNoShorterOnes) {
 
 // Mapping
 
-// shows 000.86, 000.91
+// shows 000.86, 000.91, 000.206
 TEST(Manual000, IsRemappedInFiveSteps) {
   for (const char* state : {bench::enter_pre_operational, bench::start}) {
     Drive drive;

@@ -23,7 +23,7 @@ constexpr std::uint32_t value_too_high = 0x0609'0031;
 
 // Error control
 
-// shows 000.44, 000.132
+// shows 000.44, 000.132, 000.221
 TEST(Manual000, WatchesANodeFromItsFirstHeartbeatOn) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 16 10 01 64 00 07 00"), "585 60 16 10 01 00 00 00 00");  // node 7, 100 ms
@@ -84,7 +84,7 @@ TEST(Manual000, RecordsErrorsOfStopped) {
   EXPECT_EQ(drive.ask("605 40 03 10 01 00 00 00 00"), "585 43 03 10 01 10 23 00 00");
 }
 
-// shows 000.100, 000.102, 000.104, 000.113, 000.115..000.117
+// shows 000.100, 000.102, 000.104, 000.113, 000.115..000.117, 000.248
 TEST(Manual000, RecordsSixteenErrorsNewestFirst) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 40 03 10 00 00 00 00 00"), "585 4F 03 10 00 00 00 00 00");
@@ -123,7 +123,7 @@ TEST(Manual000, KeepsTheInhibitTimeOfEmcy) {
   EXPECT_EQ(drive.pass(1us), "085 10 32 07 00 00 00 00 00");
 }
 
-// shows 000.112, 000.152, 000.190
+// shows 000.112, 000.152, 000.190, 000.243
 TEST(Manual000, SetsTheGenericErrorWithEveryOther) {
   constexpr std::uint8_t bits[] = {0x01, 0x02, 0x04, 0x08, 0x10, 0x20, 0x80};
   for (const std::uint8_t bit : bits) {
@@ -136,7 +136,7 @@ TEST(Manual000, SetsTheGenericErrorWithEveryOther) {
 
 // SYNC
 
-// shows 000.118, 000.121..000.123, 000.156, 000.157
+// shows 000.118, 000.121..000.123, 000.156, 000.157, 000.234, 000.237, 000.353
 TEST(Manual000, ProducesSyncEvery1006hMicroseconds) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 2F 19 10 00 03 00 00 00"), "585 60 19 10 00 00 00 00 00");
@@ -167,7 +167,7 @@ TEST(Manual000, CountsSyncFrom1AfterStopped) {
   }
 }
 
-// shows 000.120
+// shows 000.120, 000.252
 TEST(Manual000, KeepsTheCanIdOfSyncWhileItIsProduced) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 05 10 00 80 00 00 20"), "585 80 05 10 00 30 00 09 06");
@@ -191,7 +191,7 @@ TEST(Manual000, HasReservedCounterOverflowValues) {
   }
 }
 
-// shows 000.126, 000.127, 000.165
+// shows 000.126, 000.127, 000.165, 000.353
 TEST(Manual000, LooksAtTheLengthOfSyncNotAtItsCounter) {
   Drive drive;
   start_with(drive, 0x1800, 1);
@@ -203,7 +203,7 @@ TEST(Manual000, LooksAtTheLengthOfSyncNotAtItsCounter) {
   EXPECT_EQ(drive.ask("080"), "085 40 82 11 00 00 00 00 00");
 }
 
-// shows 000.130
+// shows 000.130, 000.275
 TEST(Manual000, KeepsTheTimeOfTheLastSyncInMicroseconds) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 13 10 00 00 00 00 00"), "585 60 13 10 00 00 00 00 00");

@@ -27,7 +27,7 @@ constexpr auto started = "185 00 00 00 00 01 | 285 00 00 00 00 00 00 00 00 | 385
 
 // Object dictionary
 
-// shows 001.7, 001.9, 001.78..001.82
+// shows 001.7, 001.9, 001.78..001.82, 001.125
 TEST(Manual001, HasTheCommunicationObjects) {
   constexpr manual::Entry entries[] = {
       {0x1000, 0, 4, ro, 0x0004'0192}, {0x1001, 0, 1, ro, 0},     {0x1003, 0, 1, rw, 0},     {0x1005, 0, 4, rw, 0x80},
@@ -47,7 +47,7 @@ TEST(Manual001, HasTheCommunicationObjects) {
   EXPECT_EQ(drive.ask("605 21 08 10 00 08 00 00 00"), "585 80 08 10 00 02 00 01 06");
 }
 
-// shows 001.7, 001.26, 001.36, 001.39, 001.81
+// shows 001.7, 001.26, 001.36, 001.39, 001.81, 001.125, 001.138, 001.139
 TEST(Manual001, HasFourPdosOfEachDirectionAndTheirDefaultMapping) {
   constexpr manual::Entry entries[] = {
       {0x1400, 1, 4, rw, 0x205},       {0x1401, 1, 4, rw, 0x305},       {0x1402, 1, 4, rw, 0x405},
@@ -214,7 +214,7 @@ TEST(Manual001, MapsTheObjectsOfTheModeTableAndServesThemBySdo) {
 
 // PDO
 
-// shows 001.38, 001.39, 001.89
+// shows 001.38, 001.39, 001.89, 001.126, 001.136
 TEST(Manual001, PdosCarryTheirObjectsLowByteFirst) {
   Drive drive;
   drive.node.set<od::statusword>(0x00F3);
@@ -229,7 +229,7 @@ TEST(Manual001, PdosCarryTheirObjectsLowByteFirst) {
   EXPECT_EQ(drive.node.get<od::quick_stop_deceleration>(), 1u);
 }
 
-// shows 001.29
+// shows 001.29, 001.142
 TEST(Manual001, SendsType0AtTheSyncAfterAChange) {
   Drive drive;
   drive.ask(bench::start);
@@ -242,7 +242,7 @@ TEST(Manual001, SendsType0AtTheSyncAfterAChange) {
   EXPECT_EQ(drive.ask("080"), "");
 }
 
-// shows 001.30
+// shows 001.30, 001.139
 TEST(Manual001, SendsTypeNAtEveryNthSync) {
   constexpr std::uint32_t types[] = {1, 3, 240};
   for (const std::uint32_t type : types) {
@@ -256,7 +256,7 @@ TEST(Manual001, SendsTypeNAtEveryNthSync) {
   }
 }
 
-// shows 001.31, 001.35
+// shows 001.31, 001.35, 001.139
 TEST(Manual001, SendsTypes254And255AtAChangeAndByTheirTimer) {
   constexpr std::uint32_t types[] = {254, 255};
   for (const std::uint32_t type : types) {
@@ -287,7 +287,7 @@ TEST(Manual001, TakesTheNewestRpdoAtTheNextSyncOrAtOnce) {
   }
 }
 
-// shows 001.34, 001.86
+// shows 001.34, 001.86, 001.139
 TEST(Manual001, AnInhibitTimeOf300Is30Milliseconds) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 2B 00 18 03 2C 01 00 00"), "585 60 00 18 03 00 00 00 00");
@@ -353,7 +353,7 @@ TEST(Manual001, WatchesANodeFromItsFirstHeartbeatOn) {
 
 // SYNC and EMCY
 
-// shows 001.42
+// shows 001.42, 001.142
 TEST(Manual001, ProducesSyncWhereBit30Of1005hSaysSo) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 06 10 00 10 27 00 00"), "585 60 06 10 00 00 00 00 00");  // 10 ms

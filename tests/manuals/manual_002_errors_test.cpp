@@ -18,7 +18,7 @@ using Drive = bench::Bench<cpd::Device>;
 
 // Error control
 
-// shows 002.54, 002.55, 002.199
+// shows 002.54, 002.55, 002.199, 002.244
 TEST(Manual002, AnswersEachGuardingRequestWithItsStateAndAToggleBit) {
   Drive drive;
   EXPECT_EQ(drive.ask("705 R 1"), "705 7F");
@@ -33,7 +33,7 @@ TEST(Manual002, AnswersEachGuardingRequestWithItsStateAndAToggleBit) {
   EXPECT_EQ(drive.ask("705 R 1"), "705 7F");
 }
 
-// shows 002.56, 002.197
+// shows 002.56, 002.197, 002.245
 TEST(Manual002, TellsThatTheMasterIsMissing) {
   Drive drive;
   write(drive, 0x100C, 0, 2, 200);
@@ -112,6 +112,7 @@ TEST(Manual002, GoesWhere1029hSaysWhenErrorControlFails) {
 
 // EMCY
 
+// shows 002.237, 002.240
 TEST(Manual002, CarriesTheErrorAndItsObjectInAnEmcy) {
   Drive drive;
   drive.node.emergency(0x8611, ErrorRegister::device_profile, {0x20, 0xA3, 0x65, 0x60, 0x00});
@@ -119,7 +120,7 @@ TEST(Manual002, CarriesTheErrorAndItsObjectInAnEmcy) {
   EXPECT_EQ(drive.ask("605 40 01 10 00 00 00 00 00"), "585 4F 01 10 00 21 00 00 00");
 }
 
-// shows 002.33
+// shows 002.33, 002.239, 002.392
 TEST(Manual002, TellsTheKindOfAnErrorInTheErrorRegister) {
   constexpr std::uint8_t bits[] = {0x10, 0x20, 0x80};
   for (const std::uint8_t bit : bits) {
@@ -130,17 +131,26 @@ TEST(Manual002, TellsTheKindOfAnErrorInTheErrorRegister) {
   }
 }
 
-// shows 002.30, 002.31, 002.121, 002.122, 002.189
-TEST(Manual002, KeepsTheLastErrorUntil0IsWritten) {
+// shows 002.30, 002.31, 002.121, 002.122, 002.189, 002.396, 002.397, 002.554, 002.555
+TEST(Manual002, KeepsFiveErrorsUntil0IsWritten) {
   Drive drive;
-  drive.node.emergency(0x2310, ErrorRegister::current);
-  drive.pass(0s);
-  drive.node.emergency(0x3210, ErrorRegister::voltage);
-  drive.pass(0s);
-  EXPECT_EQ(drive.ask("605 40 03 10 00 00 00 00 00"), "585 4F 03 10 00 01 00 00 00");
-  EXPECT_EQ(drive.ask("605 40 03 10 01 00 00 00 00"), "585 43 03 10 01 10 32 00 00");
+  for (std::uint16_t code = 0x1001; code <= 0x1006; ++code) {
+    drive.node.emergency(code, ErrorRegister::current);
+    drive.pass(0s);
+  }
+  EXPECT_EQ(drive.ask("605 40 03 10 00 00 00 00 00"), "585 4F 03 10 00 05 00 00 00");
+  EXPECT_EQ(drive.ask("605 40 03 10 01 00 00 00 00"), "585 43 03 10 01 06 10 00 00");
+  EXPECT_EQ(drive.ask("605 40 03 10 02 00 00 00 00"), "585 43 03 10 02 05 10 00 00");
+  EXPECT_EQ(drive.ask("605 40 03 10 05 00 00 00 00"), "585 43 03 10 05 02 10 00 00");
+  EXPECT_EQ(drive.ask("605 2F 03 10 00 01 00 00 00"), "585 80 03 10 00 30 00 09 06");
   EXPECT_EQ(drive.ask("605 2F 03 10 00 00 00 00 00"), "585 60 03 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 40 03 10 00 00 00 00 00"), "585 4F 03 10 00 00 00 00 00");
+  for (std::uint8_t i = 1; i <= 5; ++i) {
+    EXPECT_EQ(drive.ask(manual::sdo("605", 0x40, 0x1003, i, 0)), manual::sdo("585", 0x43, 0x1003, i, 0));
+  }
+  drive.node.emergency(0x8611, ErrorRegister::device_profile, {0x11, 0x86, 0x65, 0x60, 0x00});
+  drive.pass(0s);
+  EXPECT_EQ(drive.ask("605 40 03 10 01 00 00 00 00"), "585 43 03 10 01 11 86 00 00");
 }
 
 // shows 002.37
@@ -151,6 +161,30 @@ TEST(Manual002, KeepsTheInhibitTimeOfEmcy) {
   drive.node.emergency(0x3210, ErrorRegister::voltage);
   EXPECT_EQ(drive.pass(9999us), "085 10 23 03 00 00 00 00 00");
   EXPECT_EQ(drive.pass(1us), "085 10 32 07 00 00 00 00 00");
+}
+
+// shows 002.247, 002.248, 002.429, 002.430
+TEST(Manual002, ProducesAHeartbeatWhileItMonitorsThreeNodes) {
+  for (const std::uint8_t node : {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{3}}) {
+    Drive drive;
+    write(drive, 0x1017, 0, 2, 100);
+    for (std::uint8_t entry = 1; entry <= 3; ++entry) {
+      EXPECT_EQ(write(drive, 0x1016, entry, 4, std::uint32_t{entry} << 16 | 250), manual::taken(0x1016, entry));
+    }
+    drive.ask("701 05");
+    drive.ask("702 05");
+    drive.ask("703 05");
+    EXPECT_EQ(drive.pass(200ms), "705 7F | 705 7F");
+    for (const char* frame : {"701 05", "702 05", "703 05"}) {
+      if (frame[2] != '0' + node) drive.ask(frame);  // this node is missing
+    }
+    EXPECT_EQ(drive.pass(60ms), "085 30 81 11 00 00 00 00 00");
+    EXPECT_EQ(drive.pass(40ms), "705 7F");
+    write(drive, 0x1017, 0, 2, 0);
+    for (std::uint8_t entry = 1; entry <= 3; ++entry) write(drive, 0x1016, entry, 4, std::uint32_t{entry} << 16);
+    drive.pass(0s);
+    EXPECT_EQ(drive.pass(10s), "");
+  }
 }
 
 }  // namespace

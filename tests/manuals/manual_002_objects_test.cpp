@@ -23,8 +23,8 @@ constexpr std::uint32_t no_sub_index = 0x0609'0011;
 
 // Object dictionary
 
-// shows 002.3, 002.68, 002.69, 002.71, 002.118, 002.120, 002.123, 002.125, 002.129..002.134, 002.138, 002.139, 002.142
-// shows 002.196
+// shows 002.3, 002.68, 002.69, 002.71, 002.118, 002.120, 002.123, 002.125, 002.129..002.134, 002.138, 002.139
+// shows 002.142, 002.196, 002.389
 TEST(Manual002, HasTheObjectsOf94) {
   constexpr manual::Entry entries[] = {
       {0x1000, 0, 4, ro, 0x0002'0192}, {0x1001, 0, 1, ro, 0},     {0x1003, 0, 1, rw, 0},
@@ -47,7 +47,7 @@ TEST(Manual002, HasTheObjectsOf94) {
 }
 
 // shows 002.3, 002.4, 002.72, 002.73, 002.81..002.83, 002.86, 002.143, 002.144, 002.147..002.151, 002.156..002.161
-// shows 002.163..002.168, 002.171..002.173
+// shows 002.163..002.168, 002.171..002.173, 002.228, 002.553
 TEST(Manual002, HasEightPdosOfWhichThePairOf1IsActive) {
   constexpr manual::Entry entries[] = {
       {0x1400, 0, 1, ro, 2},           {0x1400, 1, 4, rw, 0x205},       {0x1400, 2, 1, rw, 255},
@@ -81,12 +81,13 @@ struct Missing {
   std::uint32_t code;
 };
 
-// shows 002.121, 002.126, 002.127, 002.163, 002.169, 002.170, 002.195
+// shows 002.126, 002.127, 002.163, 002.169, 002.170, 002.195, 002.218, 002.507, 002.514, 002.521
 TEST(Manual002, HasNotWhatIsOnlyNamed) {
   constexpr Missing missing[] = {
-      {0x1006, 0, no_object}, {0x1007, 0, no_object},    {0x100E, 0, no_object},    {0x6404, 0, no_object},
-      {0x6410, 0, no_object}, {0x1003, 2, no_sub_index}, {0x1603, 5, no_sub_index}, {0x1A03, 5, no_sub_index},
-      {0x1404, 0, no_object}, {0x1804, 0, no_object},    {0x1800, 4, no_sub_index}, {0x1803, 4, no_sub_index},
+      {0x1006, 0, no_object},    {0x1007, 0, no_object},    {0x100E, 0, no_object},    {0x6404, 0, no_object},
+      {0x6410, 0, no_object},    {0x1003, 6, no_sub_index}, {0x1603, 5, no_sub_index}, {0x1A03, 5, no_sub_index},
+      {0x1404, 0, no_object},    {0x1804, 0, no_object},    {0x1800, 4, no_sub_index}, {0x1801, 4, no_sub_index},
+      {0x1802, 4, no_sub_index}, {0x1803, 4, no_sub_index}, {0x1280, 0, no_object},
   };
   Drive drive;
   for (const auto& [index, sub_index, code] : missing) {
@@ -94,7 +95,7 @@ TEST(Manual002, HasNotWhatIsOnlyNamed) {
   }
 }
 
-// shows 002.58
+// shows 002.58, 002.243
 TEST(Manual002, TakesGuardTimesAndErrorBehaviour) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 2B 0C 10 00 E8 03 00 00"), "585 60 0C 10 00 00 00 00 00");
@@ -114,7 +115,7 @@ TEST(Manual002, TakesErrorBehaviour0To2AndTheManufacturers) {
 
 // SDO
 
-// shows 002.6, 002.7, 002.8, 002.10, 002.11
+// shows 002.6..002.8, 002.10, 002.11, 002.220, 002.222
 TEST(Manual002, TransfersOneToFourBytesInFramesOfEight) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 40 00 10 00"), "");
@@ -152,7 +153,7 @@ TEST(Manual002, RefusesWrongLengths) {
   EXPECT_EQ(drive.ask("605 0B A2 00 00 00 00 00 00"), "585 80 83 60 00 10 00 07 06");
 }
 
-// shows 002.27
+// shows 002.27, 002.325, 002.454, 002.460
 TEST(Manual002, RefusesValuesOutsideTheirRange) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 2F 01 12 03 80 00 00 00"), "585 80 01 12 03 31 00 09 06");
@@ -174,7 +175,7 @@ TEST(Manual002, HasASecondSdoServer) {
 
 // COB-IDs
 
-// shows 002.40, 002.41, 002.124
+// shows 002.40, 002.41, 002.124, 002.215, 002.236, 002.243
 TEST(Manual002, ConsumesSyncAtTheCobIdOf1005h) {
   Drive drive;
   write(drive, 0x1800, 2, 1, 1);
@@ -184,14 +185,17 @@ TEST(Manual002, ConsumesSyncAtTheCobIdOf1005h) {
   EXPECT_EQ(drive.ask("0A0"), "185 00 00");
 }
 
-// shows 002.42
+// shows 002.42, 002.401
 TEST(Manual002, KeepsTheUpperBitsOf1005h) {
   Drive drive;
+  EXPECT_EQ(drive.ask("605 23 05 10 00 A0 00 00 A0"), "585 60 05 10 00 00 00 00 00");  // 29 bits
+  EXPECT_EQ(drive.ask("605 40 05 10 00 00 00 00 00"), "585 43 05 10 00 A0 00 00 80");
   EXPECT_EQ(drive.ask("605 23 05 10 00 A0 00 00 00"), "585 60 05 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 40 05 10 00 00 00 00 00"), "585 43 05 10 00 A0 00 00 80");
 }
 
 /// CiA 301, 7.5.2.5: a device that does not produce SYNC rejects bit 30, even though this one keeps the upper bits.
+// shows 002.124, 002.400
 TEST(Manual002, RefusesToProduceSync) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 05 10 00 80 00 00 40"), "585 80 05 10 00 30 00 09 06");
@@ -206,7 +210,7 @@ TEST(Manual002, RefusesARestrictedCanIdIn1014hWhateverItKeepsOfIt) {
   EXPECT_EQ(drive.ask("605 40 14 10 00 00 00 00 00"), "585 43 14 10 00 85 00 00 00");
 }
 
-// shows 002.36
+// shows 002.36, 002.215
 TEST(Manual002, SendsEmcyWithTheFunctionCodeOf1014h) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 14 10 00 85 06 00 00"), "585 60 14 10 00 00 00 00 00");
@@ -221,7 +225,7 @@ TEST(Manual002, KeepsTheNodeIdAndTheUpperBitsOf1014h) {
   EXPECT_EQ(drive.ask("605 40 14 10 00 00 00 00 00"), "585 43 14 10 00 85 06 00 00");
 }
 
-// shows 002.44, 002.75, 002.145, 002.146
+// shows 002.44, 002.75, 002.145, 002.146, 002.211, 002.215
 TEST(Manual002, ChangesBit31AndTheFunctionCodeOfAPdo) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 01 18 01 FF 03 00 2C"), "585 60 01 18 01 00 00 00 00");
@@ -234,6 +238,18 @@ TEST(Manual002, ChangesBit31AndTheFunctionCodeOfAPdo) {
   EXPECT_EQ(drive.node.get<od::target_velocity>(), 0);
   drive.ask("685 0F 00 E8 03 00 00");
   EXPECT_EQ(drive.node.get<od::target_velocity>(), 1000);
+}
+
+// shows 002.218, 002.219
+TEST(Manual002, HasSdosWithHigherCanIdsThanPdos) {
+  Drive drive;
+  EXPECT_EQ(drive.ask("605 40 00 12 01 00 00 00 00"), "585 43 00 12 01 05 06 00 00");
+  EXPECT_EQ(drive.ask("605 40 00 12 02 00 00 00 00"), "585 43 00 12 02 85 05 00 00");
+  constexpr std::uint16_t pdos[] = {0x1400, 0x1401, 0x1402, 0x1403, 0x1800, 0x1801, 0x1802, 0x1803};
+  for (const std::uint16_t index : pdos) {
+    const canopen::Frame answer = bench::frame(drive.ask(manual::sdo("605", 0x40, index, 1, 0)));
+    EXPECT_LT((answer.data[4] | answer.data[5] << 8) & 0x7FF, 0x585);
+  }
 }
 
 }  // namespace

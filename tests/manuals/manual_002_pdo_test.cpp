@@ -21,13 +21,13 @@ constexpr std::uint32_t invalid_value = 0x0609'0030;
 constexpr std::uint32_t read_only = 0x0601'0002;
 constexpr std::uint32_t not_mappable = 0x0604'0041;
 
-// shows 002.52, 002.76, 002.100
+// shows 002.52, 002.76, 002.100, 002.217, 002.223, 002.226
 TEST(Manual002, EvaluatesRpdo1AtOnce) {
   Drive drive;
   drive.ask("205 0F 00");
   EXPECT_EQ(drive.node.get<od::controlword>(), 0);
   drive.ask(bench::start);
-  drive.ask("205 0F 00");
+  EXPECT_EQ(drive.ask("205 0F 00"), "");
   EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
 }
 
@@ -47,7 +47,7 @@ TEST(Manual002, Rpdo2And3CarryTargetsOnceTheyAreEnabled) {
   EXPECT_EQ(drive.ask("305 0F 00 01 00 00"), "085 10 82 11 00 00 00 00 00");
 }
 
-// shows 002.80, 002.84
+// shows 002.80, 002.84, 002.217, 002.225, 002.501
 TEST(Manual002, SendsTpdo1AfterTheStartAndAtEveryChange) {
   Drive drive;
   drive.node.set<od::statusword>(0x6631);
@@ -56,7 +56,7 @@ TEST(Manual002, SendsTpdo1AfterTheStartAndAtEveryChange) {
   EXPECT_EQ(drive.pass(1s), "185 37 46");
 }
 
-// shows 002.81, 002.82, 002.149, 002.150
+// shows 002.81, 002.82, 002.149, 002.150, 002.217, 002.225, 002.234
 TEST(Manual002, SendsTpdo2And3AtEachSyncOnceTheyAreEnabled) {
   Drive drive;
   drive.node.set<od::statusword>(0x4637);
@@ -85,7 +85,7 @@ constexpr std::uint32_t mappable_in_tpdos[] = {0x3008'0110, 0x3009'0110, 0x3009'
 constexpr std::uint32_t mappable_in_rpdos[] = {0x301B'0910, 0x3020'0410, 0x3021'0410, 0x3026'0320, 0x3026'0420,
                                                0x6040'0010, 0x607A'0020, 0x6081'0020, 0x60FF'0020};
 
-// shows 002.21, 002.85, 002.89..002.91
+// shows 002.21, 002.85, 002.89..002.91, 002.229, 002.243, 002.324
 TEST(Manual002, MapsTheObjectsOf334AndNoOther) {
   Drive drive;
   drive.node.entries().dictionary().for_each_entry(
@@ -101,7 +101,7 @@ TEST(Manual002, MapsTheObjectsOf334AndNoOther) {
   for (const std::uint32_t entry : mappable_in_rpdos) EXPECT_EQ(write(drive, 0x1603, 1, 4, entry), taken(0x1603, 1));
 }
 
-// shows 002.22, 002.79, 002.91
+// shows 002.22, 002.79, 002.91, 002.210, 002.224, 002.230, 002.254
 TEST(Manual002, MapsNoMoreThanEightBytes) {
   Drive drive;
   write(drive, 0x1603, 1, 4, 0x607A'0020);
@@ -133,7 +133,7 @@ TEST(Manual002, SendsAnEventControlledTpdoEachTimeItsTimerExpires) {
   EXPECT_EQ(drive.pass(100ms), "185 00 00");
 }
 
-// shows 002.94, 002.153, 002.154
+// shows 002.94, 002.153, 002.154, 002.227, 002.234, 002.235
 TEST(Manual002, HasTheTransmissionTypesOf9421) {
   Drive drive;
   for (std::uint32_t type = 0; type <= 255; ++type) {
@@ -180,7 +180,7 @@ TEST(Manual002, TakesSynchronousRpdosAtTheNextSyncWhateverTheirNumber) {
   }
 }
 
-// shows 002.101
+// shows 002.101, 002.213, 002.217, 002.225
 TEST(Manual002, AnswersRemoteFramesForTpdo1Only) {
   Drive drive;
   write(drive, 0x1801, 1, 4, 0x285);
@@ -194,6 +194,39 @@ TEST(Manual002, HasFixedTransmissionTypesOfPdo4) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 2F 03 14 02 FF 00 00 00"), "585 80 03 14 02 02 00 01 06");
   EXPECT_EQ(drive.ask("605 2F 03 18 02 FE 00 00 00"), "585 80 03 18 02 02 00 01 06");
+}
+
+// shows 002.163, 002.253
+TEST(Manual002, MapsFourObjectsOfTwoBytes) {
+  Drive drive;
+  const std::uint32_t mapped[] = {0x3008'0110, 0x3009'0110, 0x3009'0510, 0x301C'0410};
+  for (std::uint8_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(write(drive, 0x1A03, static_cast<std::uint8_t>(i + 1), 4, mapped[i]),
+              taken(0x1A03, static_cast<std::uint8_t>(i + 1)));
+  }
+  EXPECT_EQ(write(drive, 0x1A03, 0, 1, 5), refused(0x1A03, 0, 0x0604'0042));
+  EXPECT_EQ(write(drive, 0x1A03, 0, 1, 4), taken(0x1A03, 0));
+  write(drive, 0x1803, 1, 4, 0x485);
+  EXPECT_EQ(drive.ask(bench::start), "185 00 00 | 485 00 00 00 00 00 00 00 00");
+}
+
+// shows 002.465, 002.470
+TEST(Manual002, TakesRpdo2And3WithSyncOrAtOnceByTheirType) {
+  for (const std::uint32_t type : {0u, 1u, 240u, 255u}) {
+    Drive drive;
+    for (const std::uint16_t index : {std::uint16_t{0x1401}, std::uint16_t{0x1402}}) {
+      write(drive, index, 2, 1, type);
+      write(drive, index, 1, 4, index == 0x1401 ? 0x305 : 0x405);
+    }
+    drive.ask(bench::start);
+    drive.ask("305 0F 00 01 00 00 00");
+    drive.ask("405 0F 00 02 00 00 00");
+    EXPECT_EQ(drive.node.get<od::target_position>(), type == 255 ? 1 : 0);
+    EXPECT_EQ(drive.node.get<od::target_velocity>(), type == 255 ? 2 : 0);
+    drive.ask("080");
+    EXPECT_EQ(drive.node.get<od::target_position>(), 1);
+    EXPECT_EQ(drive.node.get<od::target_velocity>(), 2);
+  }
 }
 
 }  // namespace

@@ -64,25 +64,28 @@ TEST(Manual003, IsNotGuardedWhileItHasAHeartbeat) {
 
 // SYNC and EMCY
 
-// shows 003.66
+// shows 003.66, 003.179
 TEST(Manual003, ConsumesSyncAtTheCobIdOf1005h) {
   DigitalInputs module;
   write(module, 0x1800, 2, 1, 1);
   EXPECT_EQ(module.ask("605 23 05 10 00 80 00 00 40"), "585 80 05 10 00 30 00 09 06");
   EXPECT_EQ(module.ask("605 23 05 10 00 80 00 00 20"), "585 80 05 10 00 30 00 09 06");
+  EXPECT_EQ(module.ask("605 23 05 10 00 A0 00 00 80"), "585 60 05 10 00 00 00 00 00");
   EXPECT_EQ(module.ask("605 23 05 10 00 A0 00 00 00"), "585 60 05 10 00 00 00 00 00");
   module.ask(bench::start);
   EXPECT_EQ(module.ask("080"), "");
   EXPECT_EQ(module.ask("0A0"), "185 00 00");
 }
 
-// shows 003.68
+// shows 003.68, 003.152
 TEST(Manual003, SendsEmcyAtTheCobIdOf1014hOrNotAtAll) {
   DigitalOutputs module;
   module.ask(bench::start);
   EXPECT_EQ(module.ask("605 23 14 10 00 85 00 00 80"), "585 60 14 10 00 00 00 00 00");
   EXPECT_EQ(module.ask("205 00"), "");
   module.ask("205 00 00");
+  EXPECT_EQ(module.ask("605 23 14 10 00 85 00 00 20"), "585 80 14 10 00 30 00 09 06");
+  EXPECT_EQ(module.ask("605 23 14 10 00 85 00 00 40"), "585 80 14 10 00 30 00 09 06");
   EXPECT_EQ(module.ask("605 23 14 10 00 90 00 00 00"), "585 60 14 10 00 00 00 00 00");
   EXPECT_EQ(module.ask("205 00"), "090 10 82 11 09 00 00 00 00");
 }
@@ -114,7 +117,7 @@ constexpr Emergency emergencies[] = {
     {0x8140, ErrorRegister::communication, 8, "085 40 81 11 08 00 00 00 00"},
 };
 
-// shows 003.82
+// shows 003.82, 003.127
 TEST(Manual003, SendsTheEmergenciesThatItsFirmwareFinds) {
   for (const auto& [code, bits, detail, frame] : emergencies) {
     DigitalOutputs module;
@@ -125,12 +128,30 @@ TEST(Manual003, SendsTheEmergenciesThatItsFirmwareFinds) {
   }
 }
 
-// shows 003.79
+// shows 003.79, 003.172
 TEST(Manual003, TellsThatItHasBeenAskedToReset) {
   DigitalOutputs node_reset;
   EXPECT_EQ(node_reset.ask(bench::reset_node), "085 00 FF 80 0A 00 00 00 00 | 705 00");
   DigitalOutputs communication_reset;
   EXPECT_EQ(communication_reset.ask(bench::reset_communication), "085 00 FF 80 0A 00 00 00 00 | 705 00");
+}
+
+// shows 003.79, 003.173
+TEST(Manual003, RecordsThatItHasBeenAskedToReset) {
+  for (const char* const reset : {bench::reset_node, bench::reset_communication}) {
+    SCOPED_TRACE(reset);
+    DigitalOutputs module;
+    module.ask(bench::start);
+    module.ask("205 12");
+    module.ask(reset);
+    EXPECT_EQ(module.ask("605 40 03 10 00 00 00 00 00"), "585 4F 03 10 00 02 00 00 00");
+    EXPECT_EQ(module.ask("605 40 03 10 01 00 00 00 00"), "585 43 03 10 01 00 FF 0A 00");
+    EXPECT_EQ(module.ask("605 40 03 10 02 00 00 00 00"), "585 43 03 10 02 10 82 09 00");
+    EXPECT_EQ(module.ask("605 40 01 10 00 00 00 00 00"), "585 4F 01 10 00 00 00 00 00");
+    for (int i = 0; i < 5; ++i) module.ask(reset);
+    EXPECT_EQ(module.ask("605 40 03 10 00 00 00 00 00"), "585 4F 03 10 00 05 00 00 00");
+    EXPECT_EQ(module.ask("605 40 03 10 05 00 00 00 00"), "585 43 03 10 05 00 FF 0A 00");
+  }
 }
 
 // shows 003.80, 003.81

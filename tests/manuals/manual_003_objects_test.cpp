@@ -31,7 +31,7 @@ constexpr std::uint32_t not_valid = 0x8000'0000;
 
 // Object dictionary
 
-// shows 003.18, 003.28, 003.66, 003.83, 003.96
+// shows 003.18, 003.28, 003.66, 003.83, 003.96, 003.137
 TYPED_TEST(EveryModule, HasTheGeneralObjects) {
   constexpr manual::Entry entries[] = {
       {0x1001, 0, 1, ro, 0}, {0x1003, 0, 1, ro, 0},     {0x1005, 0, 4, rw, 0x80},  {0x100C, 0, 2, rw, 0},
@@ -42,7 +42,34 @@ TYPED_TEST(EveryModule, HasTheGeneralObjects) {
   manual::expect_entries(this->module, entries);
 }
 
-// shows 003.32, 003.36, 003.96
+// The entries whose default value is "---": their type is that of the answer, and they are read-only.
+// shows 003.136, 003.137
+TYPED_TEST(EveryModule, HasTheGeneralObjectsWithoutADefaultValue) {
+  struct Row {
+    std::uint16_t index;
+    std::uint8_t sub_index;
+    const char* answer;  ///< command, index and sub-index
+  };
+  constexpr Row rows[] = {
+      {0x1000, 0, "585 43 00 10 00"}, {0x1001, 0, "585 4F 01 10 00"}, {0x1008, 0, "585 41 08 10 00"},
+      {0x1009, 0, "585 41 09 10 00"}, {0x100A, 0, "585 41 0A 10 00"}, {0x1018, 1, "585 43 18 10 01"},
+      {0x1018, 2, "585 43 18 10 02"}, {0x1018, 3, "585 43 18 10 03"}, {0x1018, 4, "585 43 18 10 04"},
+  };
+  for (const auto& [index, sub_index, answer] : rows) {
+    EXPECT_EQ(this->module.ask(manual::sdo("605", 0x40, index, sub_index, 0)).substr(0, 15), answer);
+    EXPECT_EQ(manual::write(this->module, index, sub_index, 4, 0), manual::refused(index, sub_index, 0x0601'0002));
+  }
+  for (std::uint8_t error = 1; error <= 5; ++error) {
+    this->module.node.emergency(0x5000, canopen::ErrorRegister::manufacturer, {2});
+    this->module.pass(0s);
+    EXPECT_EQ(this->module.ask(manual::sdo("605", 0x40, 0x1003, error, 0)),
+              manual::sdo("585", 0x43, 0x1003, error, 0x0002'5000));
+    EXPECT_EQ(manual::write(this->module, 0x1003, error, 4, 0), manual::refused(0x1003, error, 0x0601'0002));
+  }
+  EXPECT_EQ(this->module.ask("605 40 03 10 06 00 00 00 00"), "585 80 03 10 06 11 00 09 06");
+}
+
+// shows 003.32, 003.36, 003.96, 003.132, 003.138, 003.139, 003.181
 TYPED_TEST(EveryModule, HasTenPdosOfEachDirection) {
   constexpr std::uint32_t rpdos[] = {0x205, 0x305, 0x405, 0x505};
   constexpr std::uint32_t tpdos[] = {0x185, 0x285, 0x385, 0x485};
@@ -94,7 +121,7 @@ TYPED_TEST(EveryModule, HasNoWritableEntryOfMoreThanFourBytes) {
       });
 }
 
-// shows 003.93
+// shows 003.93, 003.99
 TEST(Manual003, TellsItsKindInTheDeviceType) {
   EXPECT_EQ(DigitalInputs{}.ask("605 40 00 10 00 00 00 00 00"), "585 43 00 10 00 91 01 01 00");
   EXPECT_EQ(DigitalOutputs{}.ask("605 40 00 10 00 00 00 00 00"), "585 43 00 10 00 91 01 02 00");

@@ -28,7 +28,7 @@ constexpr std::uint32_t invalid_value = 0x0609'0030;
 
 // PDO parameters
 
-// shows 003.33, 003.34
+// shows 003.33, 003.34, 003.152
 TEST(Manual003, ChangesACobIdWhileThePdoIsNotValid) {
   DigitalOutputs module;
   EXPECT_EQ(module.ask("605 23 00 14 01 22 02 00 00"), "585 80 00 14 01 30 00 09 06");
@@ -46,7 +46,7 @@ TEST(Manual003, ChangesACobIdWhileThePdoIsNotValid) {
   EXPECT_EQ(module.node.get<Output>(), 0x12);
 }
 
-// shows 003.33, 003.62, 003.63
+// shows 003.33, 003.62, 003.63, 003.161
 TEST(Manual003, AnswersRemoteFramesWhereBit30Allows) {
   DigitalInputs module;
   EXPECT_EQ(module.ask(bench::start), "185 00 00");
@@ -57,10 +57,11 @@ TEST(Manual003, AnswersRemoteFramesWhereBit30Allows) {
   EXPECT_EQ(module.ask("185 R 0"), "");
 }
 
+// shows 003.141
 TEST(Manual003, RefusesTheCanIdsThatCiA301Reserves) {
   DigitalOutputs module;
-  for (const std::uint32_t can_id :
-       {0x000u, 0x001u, 0x101u, 0x180u, 0x581u, 0x5FFu, 0x601u, 0x67Fu, 0x6E0u, 0x701u, 0x77Fu, 0x780u, 0x7FFu}) {
+  for (const std::uint32_t can_id : {0x000u, 0x001u, 0x101u, 0x180u, 0x581u, 0x5FFu, 0x601u, 0x67Fu, 0x6E0u, 0x6FFu,
+                                     0x701u, 0x77Fu, 0x780u, 0x7FFu}) {
     EXPECT_EQ(write(module, 0x1404, 1, 4, can_id), refused(0x1404, 1, invalid_value)) << can_id;
   }
   for (const std::uint32_t can_id : {0x181u, 0x580u, 0x600u, 0x680u, 0x6DFu}) {
@@ -116,7 +117,7 @@ void expect_mapping(Module& module, std::initializer_list<Mapping> mapping) {
   }
 }
 
-// shows 003.58, 003.61
+// shows 003.58, 003.61, 003.123
 TEST(Manual003, MapsDigitalChannelsToPdo1AndAnalogOnesToThoseAfterIt) {
   DigitalOutputs digital_outputs;
   expect_mapping(digital_outputs, {{0x1600, 0, 2},
@@ -237,7 +238,7 @@ TEST(Manual003, SendsTypes254And255AtAChangeByTheirTimerAndWhenAsked) {
   }
 }
 
-// shows 003.48
+// shows 003.48, 003.145
 TEST(Manual003, CountsTheInhibitTimeInMilliseconds) {
   DigitalInputs module;
   write(module, 0x1800, 1, 4, 0x8000'0185);

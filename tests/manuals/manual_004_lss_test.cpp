@@ -1,7 +1,9 @@
 /// Manual 004, the position sensor RK5C: LSS.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <canopen/host/memory_storage.hpp>
+#include <iterator>
 #include <rk5c/device.hpp>
 #include <string>
 
@@ -85,6 +87,22 @@ TEST(Manual004, AnswersLssAt7E4hInConfigurationStateOnly) {
   EXPECT_EQ(sensor.ask(inquire_node_id), "");
 }
 
+// No service inquires the bit rate or changes the LSS address.
+// shows 004.117
+TEST(Manual004, IgnoresOtherLssCommands) {
+  Memory memory;
+  LssSensor sensor{memory};
+  sensor.ask(to_configuration);
+  constexpr unsigned served[] = {0x04, 0x11, 0x13, 0x15, 0x17, 0x40, 0x41, 0x42, 0x43, 0x46, 0x47,
+                                 0x48, 0x49, 0x4A, 0x4B, 0x4C, 0x5A, 0x5B, 0x5C, 0x5D, 0x5E};
+  for (unsigned command = 0; command <= 0xFF; ++command) {
+    if (std::ranges::find(served, command) != std::end(served)) continue;
+    char request[32];
+    std::snprintf(request, sizeof request, "7E5 %02X 00 00 00 00 00 00 00", command);
+    EXPECT_EQ(sensor.ask(request), "") << request;
+  }
+}
+
 // shows 004.3, 004.4, 004.5, 004.114
 TEST(Manual004, IsSelectedByItsIdentityAlone) {
   struct Row {
@@ -141,7 +159,7 @@ TEST(Manual004, TakesNodeIds1To127) {
   }
 }
 
-// shows 004.10, 004.11, 004.13, 004.118
+// shows 004.10, 004.11, 004.13, 004.118, 004.169
 TEST(Manual004, UsesANodeIdAfterResetCommunicationAndForgetsItWithoutStore) {
   Memory memory;
   {
@@ -242,7 +260,7 @@ TEST(Manual004, SwitchesTheBitRateBetweenTwoDelays) {
   EXPECT_EQ(sensor.port.log, "stop 3 ");
 }
 
-// shows 004.22, 004.23
+// shows 004.22, 004.23, 004.167
 TEST(Manual004, IdentifiesItselfWithinTheRanges) {
   struct Row {
     const char *vendor, *product, *low_revision, *high_revision, *low_serial, *high_serial;

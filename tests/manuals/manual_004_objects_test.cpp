@@ -25,9 +25,11 @@ constexpr std::uint32_t invalid_value = 0x0609'0030;
 // Object dictionary
 
 // shows 004.26, 004.42, 004.54, 004.79..004.81, 004.91, 004.93, 004.95, 004.119..004.121, 004.123, 004.126..004.131
+// shows 004.143, 004.150..004.152, 004.155..004.157, 004.159
 TEST(Manual004, HasTheObjectsOf41) {
   constexpr manual::Entry entries[] = {
       {0x1000, 0, 4, ro, 0x000A'0196}, {0x1001, 0, 1, ro, 0},           {0x1005, 0, 4, rw, 0x80},
+      {0x1002, 0, 4, ro, 1},           {0x1018, 3, 4, ro, 0x0001'0001}, {0x1018, 4, 4, ro, 0},
       {0x1010, 0, 1, ro, 1},           {0x1010, 1, 4, rw, 1},           {0x1011, 0, 1, ro, 1},
       {0x1011, 1, 4, rw, 1},           {0x1014, 0, 4, rw, 0x85},        {0x1015, 0, 2, rw, 0},
       {0x1017, 0, 2, rw, 0},           {0x1018, 0, 1, ro, 4},           {0x1018, 1, 4, ro, 0x93},
@@ -44,7 +46,7 @@ TEST(Manual004, HasTheObjectsOf41) {
   manual::expect_entries(sensor, entries, false);
 }
 
-// shows 004.38, 004.81, 004.99, 004.124, 004.125
+// shows 004.38, 004.81, 004.99, 004.124, 004.125, 004.160
 TEST(Manual004, HasNoOtherEntries) {
   Sensor sensor;
   EXPECT_EQ(sensor.ask("605 40 18 10 05 00 00 00 00"), "585 80 18 10 05 11 00 09 06");
@@ -65,7 +67,7 @@ TEST(Manual004, HasNoWriteOnlyEntry) {
       });
 }
 
-// shows 004.29, 004.67
+// shows 004.29, 004.67, 004.151
 TEST(Manual004, TellsItsName) {
   Sensor sensor;
   EXPECT_EQ(sensor.ask("605 40 08 10 00 00 00 00 00"), "585 42 08 10 00 52 4B 35 43");
@@ -90,6 +92,67 @@ TEST(Manual004, RefusesEveryWrongLengthAlike) {
   Sensor sensor;
   EXPECT_EQ(sensor.ask("605 2F 17 10 00 00 00 00 00"), "585 80 17 10 00 10 00 07 06");
   EXPECT_EQ(sensor.ask("605 23 17 10 00 00 00 00 00"), "585 80 17 10 00 10 00 07 06");
+}
+
+// shows 004.113, 004.151, 004.153
+TEST(Manual004, HasReadOnlyStringsForItsVersions) {
+  Sensor sensor;
+  EXPECT_EQ(sensor.ask("605 40 09 10 00 00 00 00 00"), "585 42 09 10 00 31 2E 30 00");
+  EXPECT_EQ(sensor.ask("605 40 0A 10 00 00 00 00 00"), "585 42 0A 10 00 31 2E 30 00");
+  for (const unsigned string : {0x1008u, 0x1009u, 0x100Au}) {
+    const auto index = static_cast<std::uint16_t>(string);
+    EXPECT_EQ(write(sensor, index, 0, 4, 0), refused(index, 0, 0x0601'0002));
+  }
+}
+
+/// The value ranges of the entry descriptions of 4.2.
+template <class Object>
+constexpr bool has_range(std::int64_t low, std::int64_t high) {
+  return Object::low_limit == low && Object::high_limit == high;
+}
+constexpr std::int64_t lowest_32 = -2147483648;
+constexpr std::int64_t highest_32 = 2147483647;
+static_assert(has_range<od::device_type>(0x000A'0196, 0x000A'0196));
+static_assert(has_range<od::error_register>(0x00, 0x81));
+static_assert(has_range<od::manufacturer_status_register>(0x00, 0x7F));
+static_assert(has_range<od::inhibit_time_emcy>(0, 0xFFFF));
+static_assert(has_range<od::producer_heartbeat_time>(0, 0xFFFF));
+static_assert(has_range<od::identity_object::vendor_id>(0x93, 0x93));
+static_assert(has_range<od::identity_object::product_code>(0x4335'4B52, 0x4335'4B52));
+static_assert(has_range<od::sdo_server_parameter::cob_id_client_to_server_rx>(0x601, 0x67F));
+static_assert(has_range<od::sdo_server_parameter::cob_id_server_to_client_tx>(0x581, 0x5FF));
+static_assert(has_range<od::tpdo_communication_parameter_1::transmission_type>(0, 255));  // 241..251 are rejected
+static_assert(has_range<od::tpdo_communication_parameter_1::event_timer>(0, 0xFFFF));
+static_assert(has_range<od::tpdo_mapping_parameter_1::mapping_entry_1>(0x6020'0120, 0x6020'0120));
+static_assert(has_range<od::tpdo_mapping_parameter_1::mapping_entry_2>(0x6030'0110, 0x6030'0110));
+static_assert(has_range<od::number_of_cursors>(1, 1));
+static_assert(has_range<od::preset_values_for_multi_sensor_devices<1>>(lowest_32, highest_32));
+static_assert(has_range<od::position_values_for_multi_sensor_devices<1>>(lowest_32, highest_32));
+static_assert(has_range<od::speed_value<1>>(-32768, 32767));
+static_assert(has_range<od::cyclic_timer>(0, 0xFFFF));
+static_assert(!canopen::can_be_refused<od::cyclic_timer>, "the range of its type rejects no value");
+static_assert(has_range<od::measuring_step>(100'000, 100'000));
+
+// shows 004.171
+TEST(Manual004, AcceptsTheWholeValueRanges) {
+  Sensor sensor;
+  for (const std::uint32_t value : {0x0000u, 0x0001u, 0xFFFFu}) {
+    EXPECT_EQ(write(sensor, 0x1017, 0, 2, value).substr(0, 27), taken(0x1017, 0));
+    EXPECT_EQ(write(sensor, 0x1800, 5, 2, value), taken(0x1800, 5));
+    EXPECT_EQ(write(sensor, 0x6200, 0, 2, value), taken(0x6200, 0));
+  }
+  for (const std::uint32_t value : {0x8000'0000u, 0x7FFF'FFFFu}) {
+    EXPECT_EQ(write(sensor, 0x6010, 1, 4, value), taken(0x6010, 1));
+    EXPECT_EQ(sensor.ask("605 40 10 60 01 00 00 00 00"), manual::sdo("585", 0x42, 0x6010, 1, value));
+  }
+}
+
+// shows 004.165
+TEST(Manual004, HasNoNodeGuarding) {
+  Sensor sensor;
+  EXPECT_EQ(sensor.ask("705 R 1"), "");
+  EXPECT_EQ(sensor.ask("605 40 0C 10 00 00 00 00 00"), "585 80 0C 10 00 00 00 02 06");
+  EXPECT_EQ(sensor.ask("605 40 0D 10 00 00 00 00 00"), "585 80 0D 10 00 00 00 02 06");
 }
 
 // shows 004.39
@@ -182,7 +245,7 @@ TEST(Manual004, SendsEmcyAtTheCobIdOf1014hOrNotAtAll) {
   EXPECT_EQ(sensor.pass(1s), "090 00 00 00 00 00 00 00 00");
 }
 
-// shows 004.83
+// shows 004.83, 004.162
 TEST(Manual004, MovesTpdo1AndItsRemoteFrame) {
   Sensor sensor;
   sensor.ask("605 2F 00 18 02 FD 00 00 00");
@@ -218,7 +281,7 @@ TEST(Manual004, RefusesReservedTransmissionTypes) {
   }
 }
 
-// shows 004.85
+// shows 004.85, 004.147
 TEST(Manual004, SendsTypeNAtEveryNthSync) {
   for (const std::uint32_t type : {1u, 2u, 240u}) {
     Sensor sensor;
@@ -256,7 +319,7 @@ TEST(Manual004, SendsTypes252And253WhenAsked) {
   }
 }
 
-// shows 004.88, 004.134
+// shows 004.88, 004.134, 004.147
 TEST(Manual004, SendsTypes254And255EachTimeTheEventTimerElapses) {
   for (const std::uint32_t type : {254u, 255u}) {
     Sensor sensor;
@@ -287,7 +350,7 @@ TEST(Manual004, HasAFixedMapping) {
   EXPECT_EQ(sensor.ask("605 23 00 1A 01 10 01 30 60"), "585 80 00 1A 01 02 00 01 06");
 }
 
-// shows 004.92, 004.94
+// shows 004.92, 004.94, 004.161
 TEST(Manual004, SdoAndTpdo1CarryTheSameValues) {
   Sensor sensor;
   sensor.node.set<Position>(-200);
@@ -311,7 +374,7 @@ TEST(Manual004, SendsTpdo1InOperationalOnly) {
 
 // EMCY
 
-// shows 004.43, 004.109..004.112
+// shows 004.43, 004.109..004.112, 004.168
 TEST(Manual004, TellsDataSetAndHardwareErrors) {
   Sensor sensor;
   sensor.node.emergency(0x6300, ErrorRegister::generic);

@@ -3,11 +3,19 @@
 
     manuals_test.py SOURCE_DIR [--write]      --write generates docs/manuals.md
 
-NNN.md has the statements of manual NNN, one item per line: `- [NNN.n] text`.
+NNN.md has the statements of manual NNN, in one `## HEADING` per section of the manual:
+- `- [NNN.k] text` is an item, one per line.
+- `- again: NNN.3, NNN.17` names statements of this section that are items of another section.
+- `- none: REASON` is the only line of a section that has nothing to state.
+- `## Contradictions and misprints` is the last section, which the manual does not have. A file without it is in the old
+  format: its sections are not checked.
+If ../shared/seeds has the text of the manual, the sections are compared with its table of contents and its headings.
+
 - A test that shows items lists them in the lines directly above it: `// shows 003.47, 004.58..004.66` above a TEST of
   GoogleTest, `# shows ...` in a trace, or above a function or the first statement of a Python test.
 - `// open ...` is above a test that does not pass yet and therefore has a name with DISABLED_.
 - out_of_reach.tsv: numbers, one of KINDS, reason.
+- units.tsv: the units of the EDS files, as the manuals print them (units.py).
 - readings.tsv: numbers, and the reading of a statement that is unclear or contradicts another one.
 """
 
@@ -18,14 +26,22 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import value_only
+from headings import compare_with_text
+from units import check_units
+
 MANUALS = ("000", "001", "002", "003", "004")
+SHOWN = "a test verifies the statement with frames or with the live object dictionary"
 KINDS = {
-    "out of reach": "not testable with a protocol stack: hardware, a tool of the vendor, or the text of the manual itself",
-    "later": "belongs to the application or profile of the device, or to the firmware around the node",
+    "value only": "the object holds its value and has no effect; the reason names what a simulation cannot have",
+    "out of reach": "no node can show it: hardware, a tool of the vendor, a rule for people, or the text of the manual itself",
     "open": "not implemented yet, or not as the manual says",
 }
+MISPRINTS = "Contradictions and misprints"
 NUMBER = re.compile(r"(\d{3})\.(\d+)(?:\.\.\1\.(\d+))?")
 ITEM = re.compile(r"- \[(\d{3}\.\d+)\] (.+)")
+AGAIN = re.compile(r"- again: (.+)")
+NONE = re.compile(r"- none: (.+)")
 HEADING = re.compile(r"#+ (.+)")
 ANNOTATION = re.compile(r"\s*(?://|#) (shows|open) (\d{3}\.\d.*)")
 CPP_TEST = re.compile(r"(?:TYPED_)?TEST(?:_[FP])?\((\w+), (\w+)\)")
@@ -54,22 +70,70 @@ def numbers_in(text: str) -> list[str]:
     return [f"{m[1]}.{n}" for m in NUMBER.finditer(text) for n in range(int(m[2]), int(m[3] or m[2]) + 1)]
 
 
-def read_items(folder: Path, problems: list[str]) -> dict[str, Item]:
-    items: dict[str, Item] = {}
-    for manual in MANUALS:
-        heading = ""
-        for line in (folder / f"{manual}.md").read_text(encoding="utf-8").splitlines():
-            if match := ITEM.fullmatch(line):
-                if match[1] in items:
-                    problems.append(f"duplicate item [{match[1]}]")
-                if not match[1].startswith(manual):
-                    problems.append(f"{manual}.md: [{match[1]}] belongs to another manual")
-                items[match[1]] = Item(match[1], match[2], heading)
-            elif match := HEADING.fullmatch(line):
-                heading = match[1]
-            elif line.startswith("- "):
-                problems.append(f"{manual}.md: missing item number: {line}")
-    return items
+@dataclass
+class Section:
+    heading: str
+    own: list[str] = field(default_factory=list)    # numbers of its items
+    again: list[str] = field(default_factory=list)  # numbers of items of other sections
+    none: list[str] = field(default_factory=list)   # reasons of lines `- none:`
+
+
+@dataclass
+class Manual:
+    name: str
+    title: str
+    sections: list[Section] = field(default_factory=list)
+
+    @property
+    def converted(self) -> bool:
+        """Has the format of sections. TOLERATED until all files have it: files without."""
+        return any(section.heading == MISPRINTS for section in self.sections)
+
+
+def read_manual(path: Path, items: dict[str, Item], problems: list[str]) -> Manual:
+    lines = path.read_text(encoding="utf-8").splitlines()
+    manual = Manual(path.stem, lines[0].removeprefix("# "))
+    for count, line in enumerate(lines[1:], 2):
+        if match := HEADING.fullmatch(line):
+            manual.sections.append(Section(match[1]))
+            continue
+        if not line.startswith("- "):
+            continue
+        if not manual.sections:
+            problems.append(f"{path.name}:{count}: not in a section")
+            break
+        section = manual.sections[-1]
+        if match := ITEM.fullmatch(line):
+            if match[1] in items:
+                problems.append(f"duplicate item [{match[1]}]")
+            if not match[1].startswith(path.stem):
+                problems.append(f"{path.name}: [{match[1]}] belongs to another manual")
+            items[match[1]] = Item(match[1], match[2], section.heading)
+            section.own.append(match[1])
+        elif match := AGAIN.fullmatch(line):
+            section.again += numbers_in(match[1])
+        elif match := NONE.fullmatch(line):
+            section.none.append(match[1])
+        else:
+            problems.append(f"{path.name}:{count}: missing item number: {line}")
+    return manual
+
+
+def check_sections(manual: Manual, items: dict[str, Item], problems: list[str]) -> None:
+    for section in manual.sections:
+        place = f"{manual.name}.md, {section.heading}"
+        statements = section.own + section.again
+        if not statements and not section.none:
+            problems.append(f"{place}: has neither an item nor a line `- none:`")
+        if len(section.none) > 1 or (section.none and statements):
+            problems.append(f"{place}: `- none:` is not its only line")
+        for number in section.again:
+            if number not in items or not number.startswith(manual.name):
+                problems.append(f"{place}: [{number}] does not exist")
+        problems += [f"{place}: [{number}] is named twice" for number in sorted(set(statements))
+                     if statements.count(number) > 1]
+    if manual.sections[-1].heading != MISPRINTS:
+        problems.append(f"{manual.name}.md: `{MISPRINTS}` is not the last section")
 
 
 def read_rows(path: Path, columns: int, items: dict[str, Item], problems: list[str]) -> list[tuple[Item, list[str]]]:
@@ -136,10 +200,16 @@ def read_tests(tests: Path, items: dict[str, Item], problems: list[str]) -> None
 
 INTRODUCTION = """# Manuals
 
-The statements in the manuals of the five reference devices, item by item, and the test that verifies each with the device
-generated by edsc. `tests/manuals/manuals_test.py --write` generates this page from the items, readings and reasons in
-`tests/manuals` and from the annotations of the tests. A reading states how an unclear item is interpreted or shown.
+The statements in the manuals of the five reference devices, and the test that verifies each with the device generated by
+edsc. `tests/manuals/manuals_test.py --write` generates this page from the items, readings and reasons in `tests/manuals` and
+from the annotations of the tests. Each section of a manual is listed, also if it states nothing about the device. A statement
+that a manual repeats is one item; the other sections count it again. A reading states how an unclear item is interpreted or
+shown. Each statement is in one of these states:
 """
+
+
+VALUE_ONLY = """SDO and PDOs read and write these objects. They have no other effect. Objects in 1000h to 1FFFh are not listed.
+The test `value_only` compares the list with the objects that the application uses while all tests run."""
 
 
 def cell(text: str) -> str:
@@ -158,25 +228,40 @@ def count(items: list[Item], state: str) -> int:
     return sum(item.state == state for item in items)
 
 
-def document(folder: Path, items: dict[str, Item]) -> str:
-    states = ["shown", *KINDS]
-    out = [INTRODUCTION, f"| manual | items | {' | '.join(states)} |", "|---" * (len(states) + 2) + "|"]
-    for manual in [*MANUALS, ""]:
-        own = [item for item in items.values() if item.number.startswith(manual)]
-        name = manual or "all"
-        out.append(f"| {name} | {len(own)} | {' | '.join(str(count(own, state)) for state in states)} |")
-    out.append("")
+def counts(items: list[Item]) -> str:
+    return " | ".join(str(count(items, state)) for state in ("shown", *KINDS))
+
+
+def table(*header: str) -> list[str]:
+    return ["", f"| {' | '.join(header)} |", "|---" * len(header) + "|"]
+
+
+def document(source: Path, manuals: list[Manual], items: dict[str, Item], problems: list[str]) -> str:
+    states = ("shown", *KINDS)
+    out = [INTRODUCTION, f"- shown: {SHOWN}."]
     out += [f"- {kind}: {meaning}." for kind, meaning in KINDS.items()]
-    for manual in MANUALS:
-        title = (folder / f"{manual}.md").read_text(encoding="utf-8").splitlines()[0].removeprefix("# ")
-        out += ["", f"## {title}"]
-        heading = ""
-        for item in (item for item in items.values() if item.number.startswith(manual)):
-            if item.heading != heading:
-                heading = item.heading
-                out += ["", f"### {heading}", "", "| number | statement in the manual | shown by, or reason why not |"]
-                out.append("|---|---|---|")
-            out.append(f"| {item.number} | {cell(item.text)} | {describe(item)} |")
+    out += table("manual", "items", *states)
+    for name in [*MANUALS, ""]:
+        own = [item for item in items.values() if item.number.startswith(name)]
+        out.append(f"| {name or 'all'} | {len(own)} | {counts(own)} |")
+    for manual in manuals:
+        out += ["", f"## {manual.title}", *table("section", "statements", *states)]
+        for section in manual.sections:
+            own = [items[number] for number in section.own + section.again if number in items]
+            reason = f" ({section.none[0]})" if section.none else ""
+            out.append(f"| {cell(section.heading + reason)} | {len(own)} | {counts(own)} |")
+        for section in manual.sections:
+            if not section.own:
+                continue
+            out += ["", f"### {cell(section.heading)}"]
+            out += table("number", "statement in the manual", "shown by, or reason why not")
+            for item in (items[number] for number in section.own):
+                out.append(f"| {item.number} | {cell(item.text)} | {describe(item)} |")
+        for device in value_only.DEVICES[manual.name]:
+            rows = value_only.document(source, device, problems)
+            if rows:
+                out += ["", f"### Objects of {device} with a value only", "", VALUE_ONLY]
+                out += table("object", "name", "place in the manual", "reason") + rows
     return "\n".join(out) + "\n"
 
 
@@ -184,7 +269,12 @@ def main() -> int:
     source = Path(sys.argv[1]).resolve()
     folder = source / "tests" / "manuals"
     problems: list[str] = []
-    items = read_items(folder, problems)
+    items: dict[str, Item] = {}
+    manuals = [read_manual(folder / f"{name}.md", items, problems) for name in MANUALS]
+    for manual in manuals:
+        if manual.converted:
+            check_sections(manual, items, problems)
+            compare_with_text(manual, source.parent / "shared" / "seeds", problems)
     for item, (kind, reason) in read_rows(folder / "out_of_reach.tsv", 3, items, problems):
         if item.kind:
             problems.append(f"out_of_reach.tsv: duplicate item [{item.number}]")
@@ -194,9 +284,10 @@ def main() -> int:
     for item, (reading,) in read_rows(folder / "readings.tsv", 2, items, problems):
         item.reading = reading
     read_tests(source / "tests", items, problems)
+    check_units(source, problems)
     problems += [f"[{item.number}] has neither a test nor a reason: {item.text}" for item in items.values()
                  if item.state == "missing"]
-    page, text = source / "docs" / "manuals.md", document(folder, items)
+    page, text = source / "docs" / "manuals.md", document(source, manuals, items, problems)
     if "--write" in sys.argv:
         page.write_text(text, encoding="utf-8")
     elif not page.exists() or page.read_text(encoding="utf-8") != text:

@@ -1,6 +1,4 @@
 /// The runnable servo drive without modes of operation: the statements of manual 000 about its application.
-#include "cpc_tc1/cpc_tc1.hpp"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -9,28 +7,12 @@
 #include <optional>
 #include <string>
 
-#include "node_bench.hpp"
+#include "cpc_tc1_bench.hpp"
 
 namespace {
 
+using namespace cpc_tc1_bench;
 using namespace std::chrono_literals;
-using canopen::cia402::State;
-namespace od = cpc_tc1::od;
-
-/// Operational; the first TPDO1 to TPDO4 have been removed. RPDO2 and RPDO3 are valid.
-struct Servo : bench::NodeBench<cpc_tc1_node::CpcTc1> {
-  Servo() {
-    ask("605 23 01 14 01 05 03 00 00");
-    ask("605 23 02 14 01 05 04 00 00");
-    ask(bench::start);
-  }
-  void enable() {
-    for (const char* frame : {"205 06 00", "205 07 00", "205 0F 00"}) ask(frame);
-    EXPECT_EQ(app->drive().state(), State::operation_enabled);
-  }
-  [[nodiscard]] std::uint32_t status() { return app->node().template get<od::manufacturer_status_register>(); }
-  [[nodiscard]] std::uint16_t statusword() { return app->node().template get<od::statusword>(); }
-};
 
 TEST(CpcTc1Node, TellsItsStatewordInTpdo1) {
   Servo drive;
@@ -168,7 +150,19 @@ TEST(CpcTc1Node, GetsItsNodeIdAndItsBitRateByLssAndKeepsThem) {  // chapter 13; 
   for (const char* suffix : {"", ".application", ".lss"}) std::filesystem::remove(store + suffix);
 }
 
-// shows 000.150
+// shows 000.286
+TEST(CpcTc1Node, TheMasterSelectsItByItsIdentityAndAssignsANodeId) {
+  bench::NodeBench<cpc_tc1_node::CpcTc1> drive;
+  EXPECT_EQ(drive.ask("7E5 40 F5 03 00 00 00 00 00"), "");                             // 1018h:01
+  EXPECT_EQ(drive.ask("7E5 41 01 00 00 00 00 00 00"), "");                             // 1018h:02
+  EXPECT_EQ(drive.ask("7E5 42 01 00 00 00 00 00 00"), "");                             // 1018h:03
+  EXPECT_EQ(drive.ask("7E5 43 34 12 01 15 00 00 00"), "7E4 44 00 00 00 00 00 00 00");  // 1018h:04
+  EXPECT_EQ(drive.ask("7E5 11 2A 00 00 00 00 00 00"), "7E4 11 00 00 00 00 00 00 00");
+  EXPECT_EQ(drive.ask(lss_waiting), "");
+  EXPECT_EQ(drive.ask("000 82 05"), "72A 00");
+}
+
+// shows 000.150, 000.350
 TEST(CpcTc1Node, TakesTheBitRatesOfChapter13AndNoOther) {
   bench::NodeBench<cpc_tc1_node::CpcTc1> drive;
   drive.ask(lss_configuration);

@@ -1,45 +1,21 @@
 /// The runnable servo drive with its own modes: the statements of manual 002 about its application.
-#include "cpd/cpd.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <string>
 
-#include "node_bench.hpp"
+#include "cpd_bench.hpp"
 
 namespace {
 
 using namespace std::chrono_literals;
+using bench::Servo;
 using canopen::cia402::State;
 namespace od = cpd::od;
 
 constexpr auto next_error = "605 40 3C 30 01 00 00 00 00";
 constexpr auto oldest_error = "605 2B 3B 30 05 01 00 00 00";
-
-/// Operational: T_PDO1 with the statusword.
-struct Servo : bench::NodeBench<cpd_node::Cpd> {
-  explicit Servo(const std::string& store = {}) : NodeBench{canopen::NodeId{5}, store} { ask(bench::start); }
-
-  void enable(int mode) {
-    set<od::modes_of_operation>(static_cast<std::int8_t>(mode));
-    ask("205 0F 00");
-    EXPECT_EQ(app->drive().state(), State::operation_enabled);
-  }
-  template <class O>
-  void set(typename O::type value) {
-    EXPECT_EQ(app->node().template set<O>(value), canopen::ok);
-    app->on_time(now);
-    bus.take();
-  }
-  template <class O>
-  [[nodiscard]] typename O::type get() {
-    return app->node().template get<O>();
-  }
-  [[nodiscard]] State state() const { return app->drive().state(); }
-  [[nodiscard]] std::uint16_t statusword() { return get<od::statusword>(); }
-};
 
 std::string error_number(unsigned code) {
   return bench::text(
@@ -57,7 +33,7 @@ TEST(CpdNode, IsReadyToSwitchOnByItself) {
   EXPECT_EQ(drive.ask("205 0F 00"), "185 37 46");
 }
 
-// shows 002.104
+// shows 002.104, 002.256, 002.257, 002.263
 TEST(CpdNode, HasItsModes) {
   Servo drive;
   const auto mode = [](int number, const char* answer) {
@@ -75,11 +51,11 @@ TEST(CpdNode, HasItsModes) {
   EXPECT_EQ(drive.ask(mode(-5, "request")), "585 80 60 60 00 30 00 09 06");
 }
 
-// shows 002.35, 002.39, 002.116, 002.188
+// shows 002.35, 002.39, 002.116, 002.188, 002.240, 002.318, 002.319
 TEST(CpdNode, SendsAnEmcyForAnErrorAndGoesToFault) {
   Servo drive;
   drive.enable(1);
-  EXPECT_EQ(drive.input("fault 0x2212 0x02"), "085 12 22 03 00 00 00 00 00 | 185 38 66");
+  EXPECT_EQ(drive.input("fault 0x2212 0x20"), "085 12 22 21 00 00 00 00 00 | 185 38 66");
   EXPECT_EQ(drive.ask("605 40 3F 60 00 00 00 00 00"), "585 4B 3F 60 00 12 22 00 00");
   EXPECT_EQ(drive.ask("605 40 41 20 00 00 00 00 00"), "585 4B 41 20 00 20 00 00 00");  // bit 5
   EXPECT_EQ(drive.ask("205 80 00"), "085 00 00 00 00 00 00 00 00 | 185 31 66");
@@ -123,7 +99,7 @@ TEST(CpdNode, HasErrorsOfServicesIn603FhAndInItsErrorMemory) {  // 3.5.1
   Servo drive;
   EXPECT_EQ(drive.ask("205 0F"), "085 10 82 11 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 40 3F 60 00 00 00 00 00"), "585 4B 3F 60 00 10 82 00 00");
-  EXPECT_EQ(drive.input("fault 0x2212 0x02").substr(0, 27), "085 12 22 13 00 00 00 00 00");
+  EXPECT_EQ(drive.input("fault 0x2212 0x20").substr(0, 27), "085 12 22 31 00 00 00 00 00");
   EXPECT_EQ(drive.ask(next_error), error_number(0x8210));
   EXPECT_EQ(drive.ask(next_error), error_number(0x2212));
   EXPECT_EQ(drive.ask(next_error), error_number(0));
@@ -148,7 +124,7 @@ TEST(CpdNode, KeepsTheLast20ErrorsAndReadsThemFromTheOldestOn) {
   for (const char* suffix : {"", ".application", ".lss"}) std::filesystem::remove(store + suffix);
 }
 
-// shows 002.99, 002.181
+// shows 002.99, 002.181, 002.314
 TEST(CpdNode, SavesAndResetsItsSettingsBy3004h) {
   Servo drive;
   drive.ask("605 2B 29 30 04 64 00 00 00");
@@ -162,7 +138,7 @@ TEST(CpdNode, SavesAndResetsItsSettingsBy3004h) {
   EXPECT_EQ(drive.ask("605 2B 04 30 08 02 00 00 00"), "585 80 04 30 08 30 00 09 06");
 }
 
-// shows 002.74
+// shows 002.74, 002.459
 TEST(CpdNode, TakesAndSendsAPdoWhileBit31OfItsCobIdIs0) {
   Servo drive;
   drive.enable(3);
@@ -180,7 +156,7 @@ TEST(CpdNode, TakesAndSendsAPdoWhileBit31OfItsCobIdIs0) {
   EXPECT_EQ(drive.ask("080").substr(0, 4), "285 ");
 }
 
-// shows 002.88
+// shows 002.88, 002.232, 002.484, 002.491, 002.494, 002.526, 002.539, 002.542
 TEST(CpdNode, MapsPdo4OverTheBusAndPdo1To3Never) {
   Servo drive;
   for (const char* object : {"00 16", "01 16", "02 16", "00 1A", "01 1A", "02 1A"}) {
@@ -262,7 +238,7 @@ TEST(CpdNode, LosesItsReferenceBeyondTheRangeOfTheAxis) {
   EXPECT_EQ(drive.statusword() & 0x8000, 0);
 }
 
-// shows 002.114
+// shows 002.114, 002.297, 002.305, 002.306
 TEST(CpdNode, LatchesItsLimitsIn301Ch) {
   Servo drive;
   drive.set<od::target_velocity>(100);
@@ -289,7 +265,7 @@ TEST(CpdNode, LatchesItsLimitsIn301Ch) {
   EXPECT_EQ(drive.ask("605 40 1C 30 08 00 00 00 00"), "585 4B 1C 30 08 04 00 00 00");
 }
 
-// shows 002.34, 002.35, 002.115
+// shows 002.34, 002.35, 002.115, 002.304
 TEST(CpdNode, ReportsAFollowingErrorBeyond6065h) {
   Servo drive;
   drive.set<od::following_error_window>(500);
@@ -303,7 +279,7 @@ TEST(CpdNode, ReportsAFollowingErrorBeyond6065h) {
   EXPECT_EQ(drive.ask("605 40 01 10 00 00 00 00 00"), "585 4F 01 10 00 21 00 00 00");
 }
 
-// shows 002.108
+// shows 002.108, 002.280
 TEST(CpdNode, MovesByHandInEitherDirectionSlowAndFast) {
   Servo drive;
   drive.set<od::manual_movement::slow_speed>(100);
@@ -320,7 +296,7 @@ TEST(CpdNode, MovesByHandInEitherDirectionSlowAndFast) {
   }
 }
 
-// shows 002.109
+// shows 002.109, 002.271, 002.274
 TEST(CpdNode, TakesCurrentAndSpeedFromParametersWhenTheyAreSelected) {
   Servo drive;
   drive.set<od::current_control::current_setpoint>(1'000);
@@ -341,7 +317,7 @@ TEST(CpdNode, TakesCurrentAndSpeedFromParametersWhenTheyAreSelected) {
   EXPECT_EQ(drive.app->axis().velocity(), -300);
 }
 
-// shows 002.110
+// shows 002.110, 002.277, 002.278
 TEST(CpdNode, FollowsPulsesByItsGear) {
   Servo drive;
   drive.set<od::electronic_gear::gear_numerator>(2);

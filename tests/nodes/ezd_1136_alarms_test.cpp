@@ -21,7 +21,7 @@ struct AlarmRow {
   const char* lamp;
 };
 
-// shows 001.44, 001.45, 001.109
+// shows 001.44, 001.45, 001.109, 001.146, 001.158, 001.193, 001.223
 TEST(Ezd1136Node, SendsAnAlarmAsTheLowByteOfItsCode) {
   constexpr AlarmRow rows[] = {
       {"alarm 10", "085 0A 00 03 00 00 00 00 00", "LED 1 green + 1 red"},
@@ -54,7 +54,7 @@ TEST(Ezd1136Node, SendsAnAlarmAsTheLowByteOfItsCode) {
   EXPECT_EQ(drive.input("alarm 17"), "?");
 }
 
-// shows 001.44, 001.45
+// shows 001.44, 001.45, 001.145, 001.146
 TEST(Ezd1136Node, AddsWarningsInTheHighByteOfTheCode) {
   Stepper drive;
   EXPECT_EQ(drive.input("warning 2048 on"), "085 00 08 81 00 00 00 00 00 | 185 50 02 00 08 01");
@@ -70,7 +70,7 @@ TEST(Ezd1136Node, AddsWarningsInTheHighByteOfTheCode) {
   EXPECT_EQ(drive.get<od::drive_error_code>(), 256 + 512 + 1'024 + 8'192);
 }
 
-// shows 001.46
+// shows 001.46, 001.95, 001.157
 TEST(Ezd1136Node, RaisesAlarms13And14OutsideItsSupply) {
   Stepper drive;
   EXPECT_EQ(drive.input("supply 18"), "");
@@ -106,7 +106,7 @@ TEST(Ezd1136Node, RaisesAlarm50WhenTheBusIsLostWhileEnabledAnd100WhenItIsStarted
   EXPECT_EQ(not_enabled.pass(200ms).find("085 32"), std::string::npos);
 }
 
-// shows 001.49, 001.61, 001.62
+// shows 001.49, 001.61, 001.62, 001.199
 TEST(Ezd1136Node, WarnsAtItsLimits) {
   Stepper drive;
   EXPECT_EQ(drive.input("limit positive on"), "085 00 08 81 00 00 00 00 00 | 185 50 0B 00 08 01");  // bits 8 and 11
@@ -130,7 +130,7 @@ TEST(Ezd1136Node, HasA38hInTheLowByteOfAFault) {
   EXPECT_EQ(drive.input("alarm 16"), "085 10 00 81 00 00 00 00 00 | 185 38 02 10 00 01");
 }
 
-// shows 001.45
+// shows 001.45, 001.149
 TEST(Ezd1136Node, RaisesAlarm25ForAPositionDeviation) {
   Stepper drive;
   drive.set<od::position_error_threshold>(1'000);

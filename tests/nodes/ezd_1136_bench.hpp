@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <string>
 
+#include "manuals/manual_bench.hpp"
 #include "node_bench.hpp"
 
 namespace ezd_1136_bench {
@@ -33,6 +34,23 @@ struct Stepper : bench::NodeBench<ezd_1136_node::Ezd1136> {
     const std::string answer = "585 60 40 60 00 00 00 00 00";
     EXPECT_EQ(got.substr(0, answer.size()), answer);
     return got.size() > answer.size() ? got.substr(answer.size() + 3) : "";
+  }
+  /// Writes an entry over SDO; returns what follows the answer.
+  std::string put(std::uint16_t index, std::uint8_t sub_index, unsigned bytes, std::uint32_t value) {
+    const std::string got = manual::write(*this, index, sub_index, bytes, value);
+    const std::string answer = manual::taken(index, sub_index);
+    EXPECT_EQ(got.substr(0, answer.size()), answer);
+    return got.size() > answer.size() ? got.substr(answer.size() + 3) : "";
+  }
+  /// Reads an entry of up to four bytes over SDO; its sign is that of an integer of its size.
+  std::int32_t read(std::uint16_t index, std::uint8_t sub_index = 0) {
+    const canopen::Frame answer = bench::frame(ask(manual::sdo("605", 0x40, index, sub_index, 0)));
+    EXPECT_EQ(answer.id, 0x585u);
+    EXPECT_EQ(answer.data[0] & 0xE3, 0x43);
+    const unsigned unused = 8 * ((answer.data[0] >> 2 & 3u));
+    std::uint32_t bits = 0;
+    for (unsigned i = 0; i < 4; ++i) bits |= std::uint32_t{answer.data[4 + i]} << (8 * i);
+    return static_cast<std::int32_t>(bits << unused) >> unused;
   }
   void enable() {
     control(0x06);

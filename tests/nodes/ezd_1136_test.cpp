@@ -21,7 +21,7 @@ constexpr auto to_velocity = "605 2F 60 60 00 03 00 00 00";
 constexpr auto to_homing = "605 2F 60 60 00 06 00 00 00";
 constexpr auto to_csp = "605 2F 60 60 00 08 00 00 00";
 
-// shows 001.50, 001.91
+// shows 001.50, 001.91, 001.159
 TEST(Ezd1136Node, TellsItsRunStateIn206DhAndByItsLamp) {
   Stepper drive;
   EXPECT_EQ(drive.get<od::run_state>(), 1);
@@ -38,7 +38,7 @@ TEST(Ezd1136Node, TellsItsRunStateIn206DhAndByItsLamp) {
   EXPECT_TRUE(drive.logged("LED green flashing"));
 }
 
-// shows 001.72
+// shows 001.72, 001.99, 001.194
 TEST(Ezd1136Node, MovesInPulsesHundredthsOfATurnPerSecondAndTurnsPerSecondSquared) {
   Stepper drive;
   drive.set<od::profile_acceleration>(5);  // turns per second squared
@@ -51,10 +51,10 @@ TEST(Ezd1136Node, MovesInPulsesHundredthsOfATurnPerSecondAndTurnsPerSecondSquare
   EXPECT_EQ(drive.get<od::velocity_actual_value>(), 1'000);
   const std::int32_t from = drive.app->axis().position();
   drive.pass(1s);
-  EXPECT_EQ(drive.app->axis().position() - from, 100'000);  // pulses: 10 turns
+  EXPECT_EQ(drive.app->axis().position() - from, 40'000);  // pulses of 20F2h: 10 turns
 }
 
-// shows 001.75
+// shows 001.75, 001.162
 TEST(Ezd1136Node, TellsItsCurrentAndItsAnalogueInputInThousandths) {
   Stepper drive;
   EXPECT_NE(drive.input("current 1.25"), "?");
@@ -70,7 +70,7 @@ struct QuickStop {
   State then;
 };
 
-// shows 001.51
+// shows 001.51, 001.228
 TEST(Ezd1136Node, StopsQuicklyAsItsOptionSays) {
   constexpr QuickStop rows[] = {
       {1, 100ms, State::switch_on_disabled},
@@ -138,7 +138,7 @@ TEST(Ezd1136Node, TakesItsModesAndNoOther) {
   EXPECT_EQ(drive.ask("605 40 02 65 00 00 00 00 00"), "585 43 02 65 00 25 00 00 00");
 }
 
-// shows 001.54, 001.57, 001.58, 001.59, 001.65
+// shows 001.54, 001.57, 001.58, 001.59, 001.65, 001.104, 001.228
 TEST(Ezd1136Node, FollowsTheControlword) {
   Stepper drive;
   EXPECT_EQ(drive.statusword(), 0x0250);  // bit 4: voltage enabled; bit 5 is 0
@@ -182,7 +182,7 @@ TEST(Ezd1136Node, GoesToAPositionWhenBit4RisesWithBit5) {
   EXPECT_EQ(drive.get<od::position_actual_value>(), 4'000);
 }
 
-// shows 001.56, 001.66, 001.106
+// shows 001.56, 001.66, 001.106, 001.205
 TEST(Ezd1136Node, RunsWhenItIsEnabledInProfileVelocity) {
   Stepper drive;
   drive.ask(to_velocity);
@@ -195,7 +195,7 @@ TEST(Ezd1136Node, RunsWhenItIsEnabledInProfileVelocity) {
   EXPECT_EQ(drive.get<od::velocity_actual_value>(), -500);
 }
 
-// shows 001.56, 001.63, 001.68
+// shows 001.56, 001.63, 001.68, 001.107, 001.152, 001.228
 TEST(Ezd1136Node, HomesWithBit4AndTellsAnErrorInBit13) {
   Stepper drive;
   drive.set<od::homing_speeds<1>>(200);

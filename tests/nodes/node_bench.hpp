@@ -9,6 +9,7 @@
 
 #include "shared/input_line.hpp"
 #include "shared/surroundings.hpp"
+#include "support/access_probe.hpp"
 #include "support/bench.hpp"
 
 namespace bench {
@@ -24,6 +25,7 @@ class NodeBench {
 
   /// Returns what it sends at power-on.
   std::string power_on() {
+    const InApplication here;
     app.emplace(bus, around);
     app->start(now);
     return boot_up = bus.take();
@@ -35,14 +37,19 @@ class NodeBench {
 
   /// Returns what it sends in response to this frame.
   std::string ask(const std::string& request) {
+    const InApplication here;
     app->on_frame(frame(request), now);
     return bus.take();
   }
   /// Returns what it sends in response to this line; "?" if it does not know the line.
-  std::string input(std::string_view line) { return app->input(nodes::InputLine{line}, now) ? bus.take() : "?"; }
+  std::string input(std::string_view line) {
+    const InApplication here;
+    return app->input(nodes::InputLine{line}, now) ? bus.take() : "?";
+  }
 
   /// Returns what it sends during this time.
   std::string pass(canopen::Duration span) {
+    const InApplication here;
     const canopen::TimePoint end = now + span;
     while (const auto deadline = app->next_deadline()) {
       if (*deadline > end) break;

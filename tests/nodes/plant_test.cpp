@@ -33,10 +33,19 @@ class ModuleStation final : public trace::Station {
  public:
   explicit ModuleStation(canopen::NodeId node_id) : around_{node_id} { module.emplace(*this, around_); }
 
-  void power_on(canopen::TimePoint now) override { module->start(now); }
+  void power_on(canopen::TimePoint now) override {
+    const bench::InApplication here;
+    module->start(now);
+  }
   void power_off() override { FAIL() << "the modules of a plant stay on"; }
-  void on_frame(const canopen::Frame& frame, canopen::TimePoint now) override { module->on_frame(frame, now); }
-  void on_time(canopen::TimePoint now) override { module->on_time(now); }
+  void on_frame(const canopen::Frame& frame, canopen::TimePoint now) override {
+    const bench::InApplication here;
+    module->on_frame(frame, now);
+  }
+  void on_time(canopen::TimePoint now) override {
+    const bench::InApplication here;
+    module->on_time(now);
+  }
   [[nodiscard]] std::optional<canopen::TimePoint> next_deadline() const override { return module->next_deadline(); }
 
   /// Sets what an input measures, independent of its wire.
@@ -194,6 +203,7 @@ TEST(ModuleNode, ScalesItsAnalogueChannels) {
   EXPECT_TRUE(outputs.logged("analogue 1 5.002 V"));
 }
 
+// shows 003.183
 TEST(ModuleNode, ShowsItsStateAndItsErrorsWithItsIndicators) {
   bench::NodeBench<Can2057c> module;
   EXPECT_TRUE(module.logged("RUN blinking"));

@@ -82,6 +82,18 @@ TEST(Rk5cNode, TellsThatTheMagnetIsMissing) {
   EXPECT_EQ(sensor.ask(read_position), position(2000));
 }
 
+// shows 004.49
+TEST(Rk5cNode, TellsThatThereAreTwoMagnets) {
+  RunningSensor sensor;
+  sensor.input("magnet two");
+  sensor.pass(1ms);
+  EXPECT_EQ(sensor.ask(read_status), status(0x04));
+  EXPECT_EQ(sensor.ask(preset_1000), "585 80 10 60 01 20 00 00 08");
+  sensor.input("magnet on");
+  sensor.pass(1ms);
+  EXPECT_EQ(sensor.ask(read_status), status(0x01));
+}
+
 // shows 004.50, 004.122
 TEST(Rk5cNode, TellsZeroesOutOfItsRange) {
   RunningSensor sensor;
@@ -205,7 +217,7 @@ TEST(Rk5cNode, KeepsTheOffsetBeyondPowerOffWhenItIsSaved) {
   EXPECT_EQ(sensor.ask(read_preset), "585 42 10 60 01 00 00 00 00");
 }
 
-// shows 004.72
+// shows 004.72, 004.166
 TEST(Rk5cNode, LosesTheOffsetWithThePowerCycleAfterLoad) {
   RunningSensor sensor;
   sensor.ask(preset_1000);
@@ -234,6 +246,57 @@ TEST(Rk5cNode, HasOneCyclicTimerInTwoPlaces) {
   EXPECT_EQ(sensor.pass(1s), "");
 }
 
+// shows 004.158, 004.170
+TEST(Rk5cNode, HasOneCyclicTimerAfterEachReset) {
+  for (const char* const reset : {bench::reset_node, bench::reset_communication}) {
+    SCOPED_TRACE(reset);
+    RunningSensor sensor;
+    sensor.ask("605 2B 00 62 00 FF FF 00 00");
+    EXPECT_EQ(sensor.ask("605 40 00 18 05 00 00 00 00"), "585 42 00 18 05 FF FF 00 00");
+    sensor.ask(bench::start);
+    EXPECT_EQ(sensor.pass(65'534ms), "");
+    EXPECT_EQ(sensor.pass(1ms), "185 00 00 00 00 00 00");
+    EXPECT_EQ(sensor.ask(reset), "705 00");
+    EXPECT_EQ(sensor.ask("605 40 00 18 05 00 00 00 00"), "585 42 00 18 05 01 00 00 00");
+    EXPECT_EQ(sensor.ask("605 40 00 62 00 00 00 00 00"), "585 42 00 62 00 01 00 00 00");
+    sensor.ask("605 2B 00 62 00 05 00 00 00");
+    EXPECT_EQ(sensor.ask(save), saved);
+    sensor.ask("605 2B 00 62 00 07 00 00 00");
+    EXPECT_EQ(sensor.ask(reset), "705 00");
+    EXPECT_EQ(sensor.ask("605 40 00 18 05 00 00 00 00"), "585 42 00 18 05 05 00 00 00");
+    EXPECT_EQ(sensor.ask("605 40 00 62 00 00 00 00 00"), "585 42 00 62 00 05 00 00 00");
+  }
+}
+
+// shows 004.164
+TEST(Rk5cNode, ResetsTheApplicationWithResetNodeOnly) {
+  RunningSensor sensor;
+  sensor.ask(preset_1000);
+  sensor.ask("605 2B 17 10 00 E8 03 00 00");
+  sensor.ask(bench::reset_communication);
+  sensor.pass(1ms);
+  EXPECT_EQ(sensor.ask("605 40 17 10 00 00 00 00 00"), "585 42 17 10 00 00 00 00 00");
+  EXPECT_EQ(sensor.ask(read_position), position(1000));
+  sensor.ask("605 2B 17 10 00 E8 03 00 00");
+  sensor.ask(bench::reset_node);
+  sensor.pass(1ms);
+  EXPECT_EQ(sensor.ask("605 40 17 10 00 00 00 00 00"), "585 42 17 10 00 00 00 00 00");
+  EXPECT_EQ(sensor.ask(read_position), position(0));
+}
+
+// shows 004.148
+TEST(Rk5cNode, SendsItsValuesFromStartToPreOperational) {
+  for (const char* const node : {"00", "05"}) {
+    RunningSensor sensor;
+    EXPECT_EQ(sensor.pass(10ms), "");
+    sensor.ask(std::string{"000 01 "} + node);
+    EXPECT_EQ(sensor.pass(2ms), "185 00 00 00 00 00 00 | 185 00 00 00 00 00 00");
+    sensor.ask(std::string{"000 80 "} + node);
+    EXPECT_EQ(sensor.pass(10ms), "");
+  }
+}
+
+// shows 004.146
 TEST(Rk5cNode, KeepsWhatLssHasStoredBeyondPowerOff) {
   Sensor sensor{std::nullopt};
   EXPECT_EQ(sensor.boot_up, "");
@@ -244,6 +307,14 @@ TEST(Rk5cNode, KeepsWhatLssHasStoredBeyondPowerOff) {
   EXPECT_TRUE(sensor.logged("LSS: node-ID 5, 500 kbit/s stored"));
   EXPECT_EQ(sensor.power_cycle(), "705 00");
   EXPECT_EQ(sensor.app->node().node_id(), canopen::NodeId{5});
+}
+
+// shows 004.19
+TEST(Rk5cNode, TellsThatItsMemoryCannotBeWritten) {
+  Sensor sensor{canopen::NodeId{5}, "no such folder/rk5c.parameters"};
+  sensor.ask("7E5 04 01 00 00 00 00 00 00");
+  EXPECT_EQ(sensor.ask("7E5 17 00 00 00 00 00 00 00"), "7E4 17 02 00 00 00 00 00 00");
+  EXPECT_EQ(sensor.ask(save), "585 80 10 10 01 00 00 06 06");
 }
 
 // shows 004.6

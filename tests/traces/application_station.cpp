@@ -7,6 +7,7 @@
 #include "ezd_1136/ezd_1136.hpp"
 #include "shared/input_line.hpp"
 #include "shared/surroundings.hpp"
+#include "support/access_probe.hpp"
 
 namespace trace {
 
@@ -18,20 +19,24 @@ class ApplicationStation final : public Station {
   explicit ApplicationStation(canopen::NodeId node_id) : around_{node_id} {}
 
   void power_on(canopen::TimePoint now) override {
+    const bench::InApplication here;
     application_.emplace(*this, around_);
     application_->start(now);
   }
   void power_off() override { application_.reset(); }
   void on_frame(const canopen::Frame& frame, canopen::TimePoint now) override {
+    const bench::InApplication here;
     if (application_) application_->on_frame(frame, now);
   }
   void on_time(canopen::TimePoint now) override {
+    const bench::InApplication here;
     if (application_) application_->on_time(now);
   }
   [[nodiscard]] std::optional<canopen::TimePoint> next_deadline() const override {
     return application_ ? application_->next_deadline() : std::nullopt;
   }
   [[nodiscard]] bool input(const std::string& line, canopen::TimePoint now) override {
+    const bench::InApplication here;
     return application_->input(nodes::InputLine{line}, now);
   }
 

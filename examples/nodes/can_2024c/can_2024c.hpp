@@ -13,6 +13,7 @@ class Can2024c : public nodes::IoModule<can_2024c::Device, B> {
  public:
   static constexpr nodes::Description description{
       "can_2024c", "An analogue output module, four channels of -10 V to +10 V.", "3",
+      "  switches TENS UNITS              the node-ID from the next power-on: switches 3 2\n"
       "  fault NAME | fault over          can-controller, eeprom, rx-buffer or tx-buffer: its EMCY\n",
       99};  // two rotary switches
 

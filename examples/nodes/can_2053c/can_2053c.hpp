@@ -14,6 +14,7 @@ class Can2053c : public nodes::IoModule<can_2053c::Device, B> {
   static constexpr nodes::Description description{
       "can_2053c", "A digital input module, 16 channels in two blocks.", "2",
       "  digital BLOCK LEVELS             the terminals of block 1 or 2: digital 1 0x55\n"
+      "  switches TENS UNITS              the node-ID from the next power-on: switches 3 2\n"
       "  fault NAME | fault over          can-controller, eeprom, rx-buffer or tx-buffer: its EMCY\n",
       99};  // two rotary switches
 

@@ -13,6 +13,7 @@ class Can2057c : public nodes::IoModule<can_2057c::Device, B> {
  public:
   static constexpr nodes::Description description{
       "can_2057c", "A digital output module, 16 channels in two blocks.", "1",
+      "  switches TENS UNITS              the node-ID from the next power-on: switches 3 2\n"
       "  fault NAME | fault over          can-controller, eeprom, rx-buffer or tx-buffer: its EMCY\n",
       99};  // two rotary switches
 

@@ -1,18 +1,28 @@
-/// A closed-loop stepper drive: alarms, warnings, and a statusword with manufacturer-specific bits.
+/// A closed-loop stepper drive: control modes, alarms, warnings, digital inputs and outputs, and a statusword with
+/// manufacturer-specific bits.
 #pragma once
 
+#include <array>
 #include <canopen/base/abort_code.hpp>
 #include <canopen/node.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <ezd_1136/device.hpp>
-#include <iterator>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "shared/description.hpp"
 #include "shared/drive_node.hpp"
+#include "stepper_axis.hpp"
+#include "terminals.hpp"
+
+template <>
+struct nodes::AxisOf<ezd_1136::Device> {
+  using type = ezd_1136_node::StepperAxis;
+};
 
 namespace ezd_1136_node {
 
@@ -20,13 +30,6 @@ namespace od = ezd_1136::od;
 namespace mode = canopen::cia402::mode;
 using canopen::ErrorRegister;
 using canopen::cia402::State;
-
-/// Positions are pulses, velocities 0.01 turns per second, ramps turns per second squared.
-inline constexpr nodes::AxisData axis{.increments_per_turn = 10'000,
-                                      .velocity_unit = 100,
-                                      .acceleration_unit = 10'000,
-                                      .highest_velocity = 10'000 * 50,
-                                      .highest_acceleration = 10'000 * 2'000};
 
 /// Bit 11 of the statusword reports only the limit switches. 6060h accepts CSP, although 6502h does not include it: an
 /// option of the device.
@@ -89,6 +92,22 @@ inline constexpr std::int16_t running = 3;
 inline constexpr int lowest_supply = 18;   ///< V
 inline constexpr int highest_supply = 60;  ///< V
 
+inline constexpr std::uint32_t default_resolution = 4'000;  ///< of 20F2h
+
+/// Of the motor, which 2127h = 1 writes to 20D0h and 20D1h.
+inline constexpr std::uint16_t motor_inductance = 3'200;  ///< in 1e-6 H
+inline constexpr std::uint16_t motor_resistance = 1'100;  ///< in 1e-3 ohm
+
+/// 20CEh: 2 to 4 are not supported.
+struct AcceptsControlMode {
+  Control* control;
+  canopen::AbortCode operator()(std::uint16_t wanted) const {
+    if (wanted >= 2 && wanted <= 4) return canopen::AbortCode::invalid_value;
+    *control = static_cast<Control>(wanted);
+    return canopen::ok;
+  }
+};
+
 struct AcceptsHomingMethod {
   canopen::AbortCode operator()(std::int8_t method) const {
     return method == 0 || canopen::cia402::homing_method(method) != nullptr ? canopen::ok
@@ -115,7 +134,8 @@ using Base =
                      canopen::WriteHandler<od::quick_stop_option_code, AcceptsQuickStopOption>,
                      canopen::WriteHandler<od::shutdown_option_code, AcceptsOption<1>>,
                      canopen::WriteHandler<od::disable_operation_option_code, AcceptsOption<1>>,
-                     canopen::WriteHandler<od::fault_reaction_option_code, AcceptsOption<2>>>;
+                     canopen::WriteHandler<od::fault_reaction_option_code, AcceptsOption<2>>,
+                     canopen::WriteHandler<od::control_mode, AcceptsControlMode>>;
 
 template <canopen::Bus B>
 class Ezd1136 : public Base<Ezd1136<B>, B> {
@@ -130,20 +150,28 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
       "  alarm CODE                       10 to 16, 20, 24 to 26, 50 or 100\n"
       "  warning BITS on|off              256, 512, 1024 (emergency stop), 2048, 4096, 8192, or their sum\n"
       "  supply VOLTS                     below 18 V alarm 13, above 60 V alarm 14\n"
-      "  current AMPERES                  of the motor, for 2064h\n"
-      "  analogue VOLTS                   at the analogue input, for 2090h\n"
-      "  limit negative|positive on|off   a limit switch\n"
-      "  home on|off                      the home switch\n"
+      "  phases on|off                    the motor is connected; off: alarm 11\n"
+      "  input N on|off                   digital input 1 to 8\n"
+      "  limit negative|positive on|off   a limit switch, at digital input 1 or 2\n"
+      "  home on|off                      the origin switch, at digital input 3\n"
+      "  pulses N                         at the pulse input, for 20CEh = 0\n"
+      "  load N                           torque of the load, in 0.1 % of the rated torque; above 1000 alarm 26\n"
       "  block on|off                     something keeps the shaft from turning\n"
-      "  position N                       the shaft is turned by hand, without power\n"};
+      "  current AMPERES|off              a measured current for 2064h, instead of the simulated one\n"
+      "  analogue VOLTS                   at the analogue input, for 2090h\n"
+      "  position N                       the shaft is turned by hand, without power\n"
+      "  fault CODE [BITS]                another error: 603Fh, EMCY; BITS of 1001h\n"};
 
   Ezd1136(B& bus, nodes::Surroundings& around)
-      : Node{bus, around, around.node_id.value_or(canopen::NodeId{1}), axis, {}, {}, {}, {}, {}} {}
+      : Node{
+            bus, around,     around.node_id.value_or(canopen::NodeId{1}), axis_data(default_resolution), {}, {}, {}, {},
+            {},  {&control_}} {}
 
   void restarted() {
     alarm_ = 0;
     warnings_ = 0;
     was_commanded_ = false;
+    control_ = Control::software;
   }
 
   /// Bits 8, 12, 14 and 15 as in the manual, and bit 10 only after a motion.
@@ -153,6 +181,9 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     const bool in_fault = state == State::fault || state == State::fault_reaction_active;
     const bool positions = drive_.mode() == mode::profile_position || drive_.mode() == mode::homing;
     remember_commands();
+    if (drive_.mode() == mode::profile_position && drive_.operates()) {
+      word = static_cast<std::uint16_t>(is_in_position() ? word | bit::target_reached : word & ~bit::target_reached);
+    }
     if (drive_.halted() || state == State::quick_stop_active || drive_.at_limit_switch()) word |= bit::manufacturer_8;
     if (positions && state == State::operation_enabled && !was_commanded_) {
       word |= bit::manufacturer_15;
@@ -167,17 +198,22 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
   }
 
   void watch() {
+    configure_axis();
     if (alarm_ != 0 && drive_.state() == State::switch_on_disabled) alarm_ = 0;  // fault reset
-    const std::uint32_t deviation = canopen::cia402::distance(axis_.position_demand(), axis_.position());
-    const std::uint16_t most = node_.get(od::position_error_threshold{});
-    if (most != 0 && deviation > most && drive_.state() == State::operation_enabled) raise(25);
+    raise_alarms_of_the_axis();
     report_warnings();
+    detect_motor();
     set<od::bus_voltage>(static_cast<std::uint16_t>(supply_ * 100));
     set<od::drive_error_code>(static_cast<std::uint16_t>(warnings_ | alarm_));
     set<od::run_state>(drive_.state() != State::operation_enabled ? run_state::not_enabled
                        : axis_.moving()                           ? run_state::running
                                                                   : run_state::stopped);
+    set<od::locked_rotor_detection>(axis_.rotor_is_locked() ? 1 : 0);
+    set<od::integrated_current>(measured_current_.value_or(current()));
+    set<od::torque_demand_value>(axis_.torque_demand());
+    set<od::current_actual_value>(axis_.controls_torque() ? axis_.torque() : std::int16_t{0});
     show_lamp();
+    show_outputs();
   }
 
   /// Raises alarm 50 while enabled, and alarm 100 when the node is then started again.
@@ -191,6 +227,40 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     raise(100);
   }
 
+  // The inputs of the drive. After a call, `on_time` processes the change.
+
+  /// Returns false if the alarm does not exist.
+  bool raise(std::uint8_t code) {
+    const Alarm* const alarm = alarm_of(code);
+    if (alarm == nullptr) return false;
+    alarm_ = code;
+    this->fault(static_cast<std::uint16_t>(warnings_ | code), alarm->bits);
+    return true;
+  }
+  void set_warnings(std::uint16_t bits, bool on) {
+    injected_ = static_cast<std::uint16_t>(on ? injected_ | bits : injected_ & ~bits);
+  }
+  void set_supply(int volts) {
+    supply_ = volts;
+    keep_fault();
+    if (const std::uint8_t code = supply_alarm(); code != 0) static_cast<void>(raise(code));
+  }
+  void connect_phases(bool connected) {
+    phases_ = connected;
+    keep_fault();
+    if (!connected) static_cast<void>(raise(11));
+  }
+  /// `number`: 1 to 8.
+  void set_input(unsigned number, bool on) { axis_.terminals.set(number, on); }
+  void set_analogue(double volts) { set<od::analog_voltage>(static_cast<std::uint16_t>(std::lround(volts * 1000))); }
+  /// A measured current for 2064h; std::nullopt: the simulated one.
+  void set_current(std::optional<double> amperes) {
+    measured_current_ = amperes ? std::optional{static_cast<std::int16_t>(std::lround(*amperes * 1000))} : std::nullopt;
+  }
+
+  /// Digital outputs 1 to 5, from bit 0 on.
+  [[nodiscard]] std::uint8_t outputs() const { return outputs_shown_; }
+
   bool take_line(const nodes::InputLine& line) {
     if (line.is("alarm", 1)) {
       const auto code = line.number<std::uint8_t>(1);
@@ -199,23 +269,43 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     if (line.is("warning", 2)) {
       const auto bits = line.number<std::uint16_t>(1, 256, 16'128);
       const auto on = line.on_or_off(2);
-      if (!bits || !on) return false;
-      injected_ = static_cast<std::uint16_t>(*on ? injected_ | *bits : injected_ & ~*bits);
-      return true;
+      if (bits && on) set_warnings(*bits, *on);
+      return bits && on;
     }
     if (line.is("supply", 1)) {
       const auto volts = line.number<int>(1, 0, 655);
       if (volts) set_supply(*volts);
       return volts.has_value();
     }
+    if (line.is("phases", 1)) {
+      const auto on = line.on_or_off(1);
+      if (on) connect_phases(*on);
+      return on.has_value();
+    }
+    if (line.is("input", 2)) {
+      const auto number = line.number<unsigned>(1, 1, input_count);
+      const auto on = line.on_or_off(2);
+      if (number && on) set_input(*number, *on);
+      return number && on;
+    }
+    if (line.is("pulses", 1)) {
+      const auto count = line.number<std::int32_t>(1, -1'000'000, 1'000'000);
+      if (count) axis_.add_pulses(*count);
+      return count.has_value();
+    }
+    if (line.is("load", 1)) {
+      const auto torque = line.number<std::int16_t>(1, 0);
+      if (torque) axis_.set_load(*torque);
+      return torque.has_value();
+    }
     if (line.is("current", 1)) {
-      const auto amperes = line.real(1);
-      if (amperes) set<od::integrated_current>(static_cast<std::int16_t>(std::lround(*amperes * 1000)));
-      return amperes.has_value();
+      const auto amperes = line.word(1) == "off" ? std::nullopt : line.real(1);
+      set_current(amperes);
+      return amperes || line.word(1) == "off";
     }
     if (line.is("analogue", 1)) {
       const auto volts = line.real(1);
-      if (volts) set<od::analog_voltage>(static_cast<std::uint16_t>(std::lround(*volts * 1000)));
+      if (volts) set_analogue(*volts);
       return volts.has_value();
     }
     return false;
@@ -231,20 +321,94 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     return node_.get(O{}) == 0;
   }
 
-  /// Returns false if the alarm does not exist.
-  bool raise(std::uint8_t code) {
-    const Alarm* const alarm = alarm_of(code);
-    if (alarm == nullptr) return false;
-    alarm_ = code;
-    this->fault(static_cast<std::uint16_t>(warnings_ | code), alarm->bits);
-    return true;
+  template <class O>
+  [[nodiscard]] typename O::type value() const {
+    return node_.get(O{});
   }
 
-  void set_supply(int volts) {
-    supply_ = volts;
-    const std::uint8_t code = volts < lowest_supply ? 13 : volts > highest_supply ? 14 : 0;
-    drive_.keep_fault(code != 0);
-    if (code != 0) static_cast<void>(raise(code));
+  [[nodiscard]] std::uint8_t supply_alarm() const {
+    return supply_ < lowest_supply ? 13 : supply_ > highest_supply ? 14 : 0;
+  }
+  void keep_fault() { drive_.keep_fault(supply_alarm() != 0 || !phases_); }
+
+  void configure_axis() {
+    axis_.terminals.configure(input_functions(), value<od::digital_input_logic>());
+    const auto direction = value<od::running_direction>();
+    const auto lowest = value<od::software_position_limit<1>>();
+    const auto highest = value<od::software_position_limit<2>>();
+    const bool limited = lowest < highest;  // otherwise there is no limit, as in the modes of operation
+    axis_.configure({.resolution = value<od::resolution_setting>(),
+                     .motor_reversed = (direction & 1) != 0,
+                     .encoder_reversed = (direction & 2) != 0,
+                     .closed_loop = value<od::motor_mode_setting>() == 1,
+                     .jump_speed = value<od::end_velocity>(),
+                     .filter = value<od::filter_coefficient>(),
+                     .target_torque = value<od::target_torque>(),
+                     .torque_slope = value<od::torque_slope>(),
+                     .torque_speed = value<od::torque_speed>(),
+                     .reference_torque = value<od::reference_torque>(),
+                     .check_torque = value<od::check_torque_timer>(),
+                     .locked_above = value<od::lrd_threshold_speed>(),
+                     .locked_count = value<od::lrd_maximum_count>(),
+                     .lowest = limited ? lowest : std::numeric_limits<std::int32_t>::min(),
+                     .highest = limited ? highest : std::numeric_limits<std::int32_t>::max()});
+    axis_.select(control_);
+    axis_.operate(drive_.operates());
+  }
+  [[nodiscard]] std::array<std::uint16_t, input_count> input_functions() const {
+    return {value<od::digital_input_functions<1>>(), value<od::digital_input_functions<2>>(),
+            value<od::digital_input_functions<3>>(), value<od::digital_input_functions<4>>(),
+            value<od::digital_input_functions<5>>(), value<od::digital_input_functions<6>>(),
+            value<od::digital_input_functions<7>>(), value<od::digital_input_functions<8>>()};
+  }
+  [[nodiscard]] std::array<std::uint16_t, output_count> output_functions() const {
+    return {value<od::digital_output_functions<1>>(), value<od::digital_output_functions<2>>(),
+            value<od::digital_output_functions<3>>(), value<od::digital_output_functions<4>>(),
+            value<od::digital_output_functions<5>>()};
+  }
+
+  /// The pulses between the commanded and the actual position.
+  [[nodiscard]] std::uint32_t deviation() const {
+    return canopen::cia402::distance(axis_.position_demand(), axis_.position());
+  }
+  /// A motion has ended within 20F7h of its target.
+  [[nodiscard]] bool is_in_position() const {
+    return !axis_.moving() && !drive_.set_points().active() && deviation() <= value<od::in_position_range>();
+  }
+
+  /// Alarms 24, 25 and 26. Their limits are 20FEh in 0.01 turns per second and 2102h in counts of the encoder; 0: none.
+  void raise_alarms_of_the_axis() {
+    if (drive_.state() != State::operation_enabled) return;
+    const std::int16_t fastest = value<od::maximum_speed>();
+    const std::uint16_t most = value<od::position_error_threshold>();
+    const std::uint64_t counts =
+        std::uint64_t{deviation()} * value<od::encoder_resolution>() / value<od::resolution_setting>();
+    if (fastest > 0 && std::abs(axis_.velocity()) > fastest) {
+      static_cast<void>(raise(24));
+    } else if (most != 0 && counts > most && !axis_.controls_torque()) {
+      static_cast<void>(raise(25));
+    } else if (axis_.overloaded() && axis_.moving()) {
+      static_cast<void>(raise(26));
+    }
+  }
+
+  /// 2127h = 1 in open loop.
+  void detect_motor() {
+    if (value<od::automatic_parameter_detection>() != 1 || value<od::motor_mode_setting>() != 0) return;
+    set<od::l1e6>(motor_inductance);
+    set<od::r1e3>(motor_resistance);
+  }
+
+  /// The current of the motor in mA: 20F1h, after 20F5h at rest 20D5h per cent of it; in torque control in proportion
+  /// to the torque.
+  [[nodiscard]] std::int16_t current() const {
+    if (!canopen::cia402::has_power(drive_.state())) return 0;
+    const std::int32_t operating = value<od::current_command_setting>();
+    if (axis_.controls_torque()) {
+      return static_cast<std::int16_t>(operating * std::abs(axis_.torque()) / StepperAxis::rated_torque);
+    }
+    const bool idle = axis_.rests_for() >= std::chrono::milliseconds{value<od::half_current_time>()};
+    return static_cast<std::int16_t>(idle ? operating * value<od::idle_current>() / 100 : operating);
   }
 
   /// Records whether the drive got a motion command in this mode since it was enabled.
@@ -285,18 +449,18 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
       bits |= warning::negative_limit;
     }
     if (drive_.homing().failed()) bits |= warning::homing_failed;
+    if (axis_.terminals.has(input_function::emergency_stop)) bits |= warning::emergency_stop;
     return bits;
   }
 
-  /// Sends an EMCY with the sum of the warnings if one is new, with 0000h if one is over. Does nothing during homing,
-  /// which searches the limits.
+  /// Sends an EMCY with the sum of the warnings if one is new, with 0000h if one is over; not during homing, which
+  /// searches the limits.
   void report_warnings() {
-    if (drive_.homing().running()) return;
     const std::uint16_t now = present_warnings();
-    if (now == warnings_) return;
+    if ((now & warning::emergency_stop) != 0) drive_.quick_stop(node_);
+    if (drive_.homing().running() || now == warnings_) return;
     const bool fresh = (now & ~warnings_) != 0;
     warnings_ = now;
-    if ((now & warning::emergency_stop) != 0) drive_.quick_stop(node_);
     if (fresh) {
       const auto code = static_cast<std::uint16_t>(now | alarm_);
       set<od::error_code>(code);
@@ -321,10 +485,39 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     this->around_.log(lamp);
   }
 
-  std::uint8_t alarm_ = 0;      ///< until a fault reset
-  std::uint16_t warnings_ = 0;  ///< reported warnings
-  std::uint16_t injected_ = 0;  ///< warnings of input lines
-  int supply_ = 48;             ///< V
+  /// 60FEh:01 switches the outputs that 60FEh:02 releases; 21AEh inverts outputs.
+  void show_outputs() {
+    const std::uint32_t word = value<od::digital_outputs<1>>() & value<od::digital_outputs<2>>();
+    const std::array<std::uint16_t, output_count> functions = output_functions();
+    std::uint8_t levels = 0;
+    for (unsigned i = 0; i < output_count; ++i) {
+      bool on = false;
+      switch (functions[i]) {
+        case output_function::control_word: on = (word >> (first_terminal_bit + i) & 1u) != 0; break;
+        case output_function::alarm: on = alarm_ != 0; break;
+        case output_function::in_position: on = is_in_position(); break;
+        case output_function::motor_has_power: on = canopen::cia402::has_power(drive_.state()); break;
+        default: break;
+      }
+      if (on) levels = static_cast<std::uint8_t>(levels | 1u << i);
+    }
+    levels = static_cast<std::uint8_t>((levels ^ value<od::digital_output_logic>()) & ((1u << output_count) - 1));
+    const unsigned changed = levels ^ outputs_shown_;
+    outputs_shown_ = levels;
+    for (unsigned i = 0; i < output_count; ++i) {
+      if ((changed >> i & 1u) == 0) continue;
+      this->around_.log("output " + std::to_string(i + 1) + ((levels >> i & 1u) != 0 ? " on" : " off"));
+    }
+  }
+
+  Control control_ = Control::software;           ///< 20CEh; the manual requires this mode for motion by CANopen
+  std::optional<std::int16_t> measured_current_;  ///< mA
+  bool phases_ = true;                            ///< the motor is connected
+  std::uint8_t outputs_shown_ = 0;                ///< digital outputs from bit 0 on
+  std::uint8_t alarm_ = 0;                        ///< until a fault reset
+  std::uint16_t warnings_ = 0;                    ///< reported warnings
+  std::uint16_t injected_ = 0;                    ///< warnings of input lines
+  int supply_ = 48;                               ///< V
   bool was_commanded_ = false;
   bool was_disconnected_ = false;  ///< while enabled
   std::int8_t commanded_mode_ = 0;

@@ -28,7 +28,7 @@ class Rk5c {
       "rk5c", "A linear position sensor that LSS configures.", "the one that LSS has stored, or none",
       "  position 1 UM                    where the magnet is, 0 to 4000000 um: position 1 12345\n"
       "  speed 1 UM/S                     how fast it moves\n"
-      "  magnet on|off                    one magnet is there, or none\n"
+      "  magnet on|off|two                one magnet is there, none or two\n"
       "  temperature C                    of the microcontroller\n"
       "  test on|off                      internal test mode\n"
       "  flash whole|damaged              what the next check of the parameters' checksum finds\n"
@@ -143,6 +143,9 @@ class Rk5c {
     if (around_.serial_number != 0) {
       static_cast<void>(node_.set(rk5c::od::identity_object::serial_number{}, around_.serial_number));
     }
+    // 6200h is hard-wired to 1800h:05, which each reset sets.
+    static_cast<void>(
+        node_.set(rk5c::od::cyclic_timer{}, node_.get(rk5c::od::tpdo_communication_parameter_1::event_timer{})));
     data_set_error_reported_ = around_.parameters.state() == canopen::StorageState::damaged;  // by the node itself
     if (data_set_error_reported_) data_set_error_ = true;
     if (data_set_error_) tell_data_set_error();
@@ -245,7 +248,7 @@ class Rk5c {
       return line.number<std::uint8_t>(1, 1, 1) && assign(position_, line.number<std::int32_t>(2));
     if (line.is("speed", 2)) return line.number<std::uint8_t>(1, 1, 1) && assign(speed_, line.number<std::int32_t>(2));
     if (line.is("temperature", 1)) return assign(temperature_, line.number<std::int32_t>(1));
-    if (line.is("magnet", 1)) return assign(magnet_, line.on_or_off(1));
+    if (line.is("magnet", 1)) return assign(magnet_, line.word(1) == "two" ? std::optional{false} : line.on_or_off(1));
     if (line.is("test", 1)) return assign(test_mode_, line.on_or_off(1));
     if (line.is("flash", 1)) return assign(flash_damaged_, one_of(line, "damaged", "whole"));
     if (!line.is("hardware", 1)) return false;
@@ -278,7 +281,7 @@ class Rk5c {
   std::int32_t position_ = 0;      ///< um
   std::int32_t speed_ = 0;         ///< um/s
   std::int32_t temperature_ = 25;  ///< degrees Celsius
-  bool magnet_ = true;
+  bool magnet_ = true;             ///< exactly one
   bool test_mode_ = false;
   bool flash_damaged_ = false;
   bool hardware_bad_ = false;

@@ -32,6 +32,12 @@ namespace nodes {
   return "unknown";
 }
 
+/// The axis of a device: a class with the functions of SimulatedAxis. A drive with its own axis specializes it.
+template <class Device>
+struct AxisOf {
+  using type = SimulatedAxis;
+};
+
 /// The common part of the drives. `Self` derives from it and may have:
 ///     void operate(std::int8_t mode)               see canopen::cia402::NoApplication
 ///     std::uint16_t statusword(std::uint16_t)      the same
@@ -39,7 +45,8 @@ namespace nodes {
 ///     void abort_connection(std::int16_t code)     the same
 ///     void restarted()                             power-on, or an NMT reset
 ///     void on_state(canopen::NmtState state)       an NMT state is entered
-///     bool take_line(const InputLine& line)        its own inputs
+///     bool take_line(const InputLine& line)        its own inputs, or with the time as second argument
+///     std::uint8_t error_register_bits             the bits of 1001h that the device has; default: all
 /// `node_id` is the node-ID at power-on; the handlers are passed to the node. The surroundings must outlive it.
 template <class Self, class Device, canopen::Bus B, canopen::cia402::Options options, class... Handlers>
 class DriveNode {
@@ -94,12 +101,15 @@ class DriveNode {
   bool input(const InputLine& line, canopen::TimePoint now) {
     bool taken = take(line);
     if constexpr (requires { self().take_line(line); }) taken = taken || self().take_line(line);
+    if constexpr (requires { self().take_line(line, now); }) taken = taken || self().take_line(line, now);
     on_time(now);
     return taken;
   }
 
-  [[nodiscard]] SimulatedAxis& axis() { return axis_; }
-  [[nodiscard]] const SimulatedAxis& axis() const { return axis_; }
+  using MotorAxis = typename AxisOf<Device>::type;
+
+  [[nodiscard]] MotorAxis& axis() { return axis_; }
+  [[nodiscard]] const MotorAxis& axis() const { return axis_; }
   [[nodiscard]] const Panel& panel() const { return panel_; }
   [[nodiscard]] const auto& drive() const { return drive_; }
   [[nodiscard]] auto& node() { return node_; }
@@ -143,8 +153,8 @@ class DriveNode {
 
   Surroundings& around_;
   Panel panel_;
-  SimulatedAxis axis_;
-  using DeviceControl = canopen::cia402::Drive<Device, SimulatedAxis, options>;
+  MotorAxis axis_;
+  using DeviceControl = canopen::cia402::Drive<Device, MotorAxis, options>;
   DeviceControl drive_{axis_};
   canopen::Node<Device, B, canopen::StateHandler<StateTeller>, canopen::LifeGuardingHandler<GuardTeller>,
                 canopen::HeartbeatHandler<HeartbeatTeller>, canopen::ErrorHandler<typename DeviceControl::ErrorTaker>,
@@ -162,7 +172,9 @@ class DriveNode {
     if (line.is("fault", 1) || line.is("fault", 2)) {
       const auto code = line.number<std::uint16_t>(1);
       const auto bits = line.is("fault", 2) ? line.number<std::uint8_t>(2) : std::optional<std::uint8_t>{0x01};
-      if (code && bits) fault(*code, static_cast<canopen::ErrorRegister>(*bits));
+      std::uint8_t known = 0xFF;
+      if constexpr (requires { Self::error_register_bits; }) known = Self::error_register_bits;
+      if (code && bits) fault(*code, static_cast<canopen::ErrorRegister>(*bits & known));
       return code && bits;
     }
     if (line.is("limit", 2) && (line.word(1) == "negative" || line.word(1) == "positive")) {

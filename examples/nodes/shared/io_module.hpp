@@ -78,7 +78,7 @@ class IoModule {
     update();
   }
 
-  /// `digital BLOCK LEVELS`, `analogue CHANNEL VOLTS`, `fault NAME`, `fault over`.
+  /// `digital BLOCK LEVELS`, `analogue CHANNEL VOLTS`, `switches TENS UNITS`, `fault NAME`, `fault over`.
   bool input(const InputLine& line, canopen::TimePoint now) {
     const bool taken = take(line);
     on_time(now);
@@ -129,6 +129,7 @@ class IoModule {
 
   /// Updates the objects from the inputs and the outputs from the objects.
   void update() {
+    if (around_.parameters.take_failure()) static_cast<void>(take_fault("eeprom"));
     for (std::uint8_t block = 0; block < digital_levels_.size(); ++block) {
       digital_inputs_.sample(node_, block, digital_levels_[block]);
     }
@@ -158,7 +159,19 @@ class IoModule {
       if (channel && volts) set_analogue(static_cast<std::uint8_t>(*channel - 1), raw_from_volts(*volts));
       return channel && volts;
     }
+    if (line.is("switches", 2)) {
+      const auto tens = line.number<std::uint8_t>(1, 0, 9);
+      const auto units = line.number<std::uint8_t>(2, 0, 9);
+      return tens && units && turn_switches(static_cast<std::uint8_t>(10 * *tens + *units));
+    }
     return line.is("fault", 1) && take_fault(line.word(1));
+  }
+
+  /// The module reads its rotary switches at power-on.
+  [[nodiscard]] bool turn_switches(std::uint8_t node_id) {
+    if (node_id == 0) return false;
+    around_.node_id = canopen::NodeId{node_id};
+    return true;
   }
 
   [[nodiscard]] bool take_fault(std::string_view name) {

@@ -33,22 +33,35 @@ class NodeStorage {
     return true;
   }
   [[nodiscard]] bool begin(std::uint32_t size) {
-    if (file_) return file_->begin(size);
+    if (fails_) return noted(false);
+    if (file_) return noted(file_->begin(size));
     fresh_.clear();
     return true;
   }
+  /// Whether the memory cannot be written.
+  void fail(bool fails) { fails_ = fails; }
   [[nodiscard]] bool write(std::span<const std::uint8_t> bytes) {
-    if (file_) return file_->write(bytes);
+    if (file_) return noted(file_->write(bytes));
     fresh_.insert(fresh_.end(), bytes.begin(), bytes.end());
     return true;
   }
   [[nodiscard]] bool commit() {
-    if (file_) return file_->commit();
+    if (file_) return noted(file_->commit());
     image_ = std::move(fresh_);
     return true;
   }
 
+  /// Returns whether a write to the file has failed since the last call.
+  [[nodiscard]] bool take_failure() { return std::exchange(failed_, false); }
+
  private:
+  [[nodiscard]] bool noted(bool succeeded) {
+    failed_ = failed_ || !succeeded;
+    return succeeded;
+  }
+
+  bool fails_ = false;   ///< now
+  bool failed_ = false;  ///< since the last `take_failure`
   std::optional<canopen::FileStorage> file_;
   canopen::StorageState state_ = canopen::StorageState::empty;
   std::vector<std::uint8_t> image_;  ///< without a file

@@ -38,6 +38,14 @@
 #include "input_line.hpp"
 #include "surroundings.hpp"
 
+#if __has_include(<value_only_objects.hpp>)
+#include <value_only_objects.hpp>  // generated from value_only.tsv of the node
+#else
+namespace nodes {
+inline constexpr const char* value_only_objects = "";
+}  // namespace nodes
+#endif
+
 namespace nodes {
 
 namespace exit_code {
@@ -107,13 +115,15 @@ inline void print_help(const Description& what) {
       "It runs until SIGINT or SIGTERM and logs on standard output. Lines on standard input are its inputs:\n"
       "%s"
       "  can active|passive|off|overrun   what the CAN controller tells\n"
-      "  power-cycle                      switches it off and on\n\n"
+      "  power-cycle                      switches it off and on\n"
+      "%s%s\n"
       "examples:\n"
       "  %s socketcan:vcan0 --node-id 5 --store %s.parameters\n"
       "  (sleep 1; echo power-cycle; sleep 1) | %s socketcan:vcan0 --node-id 5\n\n"
       "exit codes: 0 ended by a signal; 1 the bus is lost; 2 wrong arguments, or the bus cannot be opened\n",
-      what.program, what.device, what.highest_node_id, what.node_id, what.inputs, what.program, what.program,
-      what.program);
+      what.program, what.device, what.highest_node_id, what.node_id, what.inputs,
+      *value_only_objects == 0 ? "" : "\nobjects that hold a value and have no other effect:\n", value_only_objects,
+      what.program, what.program, what.program);
 }
 
 /// Lines of standard input, read without waiting.

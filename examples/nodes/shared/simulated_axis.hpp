@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <canopen/base/clock.hpp>
 #include <canopen/profile/cia402_axis.hpp>
+#include <canopen/profile/cia402_option_code.hpp>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -27,18 +28,31 @@ class SimulatedAxis {
  public:
   explicit SimulatedAxis(const AxisData& data) : data_{data} {}
 
+  /// Changes the units. The position keeps its number; the motor turns as fast as before.
+  void set_data(const AxisData& data) {
+    const double ratio = data.increments_per_turn / data_.increments_per_turn;
+    for (double* const value : {&velocity_, &demand_velocity_, &wanted_, &acceleration_, &deceleration_})
+      *value *= ratio;
+    data_ = data;
+    turns_ = turns();
+  }
+
+  /// The velocity at which a motion to a position begins and ends without a ramp, in increments per second.
+  double jump_velocity = 0;
+
   // canopen::cia402::Axis
 
   void enable(bool on) {
     if (on == enabled_) return;
     enabled_ = on;
     demand_ = position_;
+    added_ = 0;
     course_ = Course::stop;
     deceleration_ = data_.highest_acceleration;
   }
   void move_to(std::int32_t position, const canopen::cia402::Profile& profile) {
     course_ = Course::position;
-    target_ = position;
+    target_ = position + added_;
     take(profile);
     wanted_ = std::min(profile.velocity * data_.velocity_unit, data_.highest_velocity);
   }
@@ -51,9 +65,19 @@ class SimulatedAxis {
     course_ = Course::stop;
     deceleration_ = ramp(deceleration);
   }
+  /// The same, with the deceleration that the current limit of this braking allows.
+  void stop(std::uint32_t deceleration, canopen::cia402::Braking braking) {
+    stop(deceleration);
+    if (braking == canopen::cia402::Braking::quick_stop_ramp && quick_stop_deceleration) {
+      deceleration_ = ramp(*quick_stop_deceleration);
+    }
+    if (braking == canopen::cia402::Braking::slow_down_ramp && highest_deceleration) {
+      deceleration_ = std::min(deceleration_, ramp(*highest_deceleration));
+    }
+  }
   void follow(std::int32_t position) {
     course_ = Course::follow;
-    target_ = position;
+    target_ = position + added_;
   }
   void apply_torque(std::int16_t torque) {
     course_ = Course::torque;
@@ -73,13 +97,15 @@ class SimulatedAxis {
     position_ += shift;
     demand_ += shift;
     target_ += shift;
-    machine_ -= shift;
+    machine_ -= sign_ * shift;
     turns_ = turns();
   }
 
   void step(canopen::Duration span) {
     const double seconds = span.count() / 1e6;
     const double before = position_;
+    const bool moved = enabled_ && moving();
+    const double speed = std::abs(demand_velocity_);
     if (!blocked_) {
       position_ = demand_;
       velocity_ = demand_velocity_;
@@ -89,6 +115,7 @@ class SimulatedAxis {
     if (enabled_) {
       if (blocked_ && course_ == Course::torque) demand_velocity_ = 0;
       advance(seconds);
+      add_motion(seconds);
     } else {
       demand_velocity_ = blocked_ ? 0 : towards(demand_velocity_, 0, coasting * seconds);
       demand_ = position_ + demand_velocity_ * seconds;
@@ -99,6 +126,8 @@ class SimulatedAxis {
       turned_[true] = turned_[false] = position();
     }
     turns_ = turns_now;
+    speed_change_ = std::abs(demand_velocity_) - speed;
+    watch_limit_switches(moved);
   }
 
   [[nodiscard]] bool moving() const {
@@ -107,15 +136,22 @@ class SimulatedAxis {
     return (enabled_ && on_its_way) || demand_velocity_ != 0 || velocity_ != 0;
   }
   [[nodiscard]] std::int32_t position() const { return rounded(position_); }
-  [[nodiscard]] std::int32_t velocity() const { return rounded(velocity_ / data_.velocity_unit); }
-  [[nodiscard]] std::int32_t position_demand() const { return rounded(demand_); }
+  [[nodiscard]] std::int32_t velocity() const {
+    const double added = enabled_ && !blocked_ ? added_velocity_ : 0;
+    return rounded((velocity_ + added) / data_.velocity_unit);
+  }
+  /// 1: the trajectory accelerates, -1: it decelerates, 0: its velocity is constant.
+  [[nodiscard]] int speed_change() const { return speed_change_ > 0 ? 1 : speed_change_ < 0 ? -1 : 0; }
+  [[nodiscard]] std::int32_t position_demand() const { return rounded(demand_ - added_); }
   [[nodiscard]] std::int32_t velocity_demand() const {
     const double units = demand_velocity_ / data_.velocity_unit;
     return rounded(units > 0 ? std::ceil(units) : std::floor(units));
   }
-  [[nodiscard]] std::uint32_t inputs() const {
+  [[nodiscard]] std::uint32_t inputs() const { return (actuated() ^ inverted_) & ~ignored_; }
+  /// The switches that are actuated, as bits of canopen::cia402::input.
+  [[nodiscard]] std::uint32_t actuated() const {
     namespace input = canopen::cia402::input;
-    const double place = position_ + machine_;
+    const double place = sign_ * position_ + machine_;
     std::uint32_t bits = held_;
     if (negative_limit && place <= *negative_limit) bits |= input::negative_limit;
     if (positive_limit && place >= *positive_limit) bits |= input::positive_limit;
@@ -126,6 +162,29 @@ class SimulatedAxis {
     const bool passed = index_pulse_;
     index_pulse_ = false;
     return passed;
+  }
+
+  /// The deceleration of a quick stop whose current is limited; std::nullopt: the ramp of the command.
+  std::optional<std::uint32_t> quick_stop_deceleration;
+  /// The highest deceleration of a stop at a ramp whose current is limited.
+  std::optional<std::uint32_t> highest_deceleration;
+
+  /// Selects the switches that the drive ignores, and those whose signal it inverts, as bits of canopen::cia402::input.
+  void evaluate(std::uint32_t ignored, std::uint32_t inverted) {
+    ignored_ = ignored;
+    inverted_ = inverted;
+    watch_limit_switches(enabled_ && moving());
+  }
+  /// Returns the limit switches that have become active while the axis moved with power since the last call, as bits of
+  /// canopen::cia402::input.
+  [[nodiscard]] std::uint32_t take_trips() { return std::exchange(trips_, 0); }
+
+  /// Reverses the direction in which the shaft turns for a positive velocity. The present position keeps its number.
+  void reverse(bool reversed) {
+    const double sign = reversed ? -1 : 1;
+    machine_ += (sign_ - sign) * position_;
+    sign_ = sign;
+    turns_ = turns();
   }
 
   // The machine
@@ -141,15 +200,27 @@ class SimulatedAxis {
     turns_ = turns();
     return true;
   }
+  /// Turns the shaft by hand by a number of increments. Returns false with power.
+  bool turn_by(std::int32_t increments) { return turn_to(rounded(position_ + sign_ * increments)); }
   /// The signal at the input of touch probe 1 or 2 changes.
   void probe(unsigned number, bool on) { probed_[number == 2][on] = position(); }
   /// Blocks or releases the shaft.
   void block(bool blocked) { blocked_ = blocked; }
+  /// Adds a velocity to the commanded motion of a motor with power, in increments per second.
+  void add_velocity(double velocity) { added_velocity_ = velocity; }
   /// Holds or releases switches.
-  void hold(std::uint32_t inputs, bool down) { held_ = down ? held_ | inputs : held_ & ~inputs; }
+  void hold(std::uint32_t inputs, bool down) {
+    held_ = down ? held_ | inputs : held_ & ~inputs;
+    watch_limit_switches(enabled_ && moving());
+  }
 
   /// The position on the machine, in increments from the position at power-on.
-  [[nodiscard]] std::int32_t machine_position() const { return rounded(position_ + machine_); }
+  [[nodiscard]] std::int32_t machine_position() const { return rounded(sign_ * position_ + machine_); }
+  /// The direction in which the shaft turns: 1, -1, or 0 at standstill.
+  [[nodiscard]] int turning() const {
+    const double velocity = sign_ * velocity_;
+    return velocity > 0 ? 1 : velocity < 0 ? -1 : 0;
+  }
 
  private:
   enum class Course : std::uint8_t { stop, position, velocity, follow, torque };
@@ -172,7 +243,15 @@ class SimulatedAxis {
     deceleration_ = ramp(profile.deceleration);
   }
   [[nodiscard]] std::int64_t turns() const {
-    return static_cast<std::int64_t>(std::floor((position_ + machine_) / data_.increments_per_turn));
+    return static_cast<std::int64_t>(std::floor((sign_ * position_ + machine_) / data_.increments_per_turn));
+  }
+
+  /// Remembers the limit switches that have become active; `moved`: the axis moved with power before.
+  void watch_limit_switches(bool moved) {
+    namespace input = canopen::cia402::input;
+    const std::uint32_t active = inputs() & (input::negative_limit | input::positive_limit);
+    if (moved) trips_ |= active & ~active_limits_;
+    active_limits_ = active;
   }
 
   /// The velocity after a time on the way to another one, with the acceleration or the deceleration.
@@ -203,14 +282,25 @@ class SimulatedAxis {
     demand_ += demand_velocity_ * seconds;
   }
 
+  void add_motion(double seconds) {
+    const double way = added_velocity_ * seconds;
+    demand_ += way;
+    target_ += way;
+    added_ += way;
+  }
+
   /// Advances with the highest velocity that can still stop at the target, limited by the profile.
   void advance_to_target(double seconds) {
     const double way = target_ - demand_;
     const double step = deceleration_ * seconds;
     const double can_stop = step * (std::sqrt(0.25 + 2 * std::abs(way) / (step * seconds)) - 0.5);
-    demand_velocity_ = ramped(demand_velocity_, std::copysign(std::min(wanted_, can_stop), way), seconds);
+    const double goal = std::copysign(std::min(wanted_, std::max(can_stop, jump_velocity)), way);
+    const double jump = std::min(jump_velocity, std::abs(goal));
+    if (demand_velocity_ * goal >= 0 && std::abs(demand_velocity_) < jump) demand_velocity_ = std::copysign(jump, goal);
+    demand_velocity_ = ramped(demand_velocity_, goal, seconds);
     const double ahead = demand_velocity_ * seconds;
-    if (std::abs(way) <= std::abs(ahead) + arrived && std::abs(demand_velocity_) <= 2 * step && wanted_ != 0) {
+    if (std::abs(way) <= std::abs(ahead) + arrived && std::abs(demand_velocity_) <= std::max(2 * step, jump_velocity) &&
+        wanted_ != 0) {
       demand_ = target_;
       demand_velocity_ = 0;
       course_ = Course::stop;
@@ -226,14 +316,22 @@ class SimulatedAxis {
   bool blocked_ = false;
   bool index_pulse_ = false;
   std::uint32_t held_ = 0;
+  std::uint32_t ignored_ = 0;        ///< switches without effect
+  std::uint32_t inverted_ = 0;       ///< switches whose signal is inverted
+  std::uint32_t active_limits_ = 0;  ///< at the last look
+  std::uint32_t trips_ = 0;          ///< limit switches that have become active during a motion
   Course course_ = Course::stop;
+  double sign_ = 1;     ///< -1: the shaft turns in the other direction
   double machine_ = 0;  ///< offset from the position to the position on the machine
   double position_ = 0;
   double velocity_ = 0;
   double demand_ = 0;
   double demand_velocity_ = 0;
+  double speed_change_ = 0;  ///< of the trajectory in the last step
   double target_ = 0;
-  double wanted_ = 0;  ///< target velocity
+  double added_ = 0;           ///< position demand that `add_velocity` has added since the motor has power
+  double added_velocity_ = 0;  ///< increments per second
+  double wanted_ = 0;          ///< target velocity
   double acceleration_ = 0;
   double deceleration_ = 0;
   std::int64_t turns_ = 0;

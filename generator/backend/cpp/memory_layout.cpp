@@ -58,16 +58,6 @@ void sort_by_alignment(std::vector<Member>& members) {
   std::ranges::stable_sort(members, std::ranges::greater{}, &Member::alignment);
 }
 
-/// The minimum and maximum of a type, as the bits of its values.
-std::uint64_t lowest(const canopen::DataTypeRow& type) {
-  if (type.kind == DataClass::real) return type.bits == 32 ? 0xFF7F'FFFF : 0xFFEF'FFFF'FFFF'FFFF;
-  return type.kind == DataClass::signed_integer ? ~low_bits(type.bits - 1U) : 0;
-}
-std::uint64_t highest(const canopen::DataTypeRow& type) {
-  if (type.kind == DataClass::real) return type.bits == 32 ? 0x7F7F'FFFF : 0x7FEF'FFFF'FFFF'FFFF;
-  return low_bits(type.bits - (type.kind == DataClass::signed_integer ? 1U : 0U));
-}
-
 std::string_view access_of(const canopen::AccessRow& row) {
   return row.readable && row.writable ? "rw" : row.readable ? "ro" : "wo";
 }

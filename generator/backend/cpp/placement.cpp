@@ -51,6 +51,17 @@ MemoryPlace place_of_number(DataClass kind, std::uint64_t bits, bool plus_node_i
 
 std::uint64_t default_bits(const Entry& entry) { return entry.default_value ? entry.default_value->bits : 0; }
 
+/// Whether the limits of an integer reject any value of its type.
+bool rejects_any(const Entry& entry) {
+  if (entry.type->kind != DataClass::unsigned_integer && entry.type->kind != DataClass::signed_integer)
+    return entry.low_limit || entry.high_limit;
+  const std::uint64_t mask = low_bits(entry.type->bits);
+  const auto differs = [mask](const std::optional<Value>& limit, std::uint64_t of_type) {
+    return limit && ((limit->bits ^ of_type) & mask) != 0;
+  };
+  return differs(entry.low_limit, lowest(*entry.type)) || differs(entry.high_limit, highest(*entry.type));
+}
+
 }  // namespace
 
 Placement::Placement(const Device& device, const Options& options)
@@ -102,8 +113,7 @@ bool Placement::needs_address(const Entry& entry) const {
 
 bool Placement::has_limits(const Object& object, const Entry& entry) const {
   if (entry.type->kind == DataClass::string) return place(object, entry) == MemoryPlace::ram;
-  return canopen::writable(entry.access) && !contains(mapping_parameters, entry.index) &&
-         (entry.low_limit || entry.high_limit);
+  return canopen::writable(entry.access) && !contains(mapping_parameters, entry.index) && rejects_any(entry);
 }
 
 bool Placement::is_limited(const Object& object, const Entry& entry) const {
@@ -120,6 +130,15 @@ bool Placement::is_uniform_array(const Object& object) const {
   if (first == MemoryPlace::rom && (count == MemoryPlace::ram || count == MemoryPlace::rom)) return false;
   return std::ranges::all_of(object.entries.begin() + 1, object.entries.end(),
                              [&](const Entry& entry) { return place(object, entry) == first; });
+}
+
+std::uint64_t lowest(const canopen::DataTypeRow& type) {
+  if (type.kind == DataClass::real) return type.bits == 32 ? 0xFF7F'FFFF : 0xFFEF'FFFF'FFFF'FFFF;
+  return type.kind == DataClass::signed_integer ? ~low_bits(type.bits - 1U) : 0;
+}
+std::uint64_t highest(const canopen::DataTypeRow& type) {
+  if (type.kind == DataClass::real) return type.bits == 32 ? 0x7F7F'FFFF : 0x7FEF'FFFF'FFFF'FFFF;
+  return low_bits(type.bits - (type.kind == DataClass::signed_integer ? 1U : 0U));
 }
 
 bool describes_uniform_array(const Object& object) {

@@ -29,7 +29,8 @@ class Placement {
   [[nodiscard]] bool is_static_mapping(std::uint16_t index) const;
 
   /// Whether the entry has a row in the table of limits: a value that can be written over the bus, unless it is a
-  /// mapping entry, which is checked against the dictionary; and the capacity of each string that can change.
+  /// mapping entry, which is checked against the dictionary, or its limits are those of its type; and the capacity of
+  /// each string that can change.
   [[nodiscard]] bool has_limits(const Object& object, const Entry& entry) const;
 
   /// Whether a received value is checked: against limits, or against the modes of operation of a drive.
@@ -49,6 +50,10 @@ class Placement {
   std::map<std::uint8_t, std::optional<std::uint64_t>> static_mapping_values_;
   bool has_dynamic_tpdo_ = false;
 };
+
+/// The minimum and maximum of a numeric type, as the bits of its values.
+[[nodiscard]] std::uint64_t lowest(const canopen::DataTypeRow& type);
+[[nodiscard]] std::uint64_t highest(const canopen::DataTypeRow& type);
 
 /// An ARRAY whose elements 1..N have the same numeric type, access and limits: one template in C++.
 [[nodiscard]] bool describes_uniform_array(const Object& object);

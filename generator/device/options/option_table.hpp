@@ -141,12 +141,17 @@ inline constexpr OptionRow rows[] = {
      "", "zero"},
     {emcy, "reset_code", "reset_emergency", emergency_code,
      "emergency error code of an EMCY sent before a reset by NMT command, with the manufacturer-specific bit of 1001h: "
-     "`\"FF00h\"`",
+     "`\"FF00h\"`; the errors in 1003h remain after the reset",
      "", "none"},
     {emcy, "history_keeps_resets", "error_history_keeps_resets", flag,
      "1003h also records EMCYs that report the end of an error", "false"},
     {emcy, "history_abort_code", "error_history_abort_code", abort_code,
      "abort code for a write of a value other than 0 to 1003h:00", "\"0x06090030\""},
+    {emcy, "history_empty_is_zero", "error_history_empty_is_zero", flag,
+     "an element of 1003h above the number of errors is 0; if false, its upload is aborted with 0800 0024h", "false"},
+    {emcy, "history_has_info", "error_history_has_info", flag,
+     "the high half of an element of 1003h has the first two manufacturer-specific bytes of the EMCY; if false, it is 0",
+     "true"},
     {storage, "entries", "storing", structured,
      "objects or entries that 1010h stores differently from what their access type implies: `{\"6010h:01\": \"never\"}`, [see "
      "below](#stored-parameters)"},

@@ -38,6 +38,7 @@
 #include "canopen/node/service_host.hpp"
 #include "canopen/node/services.hpp"
 #include "canopen/node/value_check.hpp"
+#include "canopen/od/access_probe.hpp"
 #include "canopen/od/device_object.hpp"
 #include "canopen/od/object_store.hpp"
 #include "canopen/pdo/mpdo.hpp"
@@ -205,6 +206,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
                   "get: this device does not have the object");
     static_assert(!is_of_another_device<Object, Device>,
                   "get: this is an object of another device; this device has another one at its index");
+    AccessProbe<Device>::uses(Object::index, Object::sub_index);
     if constexpr (is_in_dictionary<Object, Device>) return store_.template get<Object>();
     return {};
   }
@@ -213,6 +215,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// called, and services apply a new parameter without checking whether it may change now. TPDOs are sent as with the
   /// typed `set`. Length and limits are checked as for a download; read_only: it is a constant in the EDS.
   [[nodiscard]] AbortCode set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
+    AccessProbe<Device>::uses(index, sub_index);
     const entry::Word word = EntryAccess<Device>::find(index, sub_index);
     if (word == Dictionary::no_object) return AbortCode::no_object;
     if (word == Dictionary::no_sub_index) return AbortCode::no_sub_index;
@@ -249,6 +252,10 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// error of the application sets, none for an error without bits. EMCY 0000h is sent with the remaining bits, unless
   /// no error had set `bits`.
   void emergency_over(ErrorRegister bits) { emergencies().end(host(), bits); }
+  /// The same, with the manufacturer-specific bytes of EMCY 0000h for the errors that remain.
+  void emergency_over(ErrorRegister bits, const EmergencyInfo& remaining) {
+    emergencies().end(host(), bits, remaining);
+  }
 
   /// Returns the number of EMCYs lost since power-on because too many were waiting while the bus had no room, the
   /// inhibit time 1015h ran or the node was Stopped. 1003h, if it exists, records them nevertheless. At most 65,535.
@@ -389,6 +396,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// Checks a value and sets it.
   template <DictionaryObject Object>
   [[nodiscard]] AbortCode assign(const typename Object::type& value) {
+    AccessProbe<Device>::uses(Object::index, Object::sub_index);
     if constexpr (can_be_refused<Object>) {
       if (const AbortCode code = check_limits<Object>(value); code != ok) return code;
     }

@@ -59,7 +59,7 @@ DEVICES = {
     "can_2024c": Device(74, **MODULE_ERROR),
     "can_2053c": Device(97, (("digital 1 0x55",), ("digital 1 0xAA",)), **MODULE_ERROR),
     "can_2057c": Device(73, **MODULE_ERROR),
-    "cpc_tc1": Device(106, LIMIT_SWITCH),
+    "cpc_tc1": Device(110, LIMIT_SWITCH, "fault 0x3210 0x04", "fault-over 0x04"),
     "cpd": Device(101, LIMIT_SWITCH),
     "ezd_1136": Device(96, LIMIT_SWITCH),
     "rk5c": Device(76, (("position 1 12345",), ("position 1 23456",)), "hardware bad", "hardware good"),

@@ -82,6 +82,27 @@ TEST(UniformArray, KeepsLimitsOfEachElementWhereTheyDiffer) {
   EXPECT_NE(limits[1].find("0x2000, 0x02"), std::string::npos) << limits[1];
 }
 
+TEST(Limits, OfTheWholeTypeHaveNoRow) {
+  struct Row {
+    std::string_view data_type, limits;
+    std::size_t rows;
+  };
+  constexpr Row rows[] = {
+      {"0x5", "LowLimit=0\nHighLimit=255\n", 0},
+      {"0x5", "LowLimit=0\nHighLimit=254\n", 1},
+      {"0x5", "HighLimit=0xFF\n", 0},
+      {"0x3", "LowLimit=-32768\nHighLimit=32767\n", 0},
+      {"0x3", "LowLimit=-32767\nHighLimit=32767\n", 1},
+      {"0x4", "LowLimit=-2147483648\nHighLimit=2147483647\n", 0},
+      {"0x7", "LowLimit=0\nHighLimit=0xFFFFFFFF\n", 0},
+      {"0x7", "LowLimit=1\nHighLimit=0xFFFFFFFF\n", 1},
+  };
+  for (const auto& [data_type, limits, count] : rows) {
+    DeviceFromText text(array_of({{data_type, "rw", limits}}));
+    EXPECT_EQ(limits_of(text).size(), count) << data_type << ' ' << limits;
+  }
+}
+
 /// A TPDO with dynamic mapping needs an address of everything that it can map, including constants.
 constexpr std::string_view dynamic_tpdo =
     "[1800]\nParameterName=Communication\nObjectType=0x9\nSubNumber=2\n"

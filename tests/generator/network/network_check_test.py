@@ -199,6 +199,7 @@ def problems_of_example(edsc: Path, source: Path, example: Path) -> list[str]:
     return [f"{example.name}: exit code {ran.returncode}\n{ran.stdout}{ran.stderr}"]
 
 
+# shows 001.40
 def problems_of_times(edsc: Path, source: Path) -> list[str]:
     """The table has the same messages as JSON, each at most as long as its bound; the cycle is that of the manual's example.
 

@@ -18,7 +18,7 @@ using Powered = bench::Bench<Device, canopen::StoredIn<MemoryStorage>, Handlers.
 
 // Manual 000, chapter 12, 1010h and 1011h
 
-// shows 000.138, 000.139, 000.158, 000.159
+// shows 000.158, 000.159
 TEST(StorageOfManual000, TakesTheSignaturesForEachRange) {
   MemoryStorage storage;
   Powered<cpc_tc1::Device> drive{canopen::stored_in(storage)};

@@ -57,6 +57,14 @@ class EmergencyProducer {
     note_reset(store);
     return true;
   }
+  /// The same, with manufacturer-specific bytes of the errors that remain.
+  bool gone(ObjectStore<Device>& store, ErrorRegister bits, const EmergencyInfo& remaining) {
+    const std::uint8_t held = held_by(bits);
+    if ((application_bits_ & (held == unnamed ? 0xFF : held)) == 0) return false;
+    application_bits_ &= static_cast<std::uint8_t>(~unsigned{held});
+    note(store, emergency_code::reset, remaining);
+    return true;
+  }
 
   /// Reports an error that a service has detected.
   void appeared(ObjectStore<Device>& store, ServiceError error) {
@@ -116,14 +124,16 @@ class EmergencyProducer {
     inhibit_ = {};
   }
 
-  /// Sends the EMCY before a requested reset, if the device has one. It is lost if the bus has no room.
+  /// Sends the EMCY before a requested reset, if the device has one, and records it in the history, which the reset
+  /// keeps. The message is lost if the bus has no room.
   template <Bus BusType>
-  void announce_reset([[maybe_unused]] const ObjectStore<Device>& store, [[maybe_unused]] BusType& bus) const {
+  void announce_reset([[maybe_unused]] ObjectStore<Device>& store, [[maybe_unused]] BusType& bus) const {
     if constexpr (has_cob_id && Device::options.reset_emergency != 0) {
       constexpr std::uint16_t code = Device::options.reset_emergency;
       const auto bits =
           static_cast<std::uint8_t>(error_register() | static_cast<std::uint8_t>(ErrorRegister::manufacturer));
       (void)send(store, bus, message_of(code, bits, Device::emergency_info(code)));
+      remember(store, code, Device::emergency_info(code));
     }
   }
 
@@ -154,6 +164,13 @@ class EmergencyProducer {
       }
     }
     return true;
+  }
+
+  /// Sets the elements of the history to 0.
+  static void clear_history([[maybe_unused]] ObjectStore<Device>& store) {
+    if constexpr (has_history) {
+      std::ranges::fill_n(store.entries().ram(history_first), history_capacity * 4, std::uint8_t{0});
+    }
   }
 
   /// Returns when the inhibit time ends, or when the next message is to be sent, if the NMT state allows it: not later
@@ -260,7 +277,10 @@ class EmergencyProducer {
       unsigned older = count;
       if (older >= history_capacity) older = history_capacity - 1;  // the application may set any number
       count = static_cast<std::uint8_t>(older + 1);
-      const std::uint32_t newest = code | static_cast<std::uint32_t>(info[0] << 16) | (std::uint32_t{info[1]} << 24);
+      std::uint32_t newest = code;
+      if constexpr (Device::options.error_history_has_info) {
+        newest |= static_cast<std::uint32_t>(info[0] << 16) | (std::uint32_t{info[1]} << 24);
+      }
       for (field += sizeof newest * older; older != 0; --older, field -= sizeof newest) {
         std::uint32_t moved;
         std::memcpy(&moved, std::assume_aligned<alignof(std::uint32_t)>(field - sizeof moved), sizeof moved);

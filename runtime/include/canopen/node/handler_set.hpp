@@ -12,6 +12,7 @@
 #include "canopen/node/application.hpp"
 #include "canopen/node/handled.hpp"
 #include "canopen/node/parts.hpp"
+#include "canopen/od/access_probe.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/value_bits.hpp"
@@ -76,6 +77,7 @@ class HandlerSet {
     AbortCode code = ok;
     for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
       if constexpr (handler_detail::has_object<Object, typename Handled<Handler>::BeforeWrite>) {
+        AccessProbe<Device>::uses(Object::index, Object::sub_index);
         if (code == ok) code = Handled<Handler>::template before_write<Object>(handler, node, value);
       }
     });
@@ -87,9 +89,9 @@ class HandlerSet {
     AbortCode code = ok;
     for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
       Handled<Handler>::BeforeWrite::for_each([&]<class Object>() {
-        if (code == ok && key == object_key(Object::index, Object::sub_index))
-          code =
-              Handled<Handler>::template before_write<Object>(handler, node, value_detail::value_from<Object>(bytes));
+        if (code != ok || key != object_key(Object::index, Object::sub_index)) return;
+        AccessProbe<Device>::uses(Object::index, Object::sub_index);
+        code = Handled<Handler>::template before_write<Object>(handler, node, value_detail::value_from<Object>(bytes));
       });
     });
     return code;
@@ -99,8 +101,10 @@ class HandlerSet {
   template <DictionaryObject Object>
   void after_write([[maybe_unused]] Node& node, [[maybe_unused]] const typename Object::type& value) {
     for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
-      if constexpr (handler_detail::has_object<Object, typename Handled<Handler>::AfterWrite>)
+      if constexpr (handler_detail::has_object<Object, typename Handled<Handler>::AfterWrite>) {
+        AccessProbe<Device>::uses(Object::index, Object::sub_index);
         Handled<Handler>::template after_write<Object>(handler, node, value);
+      }
     });
   }
 
@@ -109,8 +113,9 @@ class HandlerSet {
   void after_write(Node& node, std::uint32_t key, const Store& store) {
     for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
       Handled<Handler>::AfterWrite::for_each([&]<class Object>() {
-        if (key == object_key(Object::index, Object::sub_index))
-          Handled<Handler>::template after_write<Object>(handler, node, store.template get<Object>());
+        if (key != object_key(Object::index, Object::sub_index)) return;
+        AccessProbe<Device>::uses(Object::index, Object::sub_index);
+        Handled<Handler>::template after_write<Object>(handler, node, store.template get<Object>());
       });
     });
   }
@@ -120,8 +125,9 @@ class HandlerSet {
     AbortCode code = ok;
     for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
       Handled<Handler>::Read::for_each([&]<class Object>() {
-        if (code == ok && key == object_key(Object::index, Object::sub_index))
-          code = Handled<Handler>::template read<Object>(handler, node);
+        if (code != ok || key != object_key(Object::index, Object::sub_index)) return;
+        AccessProbe<Device>::uses(Object::index, Object::sub_index);
+        code = Handled<Handler>::template read<Object>(handler, node);
       });
     });
     return code;

@@ -76,6 +76,10 @@ struct DeviceOptions {
   bool error_history_keeps_resets = false;
   /// Abort code for a write of any value but 0 to 1003h:00.
   std::uint32_t error_history_abort_code = 0x0609'0030;
+  /// An element of 1003h above the number of errors is 0. If false, 0800 0024h aborts its upload.
+  bool error_history_empty_is_zero = false;
+  /// The high half of an element of 1003h has the first two manufacturer-specific bytes of the EMCY. If false, it is 0.
+  bool error_history_has_info = true;
   /// Expedited uploads indicate the number of valid bytes. If false, their command byte is 42h.
   bool sdo_upload_size_indicated = true;
   /// A value that is too long is rejected with 0607 0012h, one that is too short with 0607 0013h. If false, both with

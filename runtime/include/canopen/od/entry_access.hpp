@@ -10,6 +10,7 @@
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/bytes.hpp"
+#include "canopen/od/access_probe.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/entry_search.hpp"
 #include "canopen/od/value.hpp"
@@ -106,6 +107,7 @@ class EntryAccess {
   /// Returns an unsigned value of up to 32 bits of an entry that is known at compile time.
   template <std::uint16_t Index, std::uint8_t SubIndex>
   [[nodiscard]] std::uint32_t number() const {
+    AccessProbe<Device>::uses(Index, SubIndex);
     return store_->template number<Index, SubIndex>();
   }
 

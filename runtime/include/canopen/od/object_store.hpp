@@ -73,12 +73,15 @@ class ObjectStore {
     }
   }
 
-  /// Sets 1000h..1FFFh to their default values, with the node-ID added where the EDS says so.
+  /// Sets 1000h..1FFFh to their default values, with the node-ID added where the EDS says so. A device with an EMCY
+  /// before a reset keeps its error history 1003h: only then can this error be read.
   void reset_communication(NodeId node_id) {
     node_id_ = node_id;
     const BoundDomains bound = bound_domains();
+    const ErrorHistory history = error_history();
     Device::reset_communication(values_);
     bind_again(bound);
+    restore(history);
     add_node_id(Device::node_id_relative_communication());
   }
 
@@ -157,6 +160,44 @@ class ObjectStore {
   }
   void bind_again(const BoundDomains& bound) {
     for (std::size_t i = 0; i < domain_count; ++i) std::memcpy(ram() + domain_offsets[i], &bound[i], sizeof(Domain));
+  }
+
+  /// Calls `visit(word)` for each entry of 1003h that a reset keeps: all in RAM, in a device with an EMCY before a
+  /// reset.
+  template <class Visit>
+  static constexpr void for_each_kept_error([[maybe_unused]] Visit visit) {
+    if constexpr (Device::options.reset_emergency != 0) {
+      Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t, entry::Word word) {
+        if (index == 0x1003 && entry::place_of(word) == entry::Place::ram) visit(word);
+      });
+    }
+  }
+
+  static constexpr std::size_t kept_errors = [] {
+    std::size_t count = 0;
+    for_each_kept_error([&](entry::Word) { ++count; });
+    return count;
+  }();
+
+  static constexpr std::array<entry::Word, kept_errors> error_words = [] {
+    std::array<entry::Word, kept_errors> words{};
+    std::size_t i = 0;
+    for_each_kept_error([&](entry::Word word) { words[i++] = word; });
+    return words;
+  }();
+
+  using ErrorHistory = std::array<std::uint32_t, kept_errors>;
+  [[nodiscard]] ErrorHistory error_history() {
+    ErrorHistory errors{};
+    for (std::size_t i = 0; i < kept_errors; ++i) {
+      std::memcpy(&errors[i], ram() + entry::offset_of(error_words[i]), entry::wire_bytes(error_words[i]));
+    }
+    return errors;
+  }
+  void restore(const ErrorHistory& errors) {
+    for (std::size_t i = 0; i < kept_errors; ++i) {
+      std::memcpy(ram() + entry::offset_of(error_words[i]), &errors[i], entry::wire_bytes(error_words[i]));
+    }
   }
 
   [[nodiscard]] std::uint8_t* ram() {

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/od/access_probe.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object_store.hpp"
 
@@ -43,7 +44,10 @@ struct ChannelObject {
   [[nodiscard]] static Type get([[maybe_unused]] EntryAccess<Device> entries, [[maybe_unused]] std::uint8_t channel,
                                 Type missing) {
     if constexpr (exists) {
-      if (channel < count) return static_cast<Type>(entries.number(words[channel]));
+      if (channel < count) {
+        AccessProbe<Device>::uses(Index, static_cast<std::uint8_t>(channel + 1));
+        return static_cast<Type>(entries.number(words[channel]));
+      }
     }
     return missing;
   }
@@ -55,6 +59,7 @@ struct ChannelObject {
     std::array<std::uint8_t, sizeof(Type)> bytes;
     std::memcpy(bytes.data(), &value, sizeof value);
     if (silently) {
+      AccessProbe<Device>::uses(Index, static_cast<std::uint8_t>(channel + 1));
       node.entries().write(words[channel], bytes);
     } else {
       static_cast<void>(node.set(Index, static_cast<std::uint8_t>(channel + 1), bytes));

@@ -300,7 +300,7 @@ class Drive {
   template <class Node>
   void brake(const Node& node, Braking braking) {
     if (braking == Braking::none) return axis_.enable(false);
-    axis_.stop(modes_.deceleration(node, braking));
+    stop(axis_, modes_.deceleration(node, braking), braking);
   }
 
   // Modes of operation
@@ -332,8 +332,8 @@ class Drive {
     halted_ = halt;
     if (halt) {
       modes_.interrupt_homing();
-      axis_.stop(modes_.deceleration(
-          node, DriveParameters::template braking<object::HaltOptionCode>(node, option_code::halt)));
+      const Braking braking = DriveParameters::template braking<object::HaltOptionCode>(node, option_code::halt);
+      stop(axis_, modes_.deceleration(node, braking), braking);
     } else {
       resume();
     }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "canopen/base/clock.hpp"
+#include "canopen/profile/cia402_option_code.hpp"
 
 namespace canopen::cia402 {
 
@@ -48,6 +49,17 @@ concept Axis = requires(Type& axis, const Type& state, std::int32_t number, std:
   { state.inputs() } -> std::same_as<std::uint32_t>;  ///< bits of `input`
   { axis.index_pulse() } -> std::same_as<bool>;       ///< one has occurred since the last call
 };
+
+/// Stops an axis. An axis whose deceleration depends on the kind of braking, for example by a current limit, has
+/// stop(deceleration, braking).
+template <Axis Type>
+constexpr void stop(Type& axis, std::uint32_t deceleration, [[maybe_unused]] Braking braking) {
+  if constexpr (requires { axis.stop(deceleration, braking); }) {
+    axis.stop(deceleration, braking);
+  } else {
+    axis.stop(deceleration);
+  }
+}
 
 /// Functions of an axis of a drive with a torque mode. Torque is in 0.1 % of the rated torque 6076h, as 6071h.
 template <class Type>

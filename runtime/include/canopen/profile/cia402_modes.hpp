@@ -239,7 +239,7 @@ class Modes {
     if (at_switch) set_points_.clear();
     if (at_switch ||
         (keeps_software_limits() && DriveParameters::software_limit_blocks(node, axis.position_demand(), velocity))) {
-      axis.stop(DriveParameters::quick_stop_deceleration(node));
+      stop(axis, DriveParameters::quick_stop_deceleration(node), Braking::quick_stop_ramp);
     }
   }
 
@@ -406,7 +406,7 @@ class Modes {
     if (limit_switch_blocks(axis.inputs(), direction) ||
         DriveParameters::software_limit_blocks(node, axis.position(), direction)) {
       torque_.block();
-      axis.stop(DriveParameters::quick_stop_deceleration(node));
+      stop(axis, DriveParameters::quick_stop_deceleration(node), Braking::quick_stop_ramp);
     } else {
       axis.apply_torque(torque_.demand());
     }

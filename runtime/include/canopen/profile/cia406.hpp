@@ -54,7 +54,7 @@ class Encoder {
   [[nodiscard]] static std::int32_t position_steps(Node& node,
                                                    std::int64_t nanometres) requires(Device::dictionary.has(0x6005,
                                                                                                             1)) {
-    const std::uint32_t step = node.entries().number(Device::dictionary.find(0x6005, 1));
+    const std::uint32_t step = node.entries().template number<0x6005, 1>();
     return step == 0 ? 0 : static_cast<std::int32_t>(nanometres / step);
   }
 
@@ -62,7 +62,7 @@ class Encoder {
   template <class Node>
   [[nodiscard]] static std::int16_t speed_steps(Node& node,
                                                 std::int32_t hundredths) requires(Device::dictionary.has(0x6005, 2)) {
-    const std::uint32_t step = node.entries().number(Device::dictionary.find(0x6005, 2));
+    const std::uint32_t step = node.entries().template number<0x6005, 2>();
     return step == 0 ? std::int16_t{0} : static_cast<std::int16_t>(hundredths / static_cast<std::int32_t>(step));
   }
 

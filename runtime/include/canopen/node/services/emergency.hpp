@@ -54,14 +54,21 @@ class Emergency : public ServiceDefaults<Emergency<Device>> {
     if constexpr (Producer::has_parameters) return Producer::check(host.entries(), index, bytes);
     return ok;
   }
-  /// An element of the history without an error cannot be read.
+  /// An element of the history without an error cannot be read, unless it is 0 by an option.
   template <class Host>
   static AbortCode before_read([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t index,
                                [[maybe_unused]] std::uint8_t sub_index) {
-    if constexpr (Device::dictionary.has(0x1003, 0)) {
+    if constexpr (Device::dictionary.has(0x1003, 0) && !Device::options.error_history_empty_is_zero) {
       if (index == 0x1003 && sub_index > host.store().template number<0x1003, 0>()) return AbortCode::no_data;
     }
     return ok;
+  }
+
+  template <class Host>
+  static void after_write([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t index, std::uint8_t) {
+    if constexpr (has_writable_history && Device::options.error_history_empty_is_zero) {
+      if (index == 0x1003) Producer::clear_history(host.store());
+    }
   }
 
   /// Sends the EMCY before a reset that has been commanded, if the device has one.
@@ -88,6 +95,10 @@ class Emergency : public ServiceDefaults<Emergency<Device>> {
   template <class Host>
   void end(Host& host, ErrorRegister bits) {
     if (producer_.gone(host.store(), bits)) host.attend();
+  }
+  template <class Host>
+  void end(Host& host, ErrorRegister bits, const EmergencyInfo& remaining) {
+    if (producer_.gone(host.store(), bits, remaining)) host.attend();
   }
   /// Ends an error that a service has detected.
   template <class Host>
