@@ -84,11 +84,6 @@ class Manual:
     title: str
     sections: list[Section] = field(default_factory=list)
 
-    @property
-    def converted(self) -> bool:
-        """Has the format of sections. TOLERATED until all files have it: files without."""
-        return any(section.heading == MISPRINTS for section in self.sections)
-
 
 def read_manual(path: Path, items: dict[str, Item], problems: list[str]) -> Manual:
     lines = path.read_text(encoding="utf-8").splitlines()
@@ -272,9 +267,8 @@ def main() -> int:
     items: dict[str, Item] = {}
     manuals = [read_manual(folder / f"{name}.md", items, problems) for name in MANUALS]
     for manual in manuals:
-        if manual.converted:
-            check_sections(manual, items, problems)
-            compare_with_text(manual, source.parent / "shared" / "seeds", problems)
+        check_sections(manual, items, problems)
+        compare_with_text(manual, source.parent / "shared" / "seeds", problems)
     for item, (kind, reason) in read_rows(folder / "out_of_reach.tsv", 3, items, problems):
         if item.kind:
             problems.append(f"out_of_reach.tsv: duplicate item [{item.number}]")

@@ -12,7 +12,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from value_only import DEVICES, Key, names_in_eds, read_rows, table_of, text_of
+from value_only import DEVICES, Key, names_in_eds, read_rows, text_of
 
 
 def main() -> int:
@@ -34,9 +34,6 @@ def main() -> int:
         rows = {key: row for row in read_rows(source, device, problems) for key in row.keys}
         print(f"{device}: {len(names)} entries, {len(unused)} with a value only")
         undecided = [f"{text_of(key)} {names[key]}" for key in sorted(unused) if key not in rows]
-        if not table_of(source, device).exists():  # TOLERATED until all devices have a table
-            print("\n".join(f"{device}: not decided: {entry}" for entry in undecided))
-            continue
         problems += [f"{device}: {entry} is used by SDO and PDOs only: give it its function or a row in value_only.tsv"
                      for entry in undecided]
         problems += [f"{device}: {text_of(key)} is used by the application: remove its row in value_only.tsv"
