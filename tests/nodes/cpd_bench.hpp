@@ -2,8 +2,10 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <canopen/base/bytes.hpp>
 
 #include <cstdint>
+#include <span>
 #include <string>
 
 #include "cpd/cpd.hpp"
@@ -38,8 +40,7 @@ struct Servo : NodeBench<cpd_node::Cpd> {
   std::uint32_t read(std::uint16_t index, std::uint8_t sub_index, unsigned bytes) {
     const canopen::Frame answer = frame(ask(sdo(0x605, 0x40, index, sub_index, 0)));
     EXPECT_EQ(answer.data[0], 0x43 | (4 - bytes) << 2) << text(answer);
-    return answer.data[4] | answer.data[5] << 8 | answer.data[6] << 16 |
-           static_cast<std::uint32_t>(answer.data[7]) << 24;
+    return canopen::little_endian_number(std::span{answer.data}.subspan(4));
   }
   static std::string sdo(std::uint32_t can_id, unsigned command, std::uint16_t index, std::uint8_t sub_index,
                          std::uint32_t data) {

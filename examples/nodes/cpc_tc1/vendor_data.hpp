@@ -4,6 +4,7 @@
 
 #include <array>
 #include <canopen/base/abort_code.hpp>
+#include <canopen/base/bytes.hpp>
 #include <canopen/storage/storage.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -37,7 +38,7 @@ class VendorData {
     const Image stored = read();
     values = {};
     if (const Bytes& rate = stored[rs232]; rate.size() == 4) {
-      values.rs232_rate = rate[0] | rate[1] << 8 | rate[2] << 16 | std::uint32_t{rate[3]} << 24;
+      values.rs232_rate = canopen::little_endian_number(rate);
     }
     values.program = stored[program];
     if (const Bytes& mapping = stored[error_mapping]; !mapping.empty()) {
@@ -86,7 +87,7 @@ class VendorData {
     for (Bytes& part : image) {
       std::array<std::uint8_t, 4> length{};
       if (!storage_->read(at, length)) return {};
-      const std::uint32_t size = length[0] | length[1] << 8 | length[2] << 16 | std::uint32_t{length[3]} << 24;
+      const std::uint32_t size = canopen::little_endian_number(length);
       at += 4;
       if (size > storage_->size() - at) return {};
       part.resize(size);

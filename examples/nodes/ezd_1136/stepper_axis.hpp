@@ -106,7 +106,7 @@ class StepperAxis : public nodes::SimulatedAxis {
     }
     Base::step(span);
     step_filter(span);
-    const double turned = (std::int64_t{motor_position()} - before) / turn_;
+    const double turned = static_cast<double>(std::int64_t{motor_position()} - before) / turn_;
     shaft_ += settings_.motor_reversed ? -turned : turned;
     rests_for_ = moving() ? canopen::Duration{0} : std::min(rests_for_ + span, longest);
     locked_for_ = is_held_up() ? std::min(locked_for_ + span, longest) : canopen::Duration{0};
