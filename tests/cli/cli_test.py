@@ -464,7 +464,7 @@ class Generate(CommandLine):
 
 class Check(CommandLine):
     def test_says_nothing_of_a_good_data_sheet(self) -> None:
-        result = self.edsc("check", CLEAN)
+        result = self.edsc("check", SOURCE_DIR / "eds/ezd-1136.eds")
         self.expect(FINE, result)
         self.assertEqual((result.stdout, result.stderr), ("", ""))
 

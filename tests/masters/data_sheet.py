@@ -5,6 +5,7 @@ from __future__ import annotations
 import configparser
 import re
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 
 SECTION = re.compile(r"([0-9A-Fa-f]{4})(?:sub([0-9A-Fa-f]+))?")
@@ -29,6 +30,7 @@ class Entry:
     low: int | None
     high: int | None
     mappable: bool
+    factor: Decimal  # physical units of one increment
 
     @property
     def name(self) -> str:
@@ -88,7 +90,7 @@ class DataSheet:
                 limit -= 1 << 8 * size
             limits.append(limit)
         return Entry(index, sub, kind, keys["AccessType"].strip().lower(), default if text else None, *limits,
-                     keys.get("PDOMapping", "0").strip() == "1")
+                     keys.get("PDOMapping", "0").strip() == "1", Decimal(keys.get("Factor", "1").strip()))
 
     def get(self, index: int, sub: int = 0) -> Entry | None:
         return self.entries.get((index, sub))

@@ -467,6 +467,8 @@ class Walk:
                 continue
             frame = b"".join(self.rpdo_value(entry) for entry in entries)
             self.nmt(START)
+            if self.sheet.get(ERROR_HISTORY) and self.sheet.get(ERROR_HISTORY).writable:
+                self.write(ERROR_HISTORY, 0, 0)  # a device may keep it over a reset
             self.wire.send(cob_id & 0x7FF, frame[:-1])
             self.expect_emcy(0x8210, 0x11)
             self.check("emcy", "1001h", f"{self.read(ERROR_REGISTER):02X}", "11")

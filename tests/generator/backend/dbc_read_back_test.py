@@ -30,9 +30,10 @@ def signal_of(sheet: DataSheet, word: int, start: int) -> dict:
     index, sub, bits = word >> 16, word >> 8 & 0xFF, word & 0xFF
     entry = sheet.get(index, sub)
     low, high = (0, 1) if TYPES[entry.type][0] == "BOOLEAN" else entry.range_of_type()
+    limits = (low if entry.low is None else entry.low, high if entry.high is None else entry.high)
+    low, high = (float(limit * entry.factor) for limit in limits)
     return {"entry": f"{index:04X}h:{sub:02X}", "startBit": start, "length": bits, "signed": TYPES[entry.type][2],
-            "min": low if entry.low is None else entry.low, "max": high if entry.high is None else entry.high,
-            "endian": "Intel", "factor": 1, "offset": 0}
+            "min": low, "max": high, "endian": "Intel", "factor": float(entry.factor), "offset": 0}
 
 
 def messages_of(sheet: DataSheet) -> dict[int, dict]:
