@@ -112,16 +112,14 @@ struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr auto name = "COB-ID EMCY";
 };
 
-/// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    rk5c.eds:302
+/// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    rk5c.eds:303
 struct inhibit_time_emcy : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1015;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Inhibit time EMCY";
-  static constexpr type low_limit = 0;
-  static constexpr type high_limit = 65535;
 };
 
-/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              rk5c.eds:315
+/// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              rk5c.eds:314
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -172,7 +170,7 @@ struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> 
 
 /// SDO server parameter.  1200h
 namespace sdo_server_parameter {
-/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           rk5c.eds:333
+/// Highest sub-index supported.  1200h:00  UNSIGNED8  ro                           rk5c.eds:332
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -180,7 +178,7 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 2;
 };
-/// COB-ID client to server (rx).  1200h:01  UNSIGNED32  ro                         rk5c.eds:344
+/// COB-ID client to server (rx).  1200h:01  UNSIGNED32  ro                         rk5c.eds:343
 struct cob_id_client_to_server_rx : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
@@ -188,7 +186,7 @@ struct cob_id_client_to_server_rx : canopen::TypedObject<std::uint32_t, canopen:
   static constexpr type low_limit = 0x00000601;
   static constexpr type high_limit = 0x0000067F;
 };
-/// COB-ID server to client (tx).  1200h:02  UNSIGNED32  ro                         rk5c.eds:357
+/// COB-ID server to client (tx).  1200h:02  UNSIGNED32  ro                         rk5c.eds:356
 struct cob_id_server_to_client_tx : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -200,7 +198,7 @@ struct cob_id_server_to_client_tx : canopen::TypedObject<std::uint32_t, canopen:
 
 /// TPDO communication parameter 1.  1800h
 namespace tpdo_communication_parameter_1 {
-/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           rk5c.eds:373
+/// Highest sub-index supported.  1800h:00  UNSIGNED8  ro                           rk5c.eds:372
 struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -208,13 +206,13 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type low_limit = 5;
   static constexpr type high_limit = 5;
 };
-/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  rk5c.eds:385
+/// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  rk5c.eds:384
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
-/// Transmission type.  1800h:02  UNSIGNED8  rw                                     rk5c.eds:397
+/// Transmission type.  1800h:02  UNSIGNED8  rw                                     rk5c.eds:396
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -222,7 +220,7 @@ struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::r
   static constexpr type low_limit = 0;
   static constexpr type high_limit = 255;
 };
-/// Event timer.  1800h:05  UNSIGNED16  rw                                          rk5c.eds:408
+/// Event timer.  1800h:05  UNSIGNED16  rw                                          rk5c.eds:407
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
@@ -234,7 +232,7 @@ struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 
 /// TPDO mapping parameter 1.  1A00h
 namespace tpdo_mapping_parameter_1 {
-/// Number of mapped application objects.  1A00h:00  UNSIGNED8  ro                  rk5c.eds:427
+/// Number of mapped application objects.  1A00h:00  UNSIGNED8  ro                  rk5c.eds:426
 struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -242,7 +240,7 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type low_limit = 2;
   static constexpr type high_limit = 2;
 };
-/// Mapping entry 1.  1A00h:01  UNSIGNED32  ro                                      rk5c.eds:438
+/// Mapping entry 1.  1A00h:01  UNSIGNED32  ro                                      rk5c.eds:437
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
@@ -250,7 +248,7 @@ struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
   static constexpr type low_limit = 0x60200120;
   static constexpr type high_limit = 0x60200120;
 };
-/// Mapping entry 2.  1A00h:02  UNSIGNED32  ro                                      rk5c.eds:449
+/// Mapping entry 2.  1A00h:02  UNSIGNED32  ro                                      rk5c.eds:448
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x02;
@@ -260,7 +258,7 @@ struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro
 };
 }  // namespace tpdo_mapping_parameter_1
 
-/// Number of cursors.  2000h:00  UNSIGNED8  ro                                     rk5c.eds:623
+/// Number of cursors.  2000h:00  UNSIGNED8  ro                                     rk5c.eds:622
 struct number_of_cursors : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x2000;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -269,7 +267,7 @@ struct number_of_cursors : canopen::TypedObject<std::uint8_t, canopen::Access::r
   static constexpr type high_limit = 1;
 };
 
-/// Linear encoder measuring step settings.  6005h:01..02  UNSIGNED32  ro           rk5c.eds:481
+/// Linear encoder measuring step settings.  6005h:01..02  UNSIGNED32  ro           rk5c.eds:480
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct linear_encoder_measuring_step_settings : canopen::Object<0x6005, SubIndex, std::uint32_t, canopen::Access::ro> {
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "linear_encoder_measuring_step_settings has the sub-indices 0..2");
@@ -282,13 +280,13 @@ struct linear_encoder_measuring_step_settings<0> : canopen::TypedObject<std::uin
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Position step setting.  6005h:01  UNSIGNED32  ro                                rk5c.eds:481
+/// Position step setting.  6005h:01  UNSIGNED32  ro                                rk5c.eds:480
 using linear_encoder_measuring_step_settings_position_step_setting = linear_encoder_measuring_step_settings<1>;
 
-/// Speed step setting.  6005h:02  UNSIGNED32  ro                                   rk5c.eds:492
+/// Speed step setting.  6005h:02  UNSIGNED32  ro                                   rk5c.eds:491
 using linear_encoder_measuring_step_settings_speed_step_setting = linear_encoder_measuring_step_settings<2>;
 
-/// Preset values for multi-sensor devices.  6010h:01..01  INTEGER32  rw            rk5c.eds:519
+/// Preset values for multi-sensor devices.  6010h:01..01  INTEGER32  rw            rk5c.eds:518
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct preset_values_for_multi_sensor_devices : canopen::Object<0x6010, SubIndex, std::int32_t, canopen::Access::rw> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "preset_values_for_multi_sensor_devices has the sub-indices 0..1");
@@ -303,7 +301,7 @@ struct preset_values_for_multi_sensor_devices<0> : canopen::TypedObject<std::uin
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Position values for multi-sensor devices.  6020h:01..01  INTEGER32  ro  TPDO    rk5c.eds:548
+/// Position values for multi-sensor devices.  6020h:01..01  INTEGER32  ro  TPDO    rk5c.eds:547
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct position_values_for_multi_sensor_devices : canopen::Object<0x6020, SubIndex, std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "position_values_for_multi_sensor_devices has the sub-indices 0..1");
@@ -318,7 +316,7 @@ struct position_values_for_multi_sensor_devices<0> : canopen::TypedObject<std::u
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Speed value.  6030h:01..01  INTEGER16  ro  TPDO                                 rk5c.eds:578
+/// Speed value.  6030h:01..01  INTEGER16  ro  TPDO                                 rk5c.eds:577
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct speed_value : canopen::Object<0x6030, SubIndex, std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "speed_value has the sub-indices 0..1");
@@ -333,7 +331,7 @@ struct speed_value<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> 
   static constexpr auto name = "Highest sub-index supported";
 };
 
-/// Cyclic timer.  6200h:00  UNSIGNED16  rw                                         rk5c.eds:591
+/// Cyclic timer.  6200h:00  UNSIGNED16  rw                                         rk5c.eds:590
 struct cyclic_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr std::uint16_t index = 0x6200;
   static constexpr std::uint8_t sub_index = 0x00;
@@ -342,7 +340,7 @@ struct cyclic_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
   static constexpr type high_limit = 65535;
 };
 
-/// Measuring step.  6501h:00  UNSIGNED32  ro                                       rk5c.eds:606
+/// Measuring step.  6501h:00  UNSIGNED32  ro                                       rk5c.eds:605
 struct measuring_step : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr std::uint16_t index = 0x6501;
   static constexpr std::uint8_t sub_index = 0x00;

@@ -467,13 +467,12 @@ class Walk:
                 continue
             frame = b"".join(self.rpdo_value(entry) for entry in entries)
             self.nmt(START)
-            if self.sheet.get(ERROR_HISTORY) and self.sheet.get(ERROR_HISTORY).writable:
-                self.write(ERROR_HISTORY, 0, 0)  # a device may keep it over a reset
+            errors = self.read(ERROR_HISTORY) if self.sheet.get(ERROR_HISTORY) else 0  # a device may keep them over a reset
             self.wire.send(cob_id & 0x7FF, frame[:-1])
             self.expect_emcy(0x8210, 0x11)
             self.check("emcy", "1001h", f"{self.read(ERROR_REGISTER):02X}", "11")
             if self.sheet.get(ERROR_HISTORY):
-                self.check("emcy", "1003h:00", self.read(ERROR_HISTORY), 1)
+                self.check("emcy", "1003h:00", self.read(ERROR_HISTORY), errors + 1)
                 self.check("emcy", "1003h:01", f"{self.read(ERROR_HISTORY, 1) & 0xFFFF:04X}", "8210")
             self.wire.send(cob_id & 0x7FF, frame[:-1])
             self.check("emcy", "the same again", self.emcy(SHORT), "nothing")

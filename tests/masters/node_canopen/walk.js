@@ -8,6 +8,7 @@ const PATIENCE = 120000, SHORT = 40;  // ms, for a frame that must be received a
 const UPLOAD = 600000;              // ms, for all segments of a long value, such as the EDS in 1021h
 const SIZES = { [DataType.INTEGER8]: 1, [DataType.INTEGER16]: 2, [DataType.INTEGER32]: 4, [DataType.UNSIGNED8]: 1,
   [DataType.UNSIGNED16]: 2, [DataType.UNSIGNED32]: 4 };
+const SIGNED = [0x02, 0x03, 0x04, 0x10, 0x12, 0x13, 0x14, 0x15];  // INTEGER8 and the like
 const HARMLESS = { 0x6040: 6, 0x6060: 1, 0x6098: 17 };  // values that do not move a drive, and that drives accept
 const STATE = { preOperational: 0x7F, operational: 5, stopped: 4, bootUp: 0 };
 
@@ -166,9 +167,11 @@ class Walk {
       } else {
         const { lowLimit: low, highLimit: high } = object;
         const start = this.defaultOf(object) || number(low || high || 0);
-        if (low !== undefined) trials.push(['low', number(low), 'taken'], ['below', number(low - 1), 'abort 06090032']);
+        const isSigned = SIGNED.includes(object.dataType), bits = 8 * size - (isSigned ? 1 : 0);
+        if (low !== undefined) trials.push(['low', number(low), 'taken']);
+        if (low > (isSigned ? -(2 ** bits) : 0)) trials.push(['below', number(low - 1), 'abort 06090032']);
         if (high !== undefined) trials.push(['high', number(high), 'taken']);
-        if (high !== undefined && high < 2 ** (8 * size) - 1) trials.push(['above', number(high + 1), 'abort 06090031']);
+        if (high < 2 ** bits - 1) trials.push(['above', number(high + 1), 'abort 06090031']);
         trials.push(['long', Buffer.concat([start, Buffer.alloc(1)]), 'abort 06070012']);
         if (size > 1) trials.push(['short', start.subarray(0, size - 1), 'abort 06070013']);
         trials.push(['restore', start, 'taken']);
