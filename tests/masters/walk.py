@@ -472,7 +472,8 @@ class Walk:
             self.expect_emcy(0x8210, 0x11)
             self.check("emcy", "1001h", f"{self.read(ERROR_REGISTER):02X}", "11")
             if self.sheet.get(ERROR_HISTORY):
-                self.check("emcy", "1003h:00", self.read(ERROR_HISTORY), errors + 1)
+                places = max(self.sheet.subs(ERROR_HISTORY))
+                self.check("emcy", "1003h:00", self.read(ERROR_HISTORY), min(errors + 1, places))
                 self.check("emcy", "1003h:01", f"{self.read(ERROR_HISTORY, 1) & 0xFFFF:04X}", "8210")
             self.wire.send(cob_id & 0x7FF, frame[:-1])
             self.check("emcy", "the same again", self.emcy(SHORT), "nothing")
