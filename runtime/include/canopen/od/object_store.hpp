@@ -78,7 +78,7 @@ class ObjectStore {
   void reset_communication(NodeId node_id) {
     node_id_ = node_id;
     const BoundDomains bound = bound_domains();
-    const ErrorHistory history = error_history();
+    const auto history = error_history();
     Device::reset_communication(values_);
     bind_again(bound);
     restore(history);
@@ -162,42 +162,41 @@ class ObjectStore {
     for (std::size_t i = 0; i < domain_count; ++i) std::memcpy(ram() + domain_offsets[i], &bound[i], sizeof(Domain));
   }
 
-  /// Calls `visit(word)` for each entry of 1003h that a reset keeps: all in RAM, in a device with an EMCY before a
-  /// reset.
-  template <class Visit>
-  static constexpr void for_each_kept_error([[maybe_unused]] Visit visit) {
-    if constexpr (Device::options.reset_emergency != 0) {
-      Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t, entry::Word word) {
-        if (index == 0x1003 && entry::place_of(word) == entry::Place::ram) visit(word);
-      });
-    }
-  }
-
+  /// Elements of 1003h that a reset keeps, one after the other in RAM: those of a device with an EMCY before a reset.
   static constexpr std::size_t kept_errors = [] {
     std::size_t count = 0;
-    for_each_kept_error([&](entry::Word) { ++count; });
+    if constexpr (Device::options.reset_emergency != 0) {
+      Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+        if (index == 0x1003 && sub_index != 0 && entry::place_of(word) == entry::Place::ram) ++count;
+      });
+    }
     return count;
   }();
 
-  static constexpr std::array<entry::Word, kept_errors> error_words = [] {
-    std::array<entry::Word, kept_errors> words{};
-    std::size_t i = 0;
-    for_each_kept_error([&](entry::Word word) { words[i++] = word; });
-    return words;
-  }();
-
-  using ErrorHistory = std::array<std::uint32_t, kept_errors>;
-  [[nodiscard]] ErrorHistory error_history() {
-    ErrorHistory errors{};
-    for (std::size_t i = 0; i < kept_errors; ++i) {
-      std::memcpy(&errors[i], ram() + entry::offset_of(error_words[i]), entry::wire_bytes(error_words[i]));
+  struct ErrorHistory {
+    std::uint8_t count;
+    std::array<std::uint8_t, 4 * kept_errors> errors;
+  };
+  struct NoHistory {};
+  [[nodiscard]] auto error_history() {
+    if constexpr (kept_errors == 0) {
+      return NoHistory{};
+    } else {
+      ErrorHistory history;
+      history.count = *history_at<0>();
+      copy_bytes(history.errors.data(), history_at<1>(), history.errors.size());
+      return history;
     }
-    return errors;
   }
-  void restore(const ErrorHistory& errors) {
-    for (std::size_t i = 0; i < kept_errors; ++i) {
-      std::memcpy(ram() + entry::offset_of(error_words[i]), &errors[i], entry::wire_bytes(error_words[i]));
-    }
+  void restore(NoHistory) {}
+  void restore(const ErrorHistory& history) {
+    *history_at<0>() = history.count;
+    copy_bytes(history_at<1>(), history.errors.data(), history.errors.size());
+  }
+  template <std::uint8_t SubIndex>
+  [[nodiscard]] std::uint8_t* history_at() {
+    constexpr entry::Word word = Device::dictionary.find(0x1003, SubIndex);
+    return ram() + entry::offset_of(word);
   }
 
   [[nodiscard]] std::uint8_t* ram() {
