@@ -42,7 +42,7 @@ class Option {
   Option show_default(const std::string& text) const;
   /// Takes one value each time that it is given, not all words that follow it.
   Option one_value_each() const;
-  /// The value may be left out.
+  /// The option can be given without a value.
   Option optional_value() const;
 
  private:
@@ -56,7 +56,7 @@ class Command {
 
   [[nodiscard]] CLI::App& cli11() const { return *app_; }
 
-  /// `Value`: a string, a number, an optional number or a list of strings. The definitions are those of
+  /// `Value`: a string, a number, an optional number or a list of strings; see the instantiations in
   /// command_line.cpp.
   template <class Value>
   Option add_option(const std::string& name, Value& value, const std::string& description) const;

@@ -336,7 +336,7 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     const auto direction = value<od::running_direction>();
     const auto lowest = value<od::software_position_limit<1>>();
     const auto highest = value<od::software_position_limit<2>>();
-    const bool limited = lowest < highest;  // otherwise there is no limit, as in the modes of operation
+    const bool limited = lowest < highest;  // no limit otherwise, in each mode of operation
     axis_.configure({.resolution = value<od::resolution_setting>(),
                      .motor_reversed = (direction & 1) != 0,
                      .encoder_reversed = (direction & 2) != 0,

@@ -52,8 +52,8 @@ struct StepperSettings {
           .highest_acceleration = pulses * 2'000};
 }
 
-/// Its trajectory is in the pulses that are commanded. In closed loop the actual values are those of the encoder, in
-/// open loop those of the trajectory. Torque is in 0.1 % of the rated torque, which gives the motor 1000 turns per
+/// The trajectory is in commanded pulses. The actual values come from the encoder in closed loop, and from the
+/// trajectory in open loop. Torque is in 0.1 % of the rated torque, which gives the motor 1000 turns per
 /// second squared.
 class StepperAxis : public nodes::SimulatedAxis {
   using Base = nodes::SimulatedAxis;

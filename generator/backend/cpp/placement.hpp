@@ -28,9 +28,9 @@ class Placement {
   /// A mapping parameter of a static PDO: a constant regardless of its access type in the EDS.
   [[nodiscard]] bool is_static_mapping(std::uint16_t index) const;
 
-  /// Whether the entry has a row in the table of limits: a value that can be written over the bus, unless it is a
-  /// mapping entry, which is checked against the dictionary, or its limits are those of its type; and the capacity of
-  /// each string that can change.
+  /// Whether the entry has a row in the table of limits: a value that can be written over the bus, and the capacity
+  /// of each string that can change. A mapping entry has none: it is checked against the dictionary. Limits equal to
+  /// the range of the data type have none.
   [[nodiscard]] bool has_limits(const Object& object, const Entry& entry) const;
 
   /// Whether a received value is checked: against limits, or against the modes of operation of a drive.

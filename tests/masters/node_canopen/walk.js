@@ -8,7 +8,7 @@ const PATIENCE = 120000, SHORT = 40;  // ms, for a frame that must be received a
 const UPLOAD = 600000;              // ms, for all segments of a long value, such as the EDS in 1021h
 const SIZES = { [DataType.INTEGER8]: 1, [DataType.INTEGER16]: 2, [DataType.INTEGER32]: 4, [DataType.UNSIGNED8]: 1,
   [DataType.UNSIGNED16]: 2, [DataType.UNSIGNED32]: 4 };
-const SIGNED = [0x02, 0x03, 0x04, 0x10, 0x12, 0x13, 0x14, 0x15];  // INTEGER8 and the like
+const SIGNED = [DataType.INTEGER8, DataType.INTEGER16, DataType.INTEGER32];
 const HARMLESS = { 0x6040: 6, 0x6060: 1, 0x6098: 17 };  // values that do not move a drive, and that drives accept
 const STATE = { preOperational: 0x7F, operational: 5, stopped: 4, bootUp: 0 };
 

@@ -59,7 +59,7 @@ inline void take_received(Host& host, std::uint16_t index, std::uint8_t sub_inde
 /// The same for an object that is known at compile time.
 template <DictionaryObject Object, class Host>
 inline void take_received(Host& host, const typename Object::type& value) {
-  // A mode of operation that a master repeats in each frame needs nothing.
+  // A mode of operation that equals the stored one, which a master sends in each frame, is ignored.
   if constexpr (!prefers_size && requires { Object::accepted; } && !Host::Handlers::template handles_write<Object> &&
                 !Host::Handlers::template handles_written<Object>) {
     if (value == host.store().template get<Object>()) return;

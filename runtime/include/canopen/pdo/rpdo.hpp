@@ -368,7 +368,7 @@ class RpdoService {
     if constexpr (Host::may_change_mappings) applied_ = {};
   }
 
-  /// Whether a run is the mode of operation that a drive has already, of which nobody needs to know.
+  /// Whether a run is 6060h with the value that it already has, and no function is called for it.
   template <class Host>
   [[nodiscard]] static bool repeats_mode([[maybe_unused]] typename Mapped::Place run,
                                          [[maybe_unused]] EntryAccess<Device> entries,

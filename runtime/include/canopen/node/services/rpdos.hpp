@@ -42,8 +42,8 @@ struct RpdoHooks {
   static constexpr bool may_change_mappings =
       Host::Handlers::has_access_handlers || has_mappable_mapping(Host::Device::dictionary);
 
-  /// Where in RAM the mode of operation of a drive is, if it is only checked and stored: a mode that a master repeats
-  /// in each frame needs nothing then. `no_offset`: there is none.
+  /// Offset in RAM of the mode of operation of a drive (6060h) if no function is called for it; a received value that
+  /// equals the stored one is then ignored. Otherwise `no_offset`.
   static constexpr std::size_t no_offset = ~std::size_t{0};
   static constexpr std::size_t mode_offset = [] {
     using Device = typename Host::Device;
