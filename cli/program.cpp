@@ -98,7 +98,7 @@ int report(const std::exception& problem) {
 
 namespace edsc {
 
-int run_program(std::span<const CommandRow> commands, const std::string& version, int argc, char** argv) {
+int run_program(std::span<const CommandRow> rows, const std::string& version, int argc, char** argv) {
   occupy_standard_descriptors();
   CLI::App app{"edsc compiles CANopen Electronic Data Sheets (EDS, DCF) to checked C++20."};
   app.name("edsc");
@@ -107,7 +107,7 @@ int run_program(std::span<const CommandRow> commands, const std::string& version
   app.require_subcommand(1);
   app.footer("'edsc COMMAND --help' shows a command's options and examples.");
   int exit_code = exit_fine;
-  for (const CommandRow& row : commands) {
+  for (const CommandRow& row : rows) {
     CLI::App* const command = app.add_subcommand(row.name, row.description);
     row.add_options(Command{*command}, exit_code);
     command->group(row.group);  // later, because subcommands inherit it

@@ -9,6 +9,6 @@
 namespace edsc {
 
 /// Returns the exit code.
-int run_program(std::span<const CommandRow> commands, const std::string& version, int argc, char** argv);
+int run_program(std::span<const CommandRow> rows, const std::string& version, int argc, char** argv);
 
 }  // namespace edsc
