@@ -55,12 +55,12 @@ template Option Command::add_option(const std::string&, std::optional<std::uint3
 template Option Command::add_option(const std::string&, std::optional<std::uint64_t>&, const std::string&) const;
 template Option Command::add_option(const std::string&, std::optional<double>&, const std::string&) const;
 
-Option Command::add_text_option(const std::string& name, std::function<void(const std::string& text)> take,
+Option Command::add_text_option(const std::string& name, const std::function<void(const std::string& text)>& take,
                                 const std::string& description) const {
   return Option{*app_->add_option_function<std::string>(name, take, description)};
 }
 
-Option Command::add_number_option(const std::string& name, std::function<void(unsigned number)> take,
+Option Command::add_number_option(const std::string& name, const std::function<void(unsigned number)>& take,
                                   const std::string& description) const {
   return Option{*app_->add_option_function<unsigned>(name, take, description)};
 }

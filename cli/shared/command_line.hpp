@@ -61,10 +61,10 @@ class Command {
   template <class Value>
   Option add_option(const std::string& name, Value& value, const std::string& description) const;
   /// An option whose text `take` gets.
-  Option add_text_option(const std::string& name, std::function<void(const std::string& text)> take,
+  Option add_text_option(const std::string& name, const std::function<void(const std::string& text)>& take,
                          const std::string& description) const;
   /// The same for a number.
-  Option add_number_option(const std::string& name, std::function<void(unsigned number)> take,
+  Option add_number_option(const std::string& name, const std::function<void(unsigned number)>& take,
                            const std::string& description) const;
   Option add_flag(const std::string& name, bool& value, const std::string& description) const;
 
