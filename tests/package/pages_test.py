@@ -35,8 +35,8 @@ class Pages(DocumentTest):
     def test_storage(self) -> None:
         printed = self.run_commands("docs/how-to/storage.md")
         reads = [output for command, output in printed if command.startswith("edsc read")]
-        self.assertEqual(reads, ["1017h:00 Producer heartbeat time = 250 (00FAh)\n",
-                                 "1017h:00 Producer heartbeat time = 0\n"])
+        self.assertEqual(reads, ["1017h:00 Producer heartbeat time = 250 ms\n",
+                                 "1017h:00 Producer heartbeat time = 0 ms\n"])
 
     def test_lss(self) -> None:
         printed = self.run_document("docs/how-to/lss.md")
