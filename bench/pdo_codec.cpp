@@ -81,10 +81,11 @@ int main(int argc, char** argv) {
           }));
   compare("unpack_words", rounds, calls, unpacks(typed::unpack_words), unpacks(by_hand::unpack_words));
   compare("pack_odd", rounds, calls, packs([](Data& data, unsigned i) {
-            typed::pack_odd(data, i % 2 != 0, i % 3 != 0, std::uint64_t{i} << 7, as<std::int16_t>(i));
+            typed::pack_odd(data, i % 2 != 0, i % 3 != 0, *codec::In<codec::Odd, 2>::from(std::uint64_t{i} << 7),
+                            *codec::In<codec::Odd, 3>::from(i % 2048));
           }),
           packs([](Data& data, unsigned i) {
-            by_hand::pack_odd(data, i % 2 != 0, i % 3 != 0, std::uint64_t{i} << 7, as<std::int16_t>(i));
+            by_hand::pack_odd(data, i % 2 != 0, i % 3 != 0, std::uint64_t{i} << 7, as<std::int16_t>(i % 2048));
           }));
   compare("unpack_odd", rounds, calls, unpacks(typed::unpack_odd), unpacks(by_hand::unpack_odd));
   return sum == 0 ? 1 : 0;

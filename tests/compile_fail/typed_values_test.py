@@ -106,12 +106,13 @@ NUMBERS = (
     Kind("beyond a REAL32", REAL, "", "1e300"),
 )
 CHECKED = (Kind("limited variable", LIMITED, "std::uint16_t value = frame.size;", "value"),
+           Kind("variable of 24 bits", "od::unsigned24_value", "std::uint32_t value = frame.id;", "value"),
            Kind("NaN in a variable", REAL, "float value = std::numeric_limits<float>::quiet_NaN();", "value"))
 TEXTS = (Kind("long literal", TEXT, "", '"longer"'), Kind("text of unknown length", TEXT, "std::string_view value;", "value"),
          Kind("number for a text", TEXT, "", "5"))
 
 # The name, the statement, and the kinds of values that it can be given.
-NODE, CODEC = (*NUMBERS, *CHECKED, *TEXTS), NUMBERS
+NODE, CODEC = (*NUMBERS, *CHECKED, *TEXTS), (*NUMBERS, *CHECKED)
 WAYS = {
     "node, tag": ("node.set({object}{{}}, {value});", NODE),
     "node, template": ("node.set<{object}>({value});", NODE),
@@ -136,6 +137,9 @@ WAYS = {
 RIGHT = (Kind("type", PLAIN, "std::uint16_t value = 5;", "value"), Kind("narrower", PLAIN, "std::uint8_t value = 5;", "value"),
          Kind("constant", PLAIN, "", "5"), Kind("limited constant", LIMITED, "", "0xFFFE"),
          Kind("real constant", REAL, "", "0.5"))
+# The same where nothing is refused at run time.
+RIGHT_OF_CODECS = (*RIGHT, Kind("checked", LIMITED,
+                                f"const auto value = canopen::CheckedValue<{LIMITED}>::from(frame.size);", "*value"))
 RIGHT_BY_TYPE = ("handler result",)  # a lambda returns a type: a constant is an int
 
 
@@ -167,7 +171,7 @@ def units_of(compiler: Compiler, only: list[str]) -> list[Unit]:
         for is_variable in (True, False):
             cells = tuple((way, kind) for kind in chosen if (kind.declaration != "") == is_variable)
             units += [Unit(compiler, cells, False)] if cells else []
-        right += [(way, kind) for kind in RIGHT if len(only) < 2 or kind.name == only[1]
+        right += [(way, kind) for kind in (RIGHT_OF_CODECS if kinds is CODEC else RIGHT) if len(only) < 2 or kind.name == only[1]
                   if kind.declaration or way not in RIGHT_BY_TYPE]
     return units + ([Unit(compiler, tuple(right), True)] if right else [])
 

@@ -114,6 +114,30 @@ TEST(PdoLayout, CarriesAsManyOctetsAsTheEntryHas) {
   EXPECT_EQ(octets.bytes, (std::array<std::uint8_t, 4>{0x12, 0x00, 0x54, 0}));
 }
 
+canopen::AbortCode pack_count(std::uint32_t counter, canopen::Frame& frame) {
+  const auto count = canopen::CheckedValue<od::unsigned24_value>::from(counter);
+  if (!count) return count.abort_code();  // 0609 0031h: above FF FFFFh
+  frame.data = sample::Rpdo2::pack(true, true, 0x55, *count);
+  return canopen::ok;
+}
+
+TEST(PdoLayout, TakesAVariableWithFewerBitsThanItsTypeOnlyAsACheckedValue) {
+  canopen::Frame frame;
+  EXPECT_EQ(pack_count(0x123456, frame), canopen::ok);
+  EXPECT_EQ(frame.data, (Data{0x57, 0x59, 0xD1, 0x48}));
+  EXPECT_EQ(pack_count(0x1000000, frame), canopen::AbortCode::value_too_high);
+  EXPECT_EQ(frame.data, (Data{0x57, 0x59, 0xD1, 0x48})) << "unchanged";
+}
+
+TEST(PdoLayout, ChecksNegativeNumbersAndNumbersOfAWiderType) {
+  using Signed = Entry<1, std::int32_t, 24>;
+  EXPECT_EQ(canopen::CheckedValue<Signed>::from(-0x800001).abort_code(), canopen::AbortCode::value_too_low);
+  EXPECT_EQ(canopen::CheckedValue<Signed>::from(-0x800000)->value(), -0x800000);
+  EXPECT_EQ(canopen::CheckedValue<Signed>::from(std::uint64_t{0xFFFF'FFFF'FFFF'FFFF}).abort_code(),
+            canopen::AbortCode::value_too_high);
+  static_assert(canopen::rejects_values<Signed> && !canopen::rejects_values<Entry<1, std::int32_t>>);
+}
+
 TEST(PdoLayout, KeepsTheBitsOfADummy) {
   EXPECT_EQ(sample::Rpdo2::pack(true, true, 0x55, 0x123456), (Data{0x57, 0x59, 0xD1, 0x48}));
   EXPECT_EQ(sample::Rpdo2::get<2>(Data{0x57, 0x59, 0xD1, 0x48}), 0x55U);

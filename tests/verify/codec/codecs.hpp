@@ -10,12 +10,12 @@ void pack_drive(Data& data, std::uint16_t a, std::int32_t b);
 void pack_mixed(Data& data, std::uint16_t a, std::int16_t b, std::uint32_t c);
 void pack_bytes(Data& data, std::uint8_t a, std::uint8_t b, std::uint8_t c, std::uint8_t d, std::uint8_t e,
                 std::uint8_t f, std::int8_t g, std::int8_t h);
-void pack_triples(Data& data, std::uint32_t a, std::uint16_t b, std::int32_t c);
+void pack_triples(Data& data, In<Triples, 0> a, std::uint16_t b, In<Triples, 2> c);
 void pack_real(Data& data, float a, std::uint32_t b);
-void pack_nibbles(Data& data, std::uint8_t a, std::uint8_t b, std::uint8_t c, std::uint8_t d, std::uint16_t e);
+void pack_nibbles(Data& data, In<Nibbles, 0> a, In<Nibbles, 1> b, In<Nibbles, 2> c, In<Nibbles, 3> d, std::uint16_t e);
 void pack_flags(Data& data, bool a, bool b, bool c, bool d, bool e, bool f, bool g, bool h, std::uint16_t i);
-void pack_twelves(Data& data, std::uint16_t a, std::int16_t b, std::uint16_t c, std::uint16_t d, std::int16_t e);
-void pack_odd(Data& data, bool a, bool b, std::uint64_t c, std::int16_t d);
+void pack_twelves(Data& data, In<Twelves, 0> a, In<Twelves, 1> b, In<Twelves, 2> c, In<Twelves, 3> d, In<Twelves, 4> e);
+void pack_odd(Data& data, bool a, bool b, In<Odd, 2> c, In<Odd, 3> d);
 
 Data make_words(std::uint16_t a, std::uint16_t b, std::int16_t c, std::uint16_t d);
 Data make_drive(std::uint16_t a, std::int32_t b);
@@ -39,10 +39,10 @@ std::int16_t get_twelves(const Data& data);
 std::uint64_t get_odd(const Data& data);
 
 void set_drive(Data& data, std::int32_t value);
-void set_nibbles(Data& data, std::uint8_t value);
+void set_nibbles(Data& data, In<Nibbles, 1> value);
 void set_flags(Data& data, bool value);
-void set_twelves(Data& data, std::int16_t value);
-void set_odd(Data& data, std::uint64_t value);
+void set_twelves(Data& data, In<Twelves, 1> value);
+void set_odd(Data& data, In<Odd, 2> value);
 
 }  // namespace codec::typed
 

@@ -38,4 +38,8 @@ using Twelves = canopen::PdoLayout<Entry<1, std::uint16_t, 12>, Entry<2, std::in
 /// Two BOOLEANs, 33 bits across bytes, and 12 bits.
 using Odd = canopen::PdoLayout<Entry<1, bool>, Entry<2, bool>, Entry<3, std::uint64_t, 33>, Entry<4, std::int16_t, 12>>;
 
+/// A value of an entry with fewer bits than its type, for PdoLayout.
+template <class Layout, std::size_t Position>
+using In = canopen::CheckedValue<typename Layout::template Entry<Position>>;
+
 }  // namespace codec

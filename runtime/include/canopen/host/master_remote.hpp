@@ -210,7 +210,8 @@ class MasterRemote {
   }
   template <class Layout, std::size_t... Position, class... Values>
   static void pack(Frame& frame, std::index_sequence<Position...>, const Values&... values) {
-    Layout::pack_into(frame, converted<typename Layout::template Entry<Position>>(values)...);
+    frame.size = Layout::size;
+    Layout::pack_into_words(frame.data, converted<typename Layout::template Entry<Position>>(values)...);
   }
 
   template <class Layout>

@@ -57,11 +57,11 @@ class Mailbox {
   }
   /// A constant is not refused.
   template <LimitedObject Object>
-  void post(Object, std::type_identity_t<ConstantFor<Object>> value) {
+  void post(Object, std::type_identity_t<CheckedValue<Object>> value) {
     slot<Object>().publish(value.value());
   }
   template <LimitedObject Object>
-  AbortCode post(std::type_identity_t<ConstantFor<Object>> value) {
+  AbortCode post(std::type_identity_t<CheckedValue<Object>> value) {
     slot<Object>().publish(value.value());
     return ok;
   }

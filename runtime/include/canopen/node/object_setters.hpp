@@ -51,11 +51,11 @@ class ObjectSetters {
   }
   /// A constant is not refused.
   template <LimitedObject Object>
-  void set(Object, std::type_identity_t<ConstantFor<Object>> value) {
+  void set(Object, std::type_identity_t<CheckedValue<Object>> value) {
     static_cast<void>(assign<Object>(value.value()));
   }
   template <LimitedObject Object>
-  AbortCode set(std::type_identity_t<ConstantFor<Object>> value) {
+  AbortCode set(std::type_identity_t<CheckedValue<Object>> value) {
     return assign<Object>(value.value());
   }
 

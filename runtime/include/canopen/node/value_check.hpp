@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <type_traits>
 
 #include "canopen/base/abort_code.hpp"
@@ -18,23 +17,6 @@ namespace canopen {
   return prefers_size || is_communication_index(index);
 }
 
-namespace value_check_detail {
-
-/// Whether a value of the object's type can be outside its limits. The limits of an integer may be those of its type; a
-/// REAL with limits rejects NaN.
-template <DictionaryObject Object>
-[[nodiscard]] constexpr bool limits_reject_any() {
-  using Type = typename Object::type;
-  bool any = false;
-  if constexpr (requires { Object::low_limit; })
-    any = !std::is_integral_v<Type> || Object::low_limit != std::numeric_limits<Type>::lowest();
-  if constexpr (requires { Object::high_limit; })
-    any = any || !std::is_integral_v<Type> || Object::high_limit != std::numeric_limits<Type>::max();
-  return any;
-}
-
-}  // namespace value_check_detail
-
 /// Whether `set` of the application can reject a value of the object's type: the object has limits, uses fewer bits
 /// than its type, or is a parameter of a service.
 template <DictionaryObject Object>
@@ -42,8 +24,7 @@ inline constexpr bool can_be_refused = [] {
   using Type = typename Object::type;
   if (!std::is_arithmetic_v<Type>) return false;
   if (std::is_integral_v<Type> && is_communication_index(Object::index)) return true;
-  return !std::is_same_v<Type, bool> && (value_check_detail::limits_reject_any<Object>() ||
-                                         requires { Object::accepted; } || Object::bits < sizeof(Type) * 8);
+  return rejects_values<Object>;
 }();
 
 /// Returns value_too_high or value_too_low for a value outside the limits of its object, invalid_value for NaN.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/base/result.hpp"
 #include "canopen/od/accepted_values.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/value.hpp"
@@ -134,35 +135,69 @@ inline constexpr bool has_room_for = (Characters - 1) * sizeof(typename Characte
 /// False; the arguments are in the compiler's message.
 template <class Object, class Value>
 inline constexpr bool has_the_type_of = false;
+template <class Object, class Value>
+inline constexpr bool is_checked = false;
 
 template <class ValueType>
 concept Variable = !std::is_const_v<ValueType>;
 
 }  // namespace value_for_detail
 
-/// A constant for an object. The compiler checks it against the type and the limits of the object: a constant outside
-/// does not compile, and neither does a variable of another type.
+/// Whether an object rejects values of its type: it has limits or a list of values, or uses fewer bits. The limits of
+/// an integer may be those of its type; a REAL with limits rejects NaN.
+template <DictionaryObject ObjectType>
+inline constexpr bool rejects_values = [] {
+  using Type = typename ObjectType::type;
+  if constexpr (!std::is_arithmetic_v<Type> || std::same_as<Type, bool>) {
+    return false;
+  } else {
+    bool any = requires { ObjectType::accepted; }
+    || ObjectType::bits < sizeof(Type) * 8;
+    if constexpr (requires { ObjectType::low_limit; })
+      any = any || !std::is_integral_v<Type> || ObjectType::low_limit != std::numeric_limits<Type>::lowest();
+    if constexpr (requires { ObjectType::high_limit; })
+      any = any || !std::is_integral_v<Type> || ObjectType::high_limit != std::numeric_limits<Type>::max();
+    return any;
+  }
+}();
+
+/// A value that its object accepts: a constant, which the compiler checks against the type and the limits of the
+/// object, or the result of `from`.
+///
+///     const auto target = canopen::CheckedValue<od::target_position>::from(position);
+///     if (target) bus.send(frame_of(drive::Rpdo2::pack(*target)));
 template <NumberObject ObjectType>
-class ConstantFor {
+class CheckedValue {
  public:
   using type = typename ObjectType::type;
 
+  /// Returns value_too_high or value_too_low for a number outside the range or the limits of the object, invalid_value
+  /// for one that it does not accept.
+  template <ValueFor<ObjectType> ValueType>
+  [[nodiscard]] static constexpr Result<CheckedValue> from(ValueType value) {
+    if (const AbortCode code = check_value<ObjectType>(value); code != ok) return code;
+    CheckedValue checked;
+    checked.value_ = static_cast<type>(value);
+    return checked;
+  }
+
   template <ValueFor<ObjectType> ValueType>
   // NOLINTNEXTLINE(google-explicit-constructor): `set(od::x{}, 420)` converts the number
-  consteval ConstantFor(const ValueType& constant) : value_{static_cast<type>(constant)} {
+  consteval CheckedValue(const ValueType& constant) : value_{static_cast<type>(constant)} {
     using namespace value_for_detail;
     const AbortCode code = check_value<ObjectType>(constant);
     if (constant_is_above_the_high_limit<ObjectType>[element_of(code, AbortCode::value_too_high)]) value_ = {};
     if (constant_is_below_the_low_limit<ObjectType>[element_of(code, AbortCode::value_too_low)]) value_ = {};
     if (constant_is_not_an_accepted_value<ObjectType>[element_of(code, AbortCode::invalid_value)]) value_ = {};
   }
-  /// A variable of another type.
+  /// A variable, which has not been checked.
   template <value_for_detail::Variable ValueType>
   requires(ValueFor<ValueType, ObjectType>)
       // NOLINTNEXTLINE(google-explicit-constructor)
-      constexpr ConstantFor(ValueType&)
-      : value_{} {
-    static_assert(value_for_detail::has_the_type_of<ObjectType, ValueType>,
+      constexpr CheckedValue(ValueType&) {
+    static_assert(!FitsInto<ValueType, type> || value_for_detail::is_checked<ObjectType, ValueType>,
+                  "this variable may be outside the limits of the object: use CheckedValue<...>::from(variable)");
+    static_assert(FitsInto<ValueType, type> || value_for_detail::has_the_type_of<ObjectType, ValueType>,
                   "the type of this value is wider than that of the object, or has another sign: check its range, then "
                   "static_cast it");
   }
@@ -170,15 +205,17 @@ class ConstantFor {
   template <class ValueType>
   requires(!ValueFor<ValueType, ObjectType>)
       // NOLINTNEXTLINE(google-explicit-constructor)
-      constexpr ConstantFor(const ValueType&)
-      : value_{} {
+      constexpr CheckedValue(const ValueType&) {
     static_assert(value_for_detail::has_the_type_of<ObjectType, ValueType>,
                   "this value is not of the type of the object");
   }
   [[nodiscard]] constexpr type value() const { return value_; }
 
  private:
-  type value_;
+  friend class Result<CheckedValue>;
+  constexpr CheckedValue() = default;
+
+  type value_{};
 };
 
 /// A value for an object, as the parameter of a function: a value of its type or of a narrower one, or a constant,
@@ -296,14 +333,31 @@ template <class ObjectType>
   return value.value();
 }
 template <class ObjectType>
+[[nodiscard]] constexpr typename ObjectType::type value_in(const CheckedValue<ObjectType>& value) {
+  return value.value();
+}
+template <class ObjectType>
 [[nodiscard]] constexpr const typename ObjectType::type& value_in(const StringOf<ObjectType>& value) {
   return value.value();
 }
+
+template <class ObjectType>
+struct CheckedParameter : Parameter<ObjectType> {};
+template <class ObjectType>
+requires rejects_values<ObjectType>
+struct CheckedParameter<ObjectType> {
+  using type = CheckedValue<ObjectType>;
+};
 
 }  // namespace value_for_detail
 
 /// The type of a parameter for a value of an object: ValueOf, StringOf, a time or a DOMAIN.
 template <DictionaryObject ObjectType>
 using ParameterFor = typename value_for_detail::Parameter<ObjectType>::type;
+
+/// The same where nothing checks the value at run time: a variable of an object that rejects values must be a
+/// CheckedValue.
+template <DictionaryObject ObjectType>
+using CheckedParameterFor = typename value_for_detail::CheckedParameter<ObjectType>::type;
 
 }  // namespace canopen

@@ -176,21 +176,21 @@ struct PdoLayout {
   }();
 
   /// Returns the data bytes for these values. A value has the type of its object or a narrower one, or is a constant,
-  /// whose limits the compiler checks; anything else does not compile. Limits of other values are not checked: the
-  /// receiver does.
-  [[nodiscard]] static constexpr Data pack(ParameterFor<Objects>... values) {
+  /// whose limits the compiler checks. A variable for an object with limits, or with fewer bits than its type, is a
+  /// CheckedValue. Anything else does not compile.
+  [[nodiscard]] static constexpr Data pack(CheckedParameterFor<Objects>... values) {
     Data data{};
     pack_aligned<1>(data, value_for_detail::value_in(values)...);
     return data;
   }
 
   /// Writes these values to the first `size` bytes.
-  static constexpr void pack_into(Data& data, ParameterFor<Objects>... values) {
+  static constexpr void pack_into(Data& data, CheckedParameterFor<Objects>... values) {
     pack_aligned<1>(data, value_for_detail::value_in(values)...);
   }
 
-  /// The same for values of exactly the types of the objects, and data at an address that is a multiple of four, as in
-  /// a frame.
+  /// The same for values of exactly the types of the objects, whose range and limits have been checked, and data at an
+  /// address that is a multiple of four, as in a frame.
   template <class... Types>
   requires(std::same_as<Types, typename Objects::type>&&...) static constexpr void pack_into_words(
       Data& data, const Types&... values) {
@@ -198,7 +198,7 @@ struct PdoLayout {
   }
 
   /// The same for a frame; sets its length.
-  static constexpr void pack_into(Frame& frame, ParameterFor<Objects>... values) {
+  static constexpr void pack_into(Frame& frame, CheckedParameterFor<Objects>... values) {
     frame.size = size;
     pack_aligned<pdo_detail::frame_data_align>(frame.data, value_for_detail::value_in(values)...);
   }
@@ -241,34 +241,34 @@ struct PdoLayout {
 
   /// Sets the value of entry `Position`. All other bits keep their value.
   template <std::size_t Position>
-  static constexpr void set(Data& data, ParameterFor<Entry<Position>> value) {
+  static constexpr void set(Data& data, CheckedParameterFor<Entry<Position>> value) {
     pdo_detail::replace<offsets[Position], Entry<Position>::bits>(data, value_for_detail::value_in(value));
   }
   template <std::size_t Position>
-  static constexpr void set(Frame& frame, ParameterFor<Entry<Position>> value) {
+  static constexpr void set(Frame& frame, CheckedParameterFor<Entry<Position>> value) {
     pdo_detail::replace<offsets[Position], Entry<Position>::bits, pdo_detail::frame_data_align>(
         frame.data, value_for_detail::value_in(value));
   }
 
   /// Sets the value of an object. All other bits keep their value.
   template <DictionaryObject Object>
-  static constexpr void set(Data& data, ParameterFor<Object> value) {
+  static constexpr void set(Data& data, CheckedParameterFor<Object> value) {
     static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, maps<Object>, Object>::is_good);
     set<position_of<Object>>(data, value_for_detail::value_in(value));
   }
   template <DictionaryObject Object>
-  static constexpr void set(Frame& frame, ParameterFor<Object> value) {
+  static constexpr void set(Frame& frame, CheckedParameterFor<Object> value) {
     static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, maps<Object>, Object>::is_good);
     set<position_of<Object>>(frame, value_for_detail::value_in(value));
   }
 
   /// Sets the value of entry `Position`, whose bits must be zero.
   template <std::size_t Position>
-  static constexpr void put(Data& data, ParameterFor<Entry<Position>> value) {
+  static constexpr void put(Data& data, CheckedParameterFor<Entry<Position>> value) {
     pdo_detail::put<offsets[Position], Entry<Position>::bits>(data, value_for_detail::value_in(value));
   }
   template <std::size_t Position>
-  static constexpr void put(Frame& frame, ParameterFor<Entry<Position>> value) {
+  static constexpr void put(Frame& frame, CheckedParameterFor<Entry<Position>> value) {
     pdo_detail::put<offsets[Position], Entry<Position>::bits, pdo_detail::frame_data_align>(
         frame.data, value_for_detail::value_in(value));
   }

@@ -86,7 +86,7 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
   /// A constant, whose limits the compiler checks.
   template <SentBy<Network> SignalType>
   requires(can_be_refused<typename SignalType::receiver>) void set(
-      SignalType, std::type_identity_t<ConstantFor<typename SignalType::receiver>> value) {
+      SignalType, std::type_identity_t<CheckedValue<typename SignalType::receiver>> value) {
     static_cast<void>(store<SignalType>(value.value()));
   }
 

@@ -132,6 +132,16 @@ template <class Entry>
 typename Entry::type value_of(std::uint64_t raw) {
   return canopen::value_detail::from_bits<typename Entry::type, Entry::bits>(raw);
 }
+/// The same as a parameter of a codec.
+template <class Entry>
+auto parameter_of(std::uint64_t raw) {
+  const auto value = value_of<Entry>(raw);
+  if constexpr (canopen::rejects_values<Entry>) {
+    return *canopen::CheckedValue<Entry>::from(value);
+  } else {
+    return value;
+  }
+}
 template <class Entry>
 std::uint64_t raw_of(const typename Entry::type& value) {
   return canopen::value_detail::to_bits(value) & canopen::pdo_detail::mask(Entry::bits);
@@ -140,24 +150,26 @@ std::uint64_t raw_of(const typename Entry::type& value) {
 template <std::uint64_t Seed, std::size_t... I>
 Codec codec_of(std::index_sequence<I...> positions) {
   using Layout = typename LayoutOf<Seed, decltype(positions)>::type;
-  return {
-      fields_of<Seed>,
-      [](canopen::Frame& frame, const std::uint64_t* raw) {
-        Layout::pack_into(frame, value_of<typename Layout::template Entry<I>>(raw[I])...);
-      },
-      [](const std::uint64_t* raw) { return Layout::pack(value_of<typename Layout::template Entry<I>>(raw[I])...); },
-      [](const canopen::Frame& frame, std::uint64_t* raw) {
-        const auto values = Layout::unpack(frame);
-        ((raw[I] = raw_of<typename Layout::template Entry<I>>(std::get<I>(values))), ...);
-      },
-      [](const Data& data, std::uint64_t* raw) {
-        ((raw[I] = raw_of<typename Layout::template Entry<I>>(Layout::template get<I>(data))), ...);
-      },
-      [](Data& data, std::size_t entry, std::uint64_t raw) {
-        static_cast<void>(
-            ((entry == I && (Layout::template set<I>(data, value_of<typename Layout::template Entry<I>>(raw)), true)) ||
-             ...));
-      }};
+  return {fields_of<Seed>,
+          [](canopen::Frame& frame, const std::uint64_t* raw) {
+            Layout::pack_into(frame, parameter_of<typename Layout::template Entry<I>>(raw[I])...);
+          },
+          [](const std::uint64_t* raw) {
+            return Layout::pack(parameter_of<typename Layout::template Entry<I>>(raw[I])...);
+          },
+          [](const canopen::Frame& frame, std::uint64_t* raw) {
+            const auto values = Layout::unpack(frame);
+            ((raw[I] = raw_of<typename Layout::template Entry<I>>(std::get<I>(values))), ...);
+          },
+          [](const Data& data, std::uint64_t* raw) {
+            ((raw[I] = raw_of<typename Layout::template Entry<I>>(Layout::template get<I>(data))), ...);
+          },
+          [](Data& data, std::size_t entry, std::uint64_t raw) {
+            static_cast<void>(
+                ((entry == I &&
+                  (Layout::template set<I>(data, parameter_of<typename Layout::template Entry<I>>(raw)), true)) ||
+                 ...));
+          }};
 }
 
 /// The layouts of `Count` seeds, starting with `First`.
