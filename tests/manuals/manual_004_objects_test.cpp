@@ -108,7 +108,7 @@ TEST(Manual004, HasReadOnlyStringsForItsVersions) {
 /// The value ranges of the entry descriptions of 4.2.
 template <class Object>
 constexpr bool has_range(std::int64_t low, std::int64_t high) {
-  return Object::low_limit == low && Object::high_limit == high;
+  return canopen::low_limit<Object>() == low && canopen::high_limit<Object>() == high;
 }
 constexpr std::int64_t lowest_32 = -2147483648;
 constexpr std::int64_t highest_32 = 2147483647;
