@@ -74,12 +74,15 @@ struct VisibleString : StringStorage<Capacity> {
 };
 
 /// OCTET_STRING: any bytes. A list of constants converts to it; one that is longer than the capacity does not compile.
-/// Clang before 16 ends with a segmentation fault where this constructor is consteval: there, a longer list is cut.
+/// Clang before 16 ends with a segmentation fault where this constructor is consteval: there, the program ends with a
+/// trap at a longer list, unless it is a constant expression, which does not compile.
 template <std::size_t Capacity>
 struct OctetString : StringStorage<Capacity> {
   constexpr OctetString() = default;
 #if defined(__clang__) && __clang_major__ < 16
-  constexpr OctetString(std::initializer_list<std::uint8_t> octets) : OctetString{truncated(octets)} {}
+  constexpr OctetString(std::initializer_list<std::uint8_t> octets) : OctetString{truncated(octets)} {
+    if (octets.size() > Capacity) __builtin_trap();
+  }
 #else
   consteval OctetString(std::initializer_list<std::uint8_t> octets) {
     for (const std::uint8_t octet : octets) this->bytes[this->size++] = octet;
