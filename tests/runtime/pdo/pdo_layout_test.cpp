@@ -52,9 +52,10 @@ TEST(PdoLayout, MayStraddleAllBytesOfShiftedBits) {
   EXPECT_EQ(Layout::get<1>(data), 0x4000'0000'0000'0001u);
 }
 
-TEST(PdoLayout, CutsAValueToItsBits) {
+TEST(PdoLayout, HasTwoValuesOfFourBitsInAByte) {
   using Layout = canopen::PdoLayout<Entry<1, std::uint8_t, 4>, Entry<2, std::uint8_t, 4>>;
-  EXPECT_EQ(Layout::pack(std::uint8_t{0xFF}, 0), (Data{0x0F}));
+  EXPECT_EQ(Layout::pack(0xF, 0), (Data{0x0F}));
+  EXPECT_EQ(Layout::pack(0xA, 0x5), (Data{0x5A}));
 }
 
 TEST(PdoLayout, CarriesRealsAndTimes) {

@@ -242,24 +242,23 @@ struct PdoLayout {
   /// Sets the value of entry `Position`. All other bits keep their value.
   template <std::size_t Position>
   static constexpr void set(Data& data, CheckedParameterFor<Entry<Position>> value) {
-    pdo_detail::replace<offsets[Position], Entry<Position>::bits>(data, value_for_detail::value_in(value));
+    replace<Position, 1>(data, value_for_detail::value_in(value));
   }
   template <std::size_t Position>
   static constexpr void set(Frame& frame, CheckedParameterFor<Entry<Position>> value) {
-    pdo_detail::replace<offsets[Position], Entry<Position>::bits, pdo_detail::frame_data_align>(
-        frame.data, value_for_detail::value_in(value));
+    replace<Position, pdo_detail::frame_data_align>(frame.data, value_for_detail::value_in(value));
   }
 
   /// Sets the value of an object. All other bits keep their value.
   template <DictionaryObject Object>
   static constexpr void set(Data& data, CheckedParameterFor<Object> value) {
     static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, maps<Object>, Object>::is_good);
-    set<position_of<Object>>(data, value_for_detail::value_in(value));
+    replace<position_of<Object>, 1>(data, value_for_detail::value_in(value));
   }
   template <DictionaryObject Object>
   static constexpr void set(Frame& frame, CheckedParameterFor<Object> value) {
     static_assert(pdo_detail::MappedObject<PdoLayout, pdo_detail::LabelOf<Object>, maps<Object>, Object>::is_good);
-    set<position_of<Object>>(frame, value_for_detail::value_in(value));
+    replace<position_of<Object>, pdo_detail::frame_data_align>(frame.data, value_for_detail::value_in(value));
   }
 
   /// Sets the value of entry `Position`, whose bits must be zero.
@@ -283,6 +282,11 @@ struct PdoLayout {
   }
 
  private:
+  template <std::size_t Position, unsigned Align>
+  static constexpr void replace(Data& data, const typename Entry<Position>::type& value) {
+    pdo_detail::replace<offsets[Position], Entry<Position>::bits, Align>(data, value);
+  }
+
   template <unsigned Align>
   static constexpr void pack_aligned([[maybe_unused]] Data& data, const typename Objects::type&... values) {
     constexpr pdo_detail::Chunks chunks = pdo_detail::chunks_of(offsets);
