@@ -131,6 +131,8 @@ WAYS = {
                        "bench::NodeOf<Device, Bus, decltype(handler)> other{{bus, canopen::NodeId{{std::uint8_t{{5}}}}, handler}};", NUMBERS),
     "PDO, pack": ("(void)canopen::PdoLayout<{object}>::pack({value});", CODEC),
     "PDO, set": ("canopen::PdoLayout<{object}>::set<0>(frame, {value});", CODEC),
+    "PDO, set an object": ("canopen::PdoLayout<{object}>::set<{object}>(frame, {value});", CODEC),
+    "PDO, pack into": ("canopen::PdoLayout<{object}>::pack_into(frame, {value});", CODEC),
     "PDO, put": ("canopen::PdoLayout<{object}>::put<0>(frame, {value});", CODEC),
 }
 # What compiles: a value of the type, of a narrower one, and a constant.
