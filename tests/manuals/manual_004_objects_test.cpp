@@ -194,7 +194,7 @@ TEST(Manual004, RefusesRestrictedCanIdsForSyncAndTpdo1) {
   }
 }
 
-// shows 004.57, 004.75
+// shows 004.57, 004.66, 004.75
 TEST(Manual004, RefusesRestrictedCanIdsAndBits29And30ForEmcy) {
   Sensor sensor;
   write(sensor, 0x1014, 0, 4, 0x8000'0085);
