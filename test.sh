@@ -6,7 +6,7 @@ help() {
   cat <<'HELP'
 ./test.sh [GEAR]...: tests edsc; installs missing Debian packages first.
 
-  gates     format, includes, words, schemas; what differs from origin/main compiles alone and passes clang-tidy
+  gates     format, includes, words, schemas, names of types; what differs from origin/main compiles alone and passes clang-tidy
             (less than 2 minutes; needs no build)
   sources   each source and public header compiles alone and passes clang-tidy; each gate detects a planted fault
   quick     the gates; the generated code, the short tests of the command line, the conformance test of the reference

@@ -114,6 +114,15 @@ class Scripts(Copy):
         document.write_text(document.read_text(encoding="utf-8").replace("`parse_ini`", "`planted_ini`"), encoding="utf-8")
         self.expect_failure(self.run_gate(LAYOUT / "walkthrough_test.py"), "ini.cpp does not contain planted_ini")
 
+    def test_two_types_of_one_name_in_different_programs_are_reported(self) -> None:
+        definition = "namespace planted {{\nstruct Planted {{\n  {} value;\n}};\n}}\n"
+        self.plant("generator/text/utf8.hpp", definition.format("int"))
+        self.plant("tests/support/bench.hpp", definition.format("double"))
+        self.plant("generated/cpd/device.hpp", "namespace planted {\nnamespace {\nstruct Planted {};\n}\n}\n")
+        result = self.run_gate(GATES / "type_names.py")
+        self.expect_failure(result, "planted::Planted is defined in generator/text/utf8.hpp:", " and tests/support/bench.hpp:")
+        self.assertNotIn("generated/cpd", result.stdout)
+
     def test_a_phrase_to_avoid_is_reported(self) -> None:
         self.plant("README.md", "The bus eats " + "frames.\n")
         self.expect_failure(self.run_gate(LAYOUT / "words_test.py"), 'README.md:', 'write "consumes"')
