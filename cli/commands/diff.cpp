@@ -123,7 +123,7 @@ void check_files(const Settings& settings) {
 
 void compare(Pair& pair) {
   if (!pair.before) return;
-  pair.changes = compare_devices(*pair.before->device, *pair.after->device);
+  pair.changes = compare_devices(pair.before->named(), pair.after->named());
   pair.stored_values =
       compare_stored_values({*pair.before->device, pair.before->options}, {*pair.after->device, pair.after->options});
   add_lost_values(pair.stored_values, pair.changes);

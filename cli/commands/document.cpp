@@ -86,7 +86,7 @@ int document_device(const Settings& settings) {
   std::unique_ptr<LoadedDevice> older;
   if (!settings.against.empty()) {
     older = load_older(settings, inputs);
-    compared = ComparedWith{name_of_older(settings, *older), compare_devices(*older->device, *loaded->device)};
+    compared = ComparedWith{name_of_older(settings, *older), compare_devices(older->named(), loaded->named())};
   }
   const DeviceToDocument device{*loaded, &diagnostics, compared ? &*compared : nullptr};
   write_output(settings.output, document_of(device, format_of(settings)), inputs);

@@ -41,9 +41,9 @@ int dump(const Settings& settings) {
   const auto loaded = load_device(load, diagnostics);
   nlohmann::ordered_json view;
   if (loaded->device) {
-    view = device_view(*loaded->device);
+    view = device_view(loaded->named());
     separate_configured_values(loaded->sheet, *loaded->device, view);
-    if (settings.cpp) view["cpp"] = cpp_view(*loaded->device, loaded->options, diagnostics);
+    if (settings.cpp) view["cpp"] = cpp_view(loaded->named(), loaded->options, diagnostics);
   }
   print_findings(stderr, diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;

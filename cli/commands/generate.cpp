@@ -79,8 +79,8 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
                                    std::vector<std::string>& inputs) {
   const auto templates = choose_templates(settings.templates);
   loaded.sheet = {};
-  const auto view = cpp_view(*loaded.device, loaded.options, diagnostics);
-  const fs::path folder = fs::path{settings.output} / loaded.device->name;
+  const auto view = cpp_view(loaded.named(), loaded.options, diagnostics);
+  const fs::path folder = fs::path{settings.output} / loaded.names->space();
   loaded.device.reset();
   std::vector<OutputFile> files;
   inputs = {settings.load.path};
@@ -96,9 +96,9 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
 }
 
 /// The DBC file. Prints which PDOs it does not have.
-OutputFile render_dbc(const Settings& settings, const Device& device) {
-  if (!device.node_id) throw_requires("--dbc", "--node-id or a DCF, since CAN-IDs depend on the node-ID");
-  Dbc dbc = dbc_of(device);
+OutputFile render_dbc(const Settings& settings, const NamedDevice& named) {
+  if (!named.device.node_id) throw_requires("--dbc", "--node-id or a DCF, since CAN-IDs depend on the node-ID");
+  Dbc dbc = dbc_of(named);
   for (const std::string& note : dbc.notes) fmt::print(stderr, "edsc: not in the DBC file: {}\n", note);
   return {settings.dbc, std::move(dbc.text)};
 }
@@ -129,7 +129,7 @@ int generate(const Settings& settings) {
   if (is_device && diagnostics.errors() == 0) {
     std::vector<OutputFile> dbc;
     inputs = {settings.load.path};
-    if (!settings.dbc.empty()) dbc.push_back(render_dbc(settings, *loaded->device));
+    if (!settings.dbc.empty()) dbc.push_back(render_dbc(settings, loaded->named()));
     if (!settings.output.empty()) files = render_all(settings, *loaded, diagnostics, inputs);
     files.insert(files.end(), std::make_move_iterator(dbc.begin()), std::make_move_iterator(dbc.end()));
   }

@@ -83,7 +83,7 @@ void add_object(const std::string& text, const LogNodes& nodes, std::vector<Want
   const std::size_t before = wanted.size();
   for (const auto& [id, loaded] : nodes.loaded) {
     if (node_id && id != *node_id) continue;
-    const FoundEntry found = find_one_entry(*loaded->device, name);
+    const FoundEntry found = find_one_entry(loaded->named(), name);
     if (!found.ok()) {
       problem = found.problem;
       continue;

@@ -63,11 +63,11 @@ std::vector<Chosen> all_entries(const Device& device) {
   return entries;
 }
 
-std::vector<Chosen> choose_entries(const Settings& settings, const Device* device) {
-  if (settings.all) return all_entries(*device);
+std::vector<Chosen> choose_entries(const Settings& settings, const LoadedDevice* loaded) {
+  if (settings.all) return all_entries(*loaded->device);
   std::vector<Chosen> chosen;
   for (const std::string& text : settings.objects) {
-    std::vector<LiveEntry> entries = name_entries(device, text);
+    std::vector<LiveEntry> entries = name_entries(loaded, text);
     for (LiveEntry& entry : entries) {
       if (settings.type != nullptr) set_type(entry, *settings.type);
       chosen.push_back({std::move(entry), entries.size() > 1});
@@ -173,7 +173,7 @@ int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chose
 int run_read(const Settings& settings) {
   if (!settings.all && settings.objects.empty()) throw_required("OBJECT or --all");
   const auto loaded = settings.sheet.empty() ? nullptr : load_live_device(settings.sheet, settings.node);
-  const std::vector<Chosen> entries = choose_entries(settings, device_of(loaded));
+  const std::vector<Chosen> entries = choose_entries(settings, loaded.get());
   if (!settings.file.empty() && entries.size() != 1) {
     fail(fmt::format("--file takes the value of one entry, not of {}", entries.size()));
   }

@@ -73,10 +73,10 @@ canopen::Frame compose_time(const Settings& settings, std::uint32_t /*sent*/) {
 }
 
 /// `statusword=0x27`
-PdoValue pdo_value(const Device& device, const std::string& text) {
+PdoValue pdo_value(const LoadedDevice& loaded, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) fail(fmt::format("\"{}\" is not of the form OBJECT=VALUE", text));
-  const LiveEntry entry = name_entry(&device, text.substr(0, equals));
+  const LiveEntry entry = name_entry(&loaded, text.substr(0, equals));
   return {entry.index, entry.sub_index, text.substr(equals + 1)};
 }
 
@@ -91,7 +91,7 @@ canopen::Frame compose_pdo_of_file(const Settings& settings, std::uint32_t /*sen
                      settings.number));
   }
   std::vector<PdoValue> values;
-  for (const std::string& text : settings.values) values.push_back(pdo_value(*loaded->device, text));
+  for (const std::string& text : settings.values) values.push_back(pdo_value(*loaded, text));
   const ComposedPdo composed = compose_pdo(*pdo, values);
   if (!composed.ok()) fail(composed.problem);
   return composed.frame;

@@ -101,7 +101,7 @@ int write_entry(LiveBus& bus, const Settings& settings, const LiveEntry& entry,
 int run_write(const Settings& settings) {
   if (settings.file.empty() && settings.value.empty()) throw_required("VALUE or --file");
   const auto loaded = settings.sheet.empty() ? nullptr : load_live_device(settings.sheet, settings.node);
-  LiveEntry entry = name_entry(device_of(loaded), settings.object);
+  LiveEntry entry = name_entry(loaded.get(), settings.object);
   if (settings.type != nullptr) set_type(entry, *settings.type);
   if (!settings.force) check_access(entry);
   const ParsedValue value = value_to_write(settings, entry);

@@ -54,9 +54,9 @@ std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uin
   throw Exit{};
 }
 
-std::vector<LiveEntry> name_entries(const Device* device, const std::string& text) {
-  if (device == nullptr) return {by_address(text)};
-  const FoundEntry found = find_entry(*device, text);
+std::vector<LiveEntry> name_entries(const LoadedDevice* loaded, const std::string& text) {
+  if (loaded == nullptr) return {by_address(text)};
+  const FoundEntry found = find_entry(loaded->named(), text);
   if (!found.ok()) fail(found.problem);
   if (found.entry != nullptr) return {live_entry(*found.object, *found.entry)};
   std::vector<LiveEntry> entries;
@@ -69,9 +69,9 @@ std::vector<LiveEntry> name_entries(const Device* device, const std::string& tex
   return entries;
 }
 
-LiveEntry name_entry(const Device* device, const std::string& text) {
-  if (device == nullptr) return by_address(text);
-  const FoundEntry found = find_one_entry(*device, text);
+LiveEntry name_entry(const LoadedDevice* loaded, const std::string& text) {
+  if (loaded == nullptr) return by_address(text);
+  const FoundEntry found = find_one_entry(loaded->named(), text);
   if (!found.ok()) fail(found.problem);
   return live_entry(*found.object, *found.entry);
 }

@@ -32,8 +32,9 @@ void walk(const List& before, const List& after, Key key, Visit visit) {
 
 class DeviceComparison {
  public:
-  DeviceComparison(const Device& before, const Device& after) : before_{before}, after_{after} {
-    for (const Pdo& pdo : before.pdos) {
+  DeviceComparison(const NamedDevice& before, const NamedDevice& after)
+      : before_{before.device}, after_{after.device}, old_names_{before.names}, new_names_{after.names} {
+    for (const Pdo& pdo : before_.pdos) {
       if (pdo.direction != PdoDirection::receive) continue;
       for (const PdoEntry& entry : pdo.entries) in_rpdo_.emplace(entry.index, entry.sub_index);
     }
@@ -159,22 +160,28 @@ class DeviceComparison {
   /// Of objects or entries.
   template <typename Named>
   void compare_names(const std::string& label, const Named& a, const Named& b) {
-    if (a.identifier == b.identifier && a.name == b.name) return;
-    const bool compiles = a.identifier == b.identifier;
+    const std::string& old_name = old_names_.of(a);
+    const std::string& new_name = new_names_.of(b);
+    const bool compiles = old_name == new_name;
+    if (compiles && a.name == b.name) return;
     Change& change =
         changes_.add(compiles ? ChangeId::name : ChangeId::identifier, label, b.name, a.position, b.position);
-    change.old_value = compiles ? fmt::format("\"{}\"", a.name) : a.identifier;
-    change.new_value = compiles ? fmt::format("\"{}\"", b.name) : b.identifier;
+    change.old_value = compiles ? fmt::format("\"{}\"", a.name) : old_name;
+    change.new_value = compiles ? fmt::format("\"{}\"", b.name) : new_name;
   }
 
   const Device& before_;
   const Device& after_;
+  const CppNames& old_names_;
+  const CppNames& new_names_;
   std::set<EntryNumber> in_rpdo_;  ///< mapped to RPDOs by default, before the change
   Changes changes_;
 };
 
 }  // namespace
 
-Changes compare_devices(const Device& before, const Device& after) { return DeviceComparison{before, after}.compare(); }
+Changes compare_devices(const NamedDevice& before, const NamedDevice& after) {
+  return DeviceComparison{before, after}.compare();
+}
 
 }  // namespace edsc

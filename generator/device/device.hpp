@@ -44,8 +44,7 @@ struct Value {
 struct Entry {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
-  std::string name;        ///< ParameterName
-  std::string identifier;  ///< name in generated code, unique in its object; a back end sets it
+  std::string name;  ///< ParameterName
   const canopen::DataTypeRow* type = nullptr;
   std::uint32_t octets = 0;  ///< of a string: the length that its DEFTYPE states, in bytes; 0 where none does
   canopen::Access access = canopen::Access::rw;
@@ -77,7 +76,6 @@ struct Object {
   std::uint16_t index = 0;
   ObjectType type = ObjectType::var;
   std::string name;
-  std::string identifier;      ///< name in generated code, unique in the device; a back end sets it
   std::vector<Entry> entries;  ///< ascending by sub-index; exactly one for a VAR or DOMAIN
   Position position;
   std::string denotation;
@@ -137,7 +135,6 @@ struct TypeDefinition {
 
 struct Device {
   const SourceFile* source = nullptr;
-  std::string name;  ///< in generated code
   std::string vendor_name;
   std::string product_name;
   std::uint32_t vendor_number = 0;

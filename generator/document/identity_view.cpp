@@ -91,7 +91,7 @@ Json service_rows(const Device& device) {
   return rows;
 }
 
-Json file_rows(const Device& device) {
+Json file_rows(const Device& device, const CppNames& names) {
   const FileInformation& file = device.information.file;
   Json rows = Json::array();
   add_property(rows, "File", file_name_of(device.source->name()));
@@ -102,7 +102,7 @@ Json file_rows(const Device& device) {
   add_property(rows, "Created", date(file.creation_date, file.creation_time, file.created_by));
   add_property(rows, "Modified", date(file.modification_date, file.modification_time, file.modified_by));
   add_property(rows, "Made from", file.last_eds);
-  add_property(rows, "C++ namespace", device.name);
+  add_property(rows, "C++ namespace", names.space());
   return rows;
 }
 
@@ -148,7 +148,7 @@ void add_identity(const DeviceToDocument& input, Json& view) {
   view["source"] = file_name_of(device.source->name());
   view["identity"] = identity_rows(device);
   view["services"] = service_rows(device);
-  view["file"] = file_rows(device);
+  view["file"] = file_rows(device, *input.loaded.names);
   view["commissioning"] = commissioning_rows(device.information.commissioning);
   view["has_commissioning"] = !view["commissioning"].empty();
   view["bit_rates"] = bit_rate_rows(device);

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "backend/cpp/cpp_name.hpp"
 #include "backend/json/replaced_default.hpp"
 #include "compare/compare_parts.hpp"
 #include "device/scaled_unit.hpp"
@@ -186,7 +185,7 @@ class ObjectRows {
     types_.emplace(entry.type->name);
     accesses_.emplace(access);
     const std::string comment = object.has_sub_indices() ? comment_before(entry.position) : "";
-    const std::string cpp = cpp_name(object, entry);
+    const std::string cpp = input_.loaded.names->type_of(object, entry);
     const std::size_t member = cpp.find("::", std::string_view{"od::"}.size());
     return {{"sub_id", object.has_sub_indices() ? Json(anchor_of(object, entry)) : Json(nullptr)},
             {"href", anchor_of(object, entry)},

@@ -4,8 +4,8 @@
 
 namespace edsc {
 
-void check_device(const Device& device, const DataSheet& sheet, const Options& options, Diagnostics& diagnostics) {
-  const RuleContext context{device, sheet, options, diagnostics};
+void check_device(const NamedDevice& named, const DataSheet& sheet, const Options& options, Diagnostics& diagnostics) {
+  const RuleContext context{named.device, sheet, options, diagnostics};
   check_file(context);
   check_device_info(context);
   check_objects(context);
@@ -20,7 +20,7 @@ void check_device(const Device& device, const DataSheet& sheet, const Options& o
   check_writes(context);
   check_mpdos(context);
   check_profile(context);
-  check_names(context);
+  check_names(context, named.names);
 }
 
 }  // namespace edsc

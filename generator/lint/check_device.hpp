@@ -1,7 +1,7 @@
 /// Checks a resolved device.
 #pragma once
 
-#include "device/device.hpp"
+#include "backend/cpp/cpp_names.hpp"
 #include "device/options/options.hpp"
 #include "eds/data_sheet.hpp"
 
@@ -9,6 +9,6 @@ namespace edsc {
 
 /// Runs all rules over the device and its data sheet. Does not change the device: resolve_device() reports and leaves
 /// out what cannot be used.
-void check_device(const Device& device, const DataSheet& sheet, const Options& options, Diagnostics& diagnostics);
+void check_device(const NamedDevice& named, const DataSheet& sheet, const Options& options, Diagnostics& diagnostics);
 
 }  // namespace edsc

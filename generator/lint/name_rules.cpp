@@ -92,40 +92,40 @@ bool is_one_of_many(std::uint16_t index) {
 }
 
 /// The elements of an ARRAY are identified by their numbers.
-void check_entry_names(const RuleContext& context, const Object& object) {
+void check_entry_names(const RuleContext& context, const Object& object, const CppNames& names) {
   Scope scope;
-  const auto fill = [&](Scope& names) {
+  const auto fill = [&](Scope& all) {
     for (const Entry& entry : object.entries) {
-      names.add(entry.identifier, context.place_of(entry, &EntryDescription::parameter_name),
-                entry_label(entry.index, entry.sub_index));
+      all.add(names.of(entry), context.place_of(entry, &EntryDescription::parameter_name),
+              entry_label(entry.index, entry.sub_index));
     }
   };
   for (const Entry& entry : object.entries) {
     const bool count_without_name = entry.sub_index == 0 && entry.name == object.name;
-    if (!may_be_changed(entry.identifier) || count_without_name) continue;
+    if (!may_be_changed(names.of(entry)) || count_without_name) continue;
     if (named_by_options(context, entry.index, entry.sub_index)) continue;
     const Position place = context.place_of(entry, &EntryDescription::parameter_name);
-    check_name(context, {entry_label(entry.index, entry.sub_index), entry.name, entry.identifier, place}, scope, fill);
+    check_name(context, {entry_label(entry.index, entry.sub_index), entry.name, names.of(entry), place}, scope, fill);
   }
 }
 
 }  // namespace
 
-void check_names(const RuleContext& context) {
+void check_names(const RuleContext& context, const CppNames& names) {
   Scope scope;
-  const auto fill = [&](Scope& names) {
+  const auto fill = [&](Scope& all) {
     for (const Object& object : context.device.objects) {
-      names.add(object.identifier, name_place(context.sheet.find(object.index), object.position),
-                index_label(object.index));
+      all.add(names.of(object), name_place(context.sheet.find(object.index), object.position),
+              index_label(object.index));
     }
   };
   for (const Object& object : context.device.objects) {
     if (is_one_of_many(object.index)) continue;
-    if (may_be_changed(object.identifier) && !named_by_options(context, object.index, 0)) {
+    if (may_be_changed(names.of(object)) && !named_by_options(context, object.index, 0)) {
       const Position place = name_place(context.sheet.find(object.index), object.position);
-      check_name(context, {index_label(object.index), object.name, object.identifier, place}, scope, fill);
+      check_name(context, {index_label(object.index), object.name, names.of(object), place}, scope, fill);
     }
-    if (object.type == ObjectType::record) check_entry_names(context, object);
+    if (object.type == ObjectType::record) check_entry_names(context, object, names);
   }
 }
 

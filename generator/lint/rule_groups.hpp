@@ -1,6 +1,7 @@
 /// The rules other than those for single values and mappings, grouped by subject.
 #pragma once
 
+#include "backend/cpp/cpp_names.hpp"
 #include "lint/rule_context.hpp"
 
 namespace edsc {
@@ -34,6 +35,6 @@ void check_mpdos(const RuleContext& context);
 /// Requirements of the device profile in 1000h.
 void check_profile(const RuleContext& context);
 /// Names as C++ identifiers.
-void check_names(const RuleContext& context);
+void check_names(const RuleContext& context, const CppNames& names);
 
 }  // namespace edsc

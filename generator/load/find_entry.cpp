@@ -28,14 +28,15 @@ bool same_name(std::string_view text, std::string_view identifier, std::string_v
          (!text.empty() && to_snake_case(text) == identifier);
 }
 
-const Object* find_object(const Device& device, std::string_view text) {
-  const auto same = [&](const Object& object) { return same_name(text, object.identifier, object.name); };
-  const auto at = std::ranges::find_if(device.objects, same);
-  return at != device.objects.end() ? &*at : nullptr;
+const Object* find_object(const NamedDevice& named, std::string_view text) {
+  const CppNames& names = named.names;
+  const auto same = [&](const Object& object) { return same_name(text, names.of(object), object.name); };
+  const auto at = std::ranges::find_if(named.device.objects, same);
+  return at != named.device.objects.end() ? &*at : nullptr;
 }
 
-const Entry* find_in(const Object& object, std::string_view text) {
-  const auto same = [&](const Entry& entry) { return same_name(text, entry.identifier, entry.name); };
+const Entry* find_in(const Object& object, std::string_view text, const CppNames& names) {
+  const auto same = [&](const Entry& entry) { return same_name(text, names.of(entry), entry.name); };
   const auto at = std::ranges::find_if(object.entries, same);
   if (at != object.entries.end()) return &*at;
   const auto sub_index = parse_sub_index(text, 10);
@@ -49,24 +50,24 @@ FoundEntry found(const Object& object, const Entry* entry = nullptr) {
 
 FoundEntry no_entry(std::string sentence) { return {nullptr, nullptr, std::move(sentence)}; }
 
-std::string sub_indices_of(const Object& object) {
+std::string sub_indices_of(const Object& object, const CppNames& names) {
   std::string text;
   for (std::size_t i = 0; i < std::min(object.entries.size(), max_listed); ++i) {
     const Entry& entry = object.entries[i];
-    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", entry_label(entry.index, entry.sub_index), entry.identifier);
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", entry_label(entry.index, entry.sub_index), names.of(entry));
   }
   if (object.entries.size() > max_listed) {
     const Entry& last = object.entries.back();
-    text += fmt::format(" ... {} {}", entry_label(last.index, last.sub_index), last.identifier);
+    text += fmt::format(" ... {} {}", entry_label(last.index, last.sub_index), names.of(last));
   }
   return text;
 }
 
 /// `1018h:01 identity_object.vendor_id`
-std::string entry_title(const Object& object, const Entry& entry) {
+std::string entry_title(const Object& object, const Entry& entry, const CppNames& names) {
   const std::string label = entry_label(entry.index, entry.sub_index);
-  if (!object.has_sub_indices()) return fmt::format("{} {}", label, object.identifier);
-  return fmt::format("{} {}.{}", label, object.identifier, entry.identifier);
+  if (!object.has_sub_indices()) return fmt::format("{} {}", label, names.of(object));
+  return fmt::format("{} {}.{}", label, names.of(object), names.of(entry));
 }
 
 // Suggestions
@@ -124,81 +125,83 @@ class Suggestions {
   std::vector<Row> rows_;
 };
 
-std::string near_names(const Device& device, std::string_view text) {
+std::string near_names(const NamedDevice& named, std::string_view text) {
+  const CppNames& names = named.names;
   Suggestions suggestions{text};
-  for (const Object& object : device.objects) {
-    suggestions.consider(object.identifier, fmt::format("{} ({})", object.identifier, index_label(object.index)));
+  for (const Object& object : named.device.objects) {
+    suggestions.consider(names.of(object), fmt::format("{} ({})", names.of(object), index_label(object.index)));
     if (!object.has_sub_indices()) continue;
     for (const Entry& entry : object.entries) {
       if (entry.sub_index == 0) continue;
-      const std::string label = entry_title(object, entry);
-      suggestions.consider(entry.identifier, label);
-      suggestions.consider(fmt::format("{}_{}", object.identifier, entry.identifier), label);
+      const std::string label = entry_title(object, entry, names);
+      suggestions.consider(names.of(entry), label);
+      suggestions.consider(fmt::format("{}_{}", names.of(object), names.of(entry)), label);
     }
   }
   return suggestions.text();
 }
 
 /// The neighbours of a missing index.
-std::string near_indices(const Device& device, std::uint16_t index) {
-  const auto above = std::ranges::upper_bound(device.objects, index, {}, &Object::index);
+std::string near_indices(const NamedDevice& named, std::uint16_t index) {
+  const CppNames& names = named.names;
+  const auto above = std::ranges::upper_bound(named.device.objects, index, {}, &Object::index);
   std::string text;
   const auto add = [&](const Object& object) {
     text += fmt::format("{}{} {}", text.empty() ? "; the nearest objects are " : " and ", index_label(object.index),
-                        object.identifier);
+                        names.of(object));
   };
-  if (above != device.objects.begin()) add(*std::prev(above));
-  if (above != device.objects.end()) add(*above);
+  if (above != named.device.objects.begin()) add(*std::prev(above));
+  if (above != named.device.objects.end()) add(*above);
   return text;
 }
 
-FoundEntry by_address(const Device& device, const EntryAddress& address) {
-  const Object* object = device.find(address.index);
+FoundEntry by_address(const NamedDevice& named, const EntryAddress& address) {
+  const Object* object = named.device.find(address.index);
   if (object == nullptr) {
     return no_entry(
-        fmt::format("the device has no object {}{}", index_label(address.index), near_indices(device, address.index)));
+        fmt::format("the device has no object {}{}", index_label(address.index), near_indices(named, address.index)));
   }
   if (!address.sub_index) return found(*object);
   const Entry* entry = object->find(*address.sub_index);
   if (entry == nullptr) {
     return no_entry(fmt::format("{} \"{}\" has no sub-index {:02X}h; it has {}", index_label(object->index),
-                                object->name, *address.sub_index, sub_indices_of(*object)));
+                                object->name, *address.sub_index, sub_indices_of(*object, named.names)));
   }
   return found(*object, entry);
 }
 
 /// `identity_object.vendor_id`, `identity_object:1`, `Identity object, Vendor-ID`, `read_input_8_bit[1]`: every place
 /// where the object name may end is tried, since names may contain all of these characters.
-std::optional<FoundEntry> by_both_names(const Device& device, std::string_view text) {
+std::optional<FoundEntry> by_both_names(const NamedDevice& named, std::string_view text) {
   for (std::size_t at = text.find_first_of(".,:[<"); at != std::string_view::npos;
        at = text.find_first_of(".,:[<", at + 1)) {
-    const Object* object = find_object(device, trim(text.substr(0, at)));
+    const Object* object = find_object(named, trim(text.substr(0, at)));
     if (object == nullptr) continue;
     std::string_view rest = text.substr(at + 1);
     if ((text[at] == '[' && rest.ends_with(']')) || (text[at] == '<' && rest.ends_with('>'))) rest.remove_suffix(1);
     if (text[at] == ':' && rest.starts_with(':')) rest.remove_prefix(1);
-    if (const Entry* entry = find_in(*object, trim(rest))) return found(*object, entry);
+    if (const Entry* entry = find_in(*object, trim(rest), named.names)) return found(*object, entry);
     return no_entry(fmt::format("{} \"{}\" has no entry \"{}\"; it has {}", index_label(object->index), object->name,
-                                trim(rest), sub_indices_of(*object)));
+                                trim(rest), sub_indices_of(*object, named.names)));
   }
   return std::nullopt;
 }
 
 /// The name of a sub-index alone.
-FoundEntry by_entry_name(const Device& device, std::string_view text) {
+FoundEntry by_entry_name(const NamedDevice& named, std::string_view text) {
+  const CppNames& names = named.names;
   std::vector<FoundEntry> matches;
-  for (const Object& object : device.objects) {
+  for (const Object& object : named.device.objects) {
     if (!object.has_sub_indices()) continue;
     for (const Entry& entry : object.entries) {
-      if (same_name(text, entry.identifier, entry.name)) matches.push_back(found(object, &entry));
+      if (same_name(text, names.of(entry), entry.name)) matches.push_back(found(object, &entry));
     }
   }
   if (matches.size() == 1) return matches.front();
-  if (matches.empty())
-    return no_entry(fmt::format("the device has no object \"{}\"{}", text, near_names(device, text)));
+  if (matches.empty()) return no_entry(fmt::format("the device has no object \"{}\"{}", text, near_names(named, text)));
   std::string sentence = fmt::format("\"{}\" is ambiguous:", text);
   for (std::size_t i = 0; i < std::min(matches.size(), max_suggestions); ++i) {
-    sentence += fmt::format("{} {}", i == 0 ? "" : " or", entry_title(*matches[i].object, *matches[i].entry));
+    sentence += fmt::format("{} {}", i == 0 ? "" : " or", entry_title(*matches[i].object, *matches[i].entry, names));
   }
   if (matches.size() > max_suggestions) sentence += fmt::format(" or {} more", matches.size() - max_suggestions);
   return no_entry(std::move(sentence));
@@ -219,19 +222,19 @@ std::optional<EntryAddress> parse_entry_address(std::string_view text) {
   return sub_index ? std::optional{EntryAddress{*index, sub_index}} : std::nullopt;
 }
 
-FoundEntry find_entry(const Device& device, std::string_view text) {
+FoundEntry find_entry(const NamedDevice& named, std::string_view text) {
   text = trim(text);
-  if (const Object* object = find_object(device, text)) return found(*object);
-  if (const auto address = parse_entry_address(text)) return by_address(device, *address);
-  if (auto both = by_both_names(device, text)) return *std::move(both);
-  return by_entry_name(device, text);
+  if (const Object* object = find_object(named, text)) return found(*object);
+  if (const auto address = parse_entry_address(text)) return by_address(named, *address);
+  if (auto both = by_both_names(named, text)) return *std::move(both);
+  return by_entry_name(named, text);
 }
 
-FoundEntry find_one_entry(const Device& device, std::string_view text) {
-  FoundEntry result = find_entry(device, text);
+FoundEntry find_one_entry(const NamedDevice& named, std::string_view text) {
+  FoundEntry result = find_entry(named, text);
   if (result.ok() && result.entry == nullptr) {
     result.problem = fmt::format("{} \"{}\" has sub-indices: {}", index_label(result.object->index),
-                                 result.object->name, sub_indices_of(*result.object));
+                                 result.object->name, sub_indices_of(*result.object, named.names));
   }
   return result;
 }

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "device/device.hpp"
+#include "backend/cpp/cpp_names.hpp"
 
 namespace edsc {
 
@@ -34,9 +34,9 @@ struct FoundEntry {
 /// Finds by address; by generated name, `position_actual_value` or `identity_object.vendor_id`; or by the name in the
 /// EDS, `Identity object.Vendor-ID`, ignoring letter case. The name of a sub-index is sufficient if only one object has
 /// it; an element of an array is `name.3` or `name[3]`.
-[[nodiscard]] FoundEntry find_entry(const Device& device, std::string_view text);
+[[nodiscard]] FoundEntry find_entry(const NamedDevice& named, std::string_view text);
 
 /// The same for a single entry: an object with sub-indices is an error that lists them.
-[[nodiscard]] FoundEntry find_one_entry(const Device& device, std::string_view text);
+[[nodiscard]] FoundEntry find_one_entry(const NamedDevice& named, std::string_view text);
 
 }  // namespace edsc

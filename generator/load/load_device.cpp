@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "backend/cpp/identifier.hpp"
-#include "backend/cpp/name_objects.hpp"
 #include "device/pdo/locked_parameters.hpp"
 #include "device/resolve.hpp"
 #include "diagnostics/quote.hpp"
@@ -152,8 +151,8 @@ void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagn
   }
   loaded.device = resolve_device(loaded.sheet, loaded.options, settings.node_id, diagnostics);
   imply_options(*loaded.device, loaded.options, diagnostics);
-  name_objects(*loaded.device, loaded.options, settings.name);
-  if (settings.check) check_device(*loaded.device, loaded.sheet, loaded.options, diagnostics);
+  loaded.names.emplace(*loaded.device, loaded.options, settings.name);
+  if (settings.check) check_device(loaded.named(), loaded.sheet, loaded.options, diagnostics);
 }
 
 }  // namespace edsc

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "backend/cpp/cpp_names.hpp"
 #include "device/device.hpp"
 #include "device/options/options.hpp"
 #include "eds/data_sheet.hpp"
@@ -29,8 +30,11 @@ struct LoadedDevice {
   std::unique_ptr<SourceFile> options_source;  ///< null without options file
   Options options;
   DataSheet sheet;
-  std::optional<Device> device;  ///< nothing if the file could not be read as a data sheet
-  bool unreadable = false;       ///< a file could not be read: wrong usage, not invalid input
+  std::optional<Device> device;   ///< nothing if the file could not be read as a data sheet
+  std::optional<CppNames> names;  ///< of the device
+  bool unreadable = false;        ///< a file could not be read: wrong usage, not invalid input
+
+  [[nodiscard]] NamedDevice named() const { return {*device, *names}; }
 };
 
 /// Reads, resolves and optionally checks a device. Adds findings to `diagnostics`, whose positions point into the

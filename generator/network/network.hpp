@@ -32,6 +32,7 @@ struct NetworkNode {
   Device device;                         ///< with the settings applied as default values
   std::vector<Setting> settings;         ///< in the order in which the network file implies and states them
 
+  [[nodiscard]] NamedDevice named() const { return {device, *loaded->names}; }
   /// Whether the network file names an EDS or DCF.
   [[nodiscard]] bool has_file() const { return description->eds || description->dcf; }
 };

@@ -84,7 +84,7 @@ namespace {
 
 /// A value in the notation of an EDS, of an entry by name or address. `stated` has the entries of the node so far.
 void set_text(NetworkNode& node, const WrittenValue& written, StatedEntries& stated, Diagnostics& diagnostics) {
-  const FoundEntry found = find_one_entry(node.device, written.entry.value);
+  const FoundEntry found = find_one_entry(node.named(), written.entry.value);
   if (!found.ok()) {
     diagnostics.error("network-value", written.entry.position, fmt::format("node {}: {}", node.name, found.problem));
     return;

@@ -105,7 +105,7 @@ class SignalResolver {
 
   const Entry* find_entry(const NetworkNode& node, std::string_view name, PdoDirection direction,
                           const Position& position) {
-    const FoundEntry found = find_one_entry(node.device, name);
+    const FoundEntry found = find_one_entry(node.named(), name);
     if (!found.ok()) {
       error(position, fmt::format("node {}: {}", node.name, found.problem));
       return nullptr;

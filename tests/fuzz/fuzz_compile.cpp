@@ -28,8 +28,8 @@ void split(const std::string& input, LoadedDevice& loaded, Diagnostics& diagnost
 }
 
 void generate(const LoadedDevice& loaded, bool rendered, Diagnostics& diagnostics) {
-  static_cast<void>(device_view(*loaded.device).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::strict));
-  const nlohmann::ordered_json view = cpp_view(*loaded.device, loaded.options, diagnostics);
+  static_cast<void>(device_view(loaded.named()).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::strict));
+  const nlohmann::ordered_json view = cpp_view(loaded.named(), loaded.options, diagnostics);
   if (!rendered) return;
   for (const Template& one : built_in_templates()) {
     require(render(one.text, view).ends_with("\n"), "a generated file ends with a line end");

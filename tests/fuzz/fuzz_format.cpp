@@ -21,10 +21,12 @@ namespace {
 struct Read {
   explicit Read(std::string text, std::optional<std::uint8_t> node_id = {}) : source{"fuzz.eds", std::move(text)} {
     ini = parse_ini(source, diagnostics);
-    if (ini.sections.empty()) return;
-    sheet = read_data_sheet(ini, diagnostics);
-    Diagnostics ignored;
-    device = resolve_device(sheet, {}, node_id, ignored);
+    if (!ini.sections.empty()) {
+      sheet = read_data_sheet(ini, diagnostics);
+      Diagnostics ignored;
+      device = resolve_device(sheet, {}, node_id, ignored);
+    }
+    names.emplace(device, Options{}, "fuzz");
   }
   Read(const Read&) = delete;
   Read& operator=(const Read&) = delete;
@@ -42,6 +44,9 @@ struct Read {
   IniFile ini;
   DataSheet sheet;
   Device device;
+  std::optional<CppNames> names;
+
+  [[nodiscard]] NamedDevice named() const { return {device, *names}; }
 };
 
 void check_concise_dcf(const Read& read) {
@@ -58,13 +63,13 @@ void check_concise_dcf(const Read& read) {
 }
 
 void check(const Read& read, std::uint8_t node_id) {
-  require(compare_devices(read.device, read.device).all().empty(), "a device does not differ from itself");
+  require(compare_devices(read.named(), read.named()).all().empty(), "a device does not differ from itself");
   if (!read.good()) return;
   const std::string text = read.canonical();
   const Read again{text};
   require(again.good(), "a canonical form has no errors");
   require(again.canonical() == text, "the canonical form of a canonical form is itself");
-  require(compare_devices(read.device, again.device).all().empty(), "a canonical form means the same device");
+  require(compare_devices(read.named(), again.named()).all().empty(), "a canonical form means the same device");
 
   const Read of_node{text, node_id};
   check_concise_dcf(of_node);
@@ -90,8 +95,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const fuzz::Read before{input.substr(0, end)};
   const fuzz::Read after{input.substr(end + between.size())};
-  const Changes changes = compare_devices(before.device, after.device);
-  fuzz::require(changes.all().empty() == compare_devices(after.device, before.device).all().empty(),
+  const Changes changes = compare_devices(before.named(), after.named());
+  fuzz::require(changes.all().empty() == compare_devices(after.named(), before.named()).all().empty(),
                 "a difference is one from both sides");
   return 0;
 }

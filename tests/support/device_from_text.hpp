@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "backend/cpp/name_objects.hpp"
+#include "backend/cpp/cpp_names.hpp"
 #include "device/resolve.hpp"
 #include "eds/data_sheet.hpp"
 #include "eds/ini.hpp"
@@ -34,16 +34,17 @@ struct DeviceFromText {
       : source(std::move(file), std::move(text)),
         options(std::move(given)),
         sheet(read_data_sheet(parse_ini(source, diagnostics), diagnostics)),
-        device(resolve_device(sheet, options, settings.node_id, diagnostics)) {
-    name_objects(device, options, settings.name);
-  }
+        device(resolve_device(sheet, options, settings.node_id, diagnostics)),
+        names(device, options, settings.name) {}
 
   SourceFile source;
   Diagnostics diagnostics;
   Options options;
   DataSheet sheet;
   Device device;
+  CppNames names;
 
+  [[nodiscard]] NamedDevice named() const { return {device, names}; }
   [[nodiscard]] const Entry& entry(std::uint16_t index, std::uint8_t sub_index = 0) const {
     const Entry* found = device.find(index, sub_index);
     if (found == nullptr) throw std::runtime_error{entry_label(index, sub_index) + " is missing"};

@@ -68,7 +68,9 @@ ordered_json description_rows(const Device& device) {
 
 }  // namespace
 
-ordered_json cpp_view(const Device& device, const Options& options, Diagnostics& diagnostics) {
+ordered_json cpp_view(const NamedDevice& named, const Options& options, Diagnostics& diagnostics) {
+  const Device& device = named.device;
+  const std::string& space = named.names.space();
   const std::string& path = device.source->name();
   const auto table = [](ordered_json rows) {
     const bool any_row = !rows.empty();
@@ -76,14 +78,14 @@ ordered_json cpp_view(const Device& device, const Options& options, Diagnostics&
   };
   OptionsView view = options_view(device, options);
   return json_object(
-      "file", cpp_comment(path.substr(path.find_last_of('/') + 1)), "namespace", device.name, "guard",
-      upper_case("edsc_" + device.name), "product_name",
-      cpp_string(device.product_name.empty() ? device.name : device.product_name), "types",
-      object_types_view(device, options), "object_rows", object_rows_view(device), "memory",
-      layout_view(lay_out(device, options, diagnostics)), "zero_terminated_strings", options.zero_terminated_strings,
-      "pdos", pdo_rows(device), "distinct_pdos", table(distinct_pdos(device)), "cob_ids", table(cob_id_rows(device)),
-      "rpdos", served_pdos(device, PdoDirection::receive), "tpdos", served_pdos(device, PdoDirection::transmit),
-      "options", std::move(view.runtime), "any_options", !options.runtime.empty(), "event_conditions",
+      "file", cpp_comment(path.substr(path.find_last_of('/') + 1)), "namespace", space, "guard",
+      upper_case("edsc_" + space), "product_name",
+      cpp_string(device.product_name.empty() ? space : device.product_name), "types", object_types_view(named, options),
+      "object_rows", object_rows_view(named), "memory", layout_view(lay_out(named, options, diagnostics)),
+      "zero_terminated_strings", options.zero_terminated_strings, "pdos", pdo_rows(named), "distinct_pdos",
+      table(distinct_pdos(device)), "cob_ids", table(cob_id_rows(device)), "rpdos",
+      served_pdos(device, PdoDirection::receive), "tpdos", served_pdos(device, PdoDirection::transmit), "options",
+      std::move(view.runtime), "any_options", !options.runtime.empty(), "event_conditions",
       std::move(view.event_conditions), "any_event_condition", !options.no_event.empty(), "emergency_info",
       std::move(view.emergency_info), "any_emergency_info", !options.emergency_info.empty(), "descriptions",
       description_rows(device), "node_id", device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr),

@@ -3,12 +3,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "device/device.hpp"
+#include "backend/cpp/cpp_names.hpp"
 #include "device/options/options.hpp"
 
 namespace edsc {
 
 /// Declarations and tables as lines of C++. Reports objects that do not fit into the memory of the dictionary.
-[[nodiscard]] nlohmann::ordered_json cpp_view(const Device& device, const Options& options, Diagnostics& diagnostics);
+[[nodiscard]] nlohmann::ordered_json cpp_view(const NamedDevice& named, const Options& options,
+                                              Diagnostics& diagnostics);
 
 }  // namespace edsc

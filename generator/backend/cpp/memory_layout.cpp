@@ -65,8 +65,12 @@ std::string_view access_of(const canopen::AccessRow& row) {
 /// Builds the layout object by object, in ascending index.
 class Builder {
  public:
-  Builder(const Device& device, const Options& options, Diagnostics& diagnostics)
-      : device_{device}, options_{options}, diagnostics_{diagnostics}, placement_{device, options} {
+  Builder(const NamedDevice& named, const Options& options, Diagnostics& diagnostics)
+      : device_{named.device},
+        names_{named.names},
+        options_{options},
+        diagnostics_{diagnostics},
+        placement_{named.device, options} {
     for (const char* name : taken_type_names) static_cast<void>(type_scope_.take(name, ""));
     for (const Section& section : sections) static_cast<void>(type_scope_.take(std::string{section.type}, ""));
   }
@@ -145,9 +149,9 @@ class Builder {
     add_limits(object, entry);
     Location location;
     const MemoryPlace place = placement_.place(object, entry);
-    if (place == MemoryPlace::rom) location = add_constant(member(object, entry, object.identifier));
+    if (place == MemoryPlace::rom) location = add_constant(member(object, entry, names_.of(object)));
     if (place == MemoryPlace::ram) {
-      location = add_value(section_of(entry.index, !is_zero(entry)), member(object, entry, object.identifier));
+      location = add_value(section_of(entry.index, !is_zero(entry)), member(object, entry, names_.of(object)));
       add_node_id_relative(entry, location);
       note_download(entry);
     }
@@ -189,7 +193,7 @@ class Builder {
     add_limits(object, count);
     add_limits(object, first);
     Member elements{fmt::format("std::array<{}, {}>", cpp_type(first, options_), length),
-                    object.identifier,
+                    names_.of(object),
                     &object,
                     nullptr,
                     {},
@@ -214,7 +218,7 @@ class Builder {
     } else {
       first_element = add_value(section, std::move(elements));
       const bool apart = count_place == MemoryPlace::rom;
-      if (apart) count_location = add_constant(member(object, count, object.identifier));
+      if (apart) count_location = add_constant(member(object, count, names_.of(object)));
       (apart ? elements_location : begin) = first_element;
     }
     for (const Entry& entry : object.entries) {
@@ -240,8 +244,8 @@ class Builder {
     bool preset = false;
     for (const Entry& entry : object.entries) {
       const MemoryPlace place = placement_.place(object, entry);
-      if (place == MemoryPlace::ram) in_ram.push_back(member(object, entry, entry.identifier));
-      if (place == MemoryPlace::rom) in_rom.push_back(member(object, entry, entry.identifier));
+      if (place == MemoryPlace::ram) in_ram.push_back(member(object, entry, names_.of(entry)));
+      if (place == MemoryPlace::rom) in_rom.push_back(member(object, entry, names_.of(entry)));
       preset = preset || (place == MemoryPlace::ram && !is_zero(entry));
     }
     const bool in_both = !in_ram.empty() && !in_rom.empty();
@@ -266,8 +270,8 @@ class Builder {
       add_limits(object, entry);
       const MemoryPlace place = placement_.place(object, entry);
       const Location& record = place == MemoryPlace::rom ? rom : ram;
-      const Location absolute{record.type, fmt::format("{}.{}", record.member, entry.identifier)};
-      subs.emplace_back(word(object, entry, in_both ? absolute : Location{type, entry.identifier}));
+      const Location absolute{record.type, fmt::format("{}.{}", record.member, names_.of(entry))};
+      subs.emplace_back(word(object, entry, in_both ? absolute : Location{type, names_.of(entry)}));
       if (place != MemoryPlace::ram) continue;
       note_download(entry);
       add_node_id_relative(entry, absolute);
@@ -280,7 +284,7 @@ class Builder {
     const unsigned alignment = parts.front().alignment;
     const std::size_t size = round_up(end_of(parts, 0), alignment);
     std::string type = record_type(object, parts);
-    return {std::move(type), object.identifier, &object, nullptr, std::move(parts), alignment, size};
+    return {std::move(type), names_.of(object), &object, nullptr, std::move(parts), alignment, size};
   }
 
   /// Finds or creates the struct for a shape: the same member types and names in the same order.
@@ -290,9 +294,9 @@ class Builder {
     for (const Member& member : members) shape.emplace_back(member.type, member.name);
     const auto [at, is_new] = shapes_.try_emplace(std::move(shape));
     if (!is_new) return at->second;
-    std::string base = object.identifier;
+    std::string base = names_.of(object);
     while (!base.empty() && (base.back() == '_' || (base.back() >= '0' && base.back() <= '9'))) base.pop_back();
-    const std::string wanted = to_camel_case(base.empty() ? object.identifier : base);
+    const std::string wanted = to_camel_case(base.empty() ? names_.of(object) : base);
     at->second = type_scope_.take(wanted.empty() ? "Record" : wanted, fmt::format("{:04X}", object.index));
     layout_.record_types.push_back({object.name, at->second, {}, members});
     return at->second;
@@ -364,6 +368,7 @@ class Builder {
   }
 
   const Device& device_;
+  const CppNames& names_;
   const Options& options_;
   Diagnostics& diagnostics_;
   Placement placement_;
@@ -378,8 +383,8 @@ class Builder {
 
 }  // namespace
 
-MemoryLayout lay_out(const Device& device, const Options& options, Diagnostics& diagnostics) {
-  return Builder{device, options, diagnostics}.build();
+MemoryLayout lay_out(const NamedDevice& named, const Options& options, Diagnostics& diagnostics) {
+  return Builder{named, options, diagnostics}.build();
 }
 
 }  // namespace edsc

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "backend/cpp/cpp_names.hpp"
 #include "backend/cpp/placement.hpp"
 #include "device/device.hpp"
 #include "device/drive_modes.hpp"
@@ -119,6 +120,6 @@ struct MemoryLayout {
 };
 
 /// Reports the first object that does not fit into the address range of the tables.
-[[nodiscard]] MemoryLayout lay_out(const Device& device, const Options& options, Diagnostics& diagnostics);
+[[nodiscard]] MemoryLayout lay_out(const NamedDevice& named, const Options& options, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -61,10 +61,11 @@ std::string without_number(const Entry& element) {
 
 class ObjectTypes {
  public:
-  ObjectTypes(const Device& device, const Options& options) : device_{device}, options_{options} {
-    const std::string& path = device.source->name();
+  ObjectTypes(const NamedDevice& named, const Options& options)
+      : device_{named.device}, names_{named.names}, options_{options} {
+    const std::string& path = device_.source->name();
     file_ = cpp_comment(path.substr(path.find_last_of('/') + 1));
-    for (const Object& object : device.objects) static_cast<void>(names_.take(object.identifier, ""));
+    for (const Object& object : device_.objects) static_cast<void>(scope_.take(names_.of(object), ""));
   }
 
   [[nodiscard]] ordered_json view() {
@@ -83,7 +84,7 @@ class ObjectTypes {
   [[nodiscard]] ordered_json record_row(const Object& object) const {
     ordered_json entries = json_array(object.entries.size());
     for (const Entry& entry : object.entries) entries.push_back(entry_row(entry));
-    return json_object("identifier", object.identifier, "comment",
+    return json_object("identifier", names_.of(object), "comment",
                        fmt::format("{}.  {}", cpp_comment(object.name), index_label(object.index)), "entries",
                        std::move(entries));
   }
@@ -93,9 +94,9 @@ class ObjectTypes {
     const std::size_t length = object.entries.size() - 1;
     const std::string label = fmt::format("{}:01..{:02X}", index_label(object.index), length);
     ordered_json count = entry_row(object.entries.front());
-    count["array_identifier"] = object.identifier;
+    count["array_identifier"] = names_.of(object);
     return json_object(
-        "comment", comment(first, object.name, label), "identifier", object.identifier, "name", cpp_string(object.name),
+        "comment", comment(first, object.name, label), "identifier", names_.of(object), "name", cpp_string(object.name),
         "base", fmt::format("canopen::Object<{}, SubIndex, {}>", index_of(first), attributes(first)), "constants",
         constants(first), "length", length, "count", std::move(count), "elements", element_names(object));
   }
@@ -111,11 +112,11 @@ class ObjectTypes {
       if (entry.sub_index == 0 || !has_own_name(object, entry, names)) continue;
       const std::string suffix = fmt::format("{:04x}_{:02x}", entry.index, entry.sub_index);
       rows.push_back(json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)),
-                                 "identifier", names_.take(element_name(object, entry), suffix), "number",
+                                 "identifier", scope_.take(element_name(object, entry), suffix), "number",
                                  entry.sub_index));
     }
     if (rows.empty()) return nullptr;
-    return json_object("array", object.identifier, "rows", std::move(rows));
+    return json_object("array", names_.of(object), "rows", std::move(rows));
   }
 
   /// Whether the options name an element, or its name differs from those of the object and of the other elements by
@@ -129,15 +130,15 @@ class ObjectTypes {
     return names.at(name) == 1;
   }
 
-  [[nodiscard]] static std::string element_name(const Object& object, const Entry& element) {
-    std::string name = element.identifier;
+  [[nodiscard]] std::string element_name(const Object& object, const Entry& element) const {
+    std::string name = names_.of(element);
     if (name.ends_with('_')) name.pop_back();  // which distinguishes C++ keywords
-    return name.starts_with(object.identifier + "_") ? name : object.identifier + "_" + name;
+    return name.starts_with(names_.of(object) + "_") ? name : names_.of(object) + "_" + name;
   }
 
   [[nodiscard]] ordered_json entry_row(const Entry& entry) const {
     return json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)), "identifier",
-                       entry.identifier, "name", cpp_string(entry.name), "base",
+                       names_.of(entry), "name", cpp_string(entry.name), "base",
                        fmt::format("canopen::TypedObject<{}>", attributes(entry)), "index", index_of(entry),
                        "sub_index", fmt::format("0x{:02X}", entry.sub_index), "constants", constants(entry),
                        "accepted_modes", modes(entry));
@@ -195,27 +196,29 @@ class ObjectTypes {
   }
 
   const Device& device_;
+  const CppNames& names_;
   const Options& options_;
   std::string file_;
-  IdentifierScope names_;  ///< of all objects, then of elements
+  IdentifierScope scope_;  ///< the names of all objects, then of elements
 };
 
 }  // namespace
 
-ordered_json object_types_view(const Device& device, const Options& options) {
-  return ObjectTypes{device, options}.view();
+ordered_json object_types_view(const NamedDevice& named, const Options& options) {
+  return ObjectTypes{named, options}.view();
 }
 
-ordered_json object_rows_view(const Device& device) {
+ordered_json object_rows_view(const NamedDevice& named) {
+  const auto& [device, names] = named;
   ordered_json rows = ordered_json::array();
   for (const Object& object : device.objects) {
     if (!object.has_sub_indices()) {
-      rows.push_back(fmt::format("od::{},", object.identifier));
+      rows.push_back(fmt::format("od::{},", names.of(object)));
     } else if (describes_uniform_array(object)) {
-      rows.push_back(fmt::format("canopen::ArrayObjects<od::{}, {}>,", object.identifier, object.entries.size() - 1));
+      rows.push_back(fmt::format("canopen::ArrayObjects<od::{}, {}>,", names.of(object), object.entries.size() - 1));
     } else {
       for (const Entry& entry : object.entries) {
-        rows.push_back(fmt::format("od::{}::{},", object.identifier, entry.identifier));
+        rows.push_back(fmt::format("od::{}::{},", names.of(object), names.of(entry)));
       }
     }
   }

@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "backend/cpp/cpp_name.hpp"
 #include "backend/cpp/cpp_text.hpp"
 #include "backend/cpp/placement.hpp"
 #include "device/cob_id_parameter.hpp"
@@ -27,22 +26,22 @@ std::string type_name(const Pdo& pdo) { return fmt::format("{}{}", is_receive(pd
 
 // ---- the layout ----
 
-std::string entry_type(const Device& device, const PdoEntry& entry) {
+std::string entry_type(const NamedDevice& named, const PdoEntry& entry) {
   if (entry.dummy != nullptr) return fmt::format("canopen::Dummy<0x{:04X}, {}>", entry.index, entry.bits);
-  const std::string object = cpp_name(*device.find(entry.index), *entry.object);
+  const std::string object = named.names.type_of(*named.device.find(entry.index), *entry.object);
   const canopen::DataTypeRow& type = *entry.object->type;
   if (type.kind == DataClass::string) return fmt::format("canopen::FixedString<{}, {}>", object, entry.bits / 8);
   return entry.bits == type.bits ? object : fmt::format("canopen::Padded<{}, {}>", object, entry.bits);
 }
 
-ordered_json entry_rows(const Device& device, const Pdo& pdo) {
+ordered_json entry_rows(const NamedDevice& named, const Pdo& pdo) {
   ordered_json rows = ordered_json::array();
   unsigned at = 0;
   for (const PdoEntry& entry : pdo.entries) {
     const std::string name = entry.dummy != nullptr ? "(dummy)" : cpp_comment(entry.object->name);
     const auto* type = entry.dummy != nullptr ? entry.dummy : entry.object->type;
     rows.push_back(
-        {{"object", entry_type(device, entry)},
+        {{"object", entry_type(named, entry)},
          {"separator", rows.empty() ? "" : ", "},
          {"bit_range", fmt::format("{:>2}..{:<2}", at, at + entry.bits - 1)},
          {"description", fmt::format("{}  {}  {}", entry_label(entry.index, entry.sub_index), type->name, name)}});
@@ -151,7 +150,8 @@ bool has_wrong_cob_id(const Pdo& pdo) {
 
 bool is_left_out(const Pdo& pdo) { return pdo.broken || has_wrong_cob_id(pdo); }
 
-ordered_json pdo_rows(const Device& device) {
+ordered_json pdo_rows(const NamedDevice& named) {
+  const Device& device = named.device;
   ordered_json rows = ordered_json::array();
   for (const Pdo& pdo : device.pdos) {
     if (pdo.mapping == nullptr) continue;
@@ -166,7 +166,7 @@ ordered_json pdo_rows(const Device& device) {
     row["mapping"] = index_label(static_cast<std::uint16_t>((receive ? 0x1600 : 0x1A00) + offset));
     row["broken"] = is_left_out(pdo);
     row["bits"] = pdo.bits();
-    row["entries"] = is_left_out(pdo) ? ordered_json::array() : entry_rows(device, pdo);
+    row["entries"] = is_left_out(pdo) ? ordered_json::array() : entry_rows(named, pdo);
     row["checked"] = is_checked(pdo);
     if (is_checked(pdo)) {
       const Provable provable = provable_of(device, pdo);

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "backend/cpp/cpp_names.hpp"
 #include "backend/cpp/memory_layout.hpp"
 #include "device/device.hpp"
 #include "device/options/options.hpp"
@@ -10,16 +11,16 @@
 namespace edsc {
 
 /// One row for each object: a VAR, an ARRAY of equal elements as a template, or a namespace of entries.
-[[nodiscard]] nlohmann::ordered_json object_types_view(const Device& device, const Options& options);
+[[nodiscard]] nlohmann::ordered_json object_types_view(const NamedDevice& named, const Options& options);
 
 /// The arguments of the list of these types, with the punctuation behind each.
-[[nodiscard]] nlohmann::ordered_json object_rows_view(const Device& device);
+[[nodiscard]] nlohmann::ordered_json object_rows_view(const NamedDevice& named);
 
 /// The structs and tables of dictionary.hpp.
 [[nodiscard]] nlohmann::ordered_json layout_view(const MemoryLayout& layout);
 
 /// One row for each PDO that has a mapping parameter: its layout as a type, and the checks of the C++ compiler.
-[[nodiscard]] nlohmann::ordered_json pdo_rows(const Device& device);
+[[nodiscard]] nlohmann::ordered_json pdo_rows(const NamedDevice& named);
 
 /// Whether the COB-ID of the PDO is invalid, so that it must not be sent.
 [[nodiscard]] bool has_wrong_cob_id(const Pdo& pdo);

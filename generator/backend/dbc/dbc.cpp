@@ -70,10 +70,10 @@ struct Range {
 }
 
 /// The name of a signal: that of the object, and of the entry if it has sub-indices.
-[[nodiscard]] std::string signal_name(const Device& device, const Entry& entry) {
-  const Object* const object = device.find(entry.index);
-  if (object == nullptr || !object->has_sub_indices()) return entry.identifier;
-  return object->identifier + "_" + entry.identifier;
+[[nodiscard]] std::string signal_name(const DbcNode& node, const Entry& entry) {
+  const Object* const object = node.device->find(entry.index);
+  if (object == nullptr || !object->has_sub_indices()) return node.names->of(entry);
+  return node.names->of(*object) + "_" + node.names->of(entry);
 }
 
 /// The CAN-ID of a message, and whether it has 29 bits.
@@ -214,7 +214,7 @@ class DbcWriter {
   void add_signal(std::uint32_t id, const NodePdo& message, const PdoEntry& mapped, unsigned start, DbcNames& names) {
     const Entry& entry = *mapped.object;
     const bool has_value = is_number(*entry.type);
-    const std::string long_name = signal_name(*message.node->device, entry);
+    const std::string long_name = signal_name(*message.node, entry);
     const std::string name = names.take(long_name);
     const double factor = has_value ? factor_of(entry) : 1;
     const Range range = has_value ? range_of(entry, factor) : Range{};
@@ -271,7 +271,9 @@ BA_DEF_DEF_ "SystemSignalLongSymbol" "";
 
 }  // namespace
 
-Dbc dbc_of(const Device& device) { return dbc_of(std::vector<DbcNode>{{device.name, &device}}); }
+Dbc dbc_of(const NamedDevice& named) {
+  return dbc_of(std::vector<DbcNode>{{named.names.space(), &named.device, &named.names}});
+}
 
 Dbc dbc_of(const std::vector<DbcNode>& nodes) { return DbcWriter{nodes}.write(); }
 

@@ -39,12 +39,12 @@ void add_text(const char* key, std::string_view text, ordered_json& view) {
   if (!text.empty()) view[key] = text;
 }
 
-ordered_json entry_view(const Entry& entry) {
+ordered_json entry_view(const Entry& entry, const CppNames& names) {
   ordered_json view;
   view["index"] = entry.index;
   view["sub_index"] = entry.sub_index;
   view["name"] = entry.name;
-  view["identifier"] = entry.identifier;
+  view["identifier"] = names.of(entry);
   view["data_type"] = entry.type->name;
   view["bits"] = entry.type->bits;
   if (entry.octets != 0) view["octets"] = entry.octets;
@@ -138,18 +138,18 @@ ordered_json type_view(const TypeDefinition& type) {
   return view;
 }
 
-ordered_json object_view(const Object& object) {
+ordered_json object_view(const Object& object, const CppNames& names) {
   ordered_json view;
   view["index"] = object.index;
   view["object_type"] = to_string(object.type);
   view["name"] = object.name;
-  view["identifier"] = object.identifier;
+  view["identifier"] = names.of(object);
   add_text("denotation", object.denotation, view);
   if (object.obj_flags != 0) view["obj_flags"] = object.obj_flags;
   if (!object.links.empty()) view["links"] = object.links;
   view["line"] = object.position.line;
   ordered_json entries = ordered_json::array();
-  for (const Entry& entry : object.entries) entries.push_back(entry_view(entry));
+  for (const Entry& entry : object.entries) entries.push_back(entry_view(entry, names));
   view["entries"] = std::move(entries);
   return view;
 }
@@ -172,12 +172,13 @@ void separate(const Entry& entry, const DataSheet& sheet, const ObjectDescriptio
 
 }  // namespace
 
-ordered_json device_view(const Device& device) {
+ordered_json device_view(const NamedDevice& named) {
+  const auto& [device, names] = named;
   ordered_json view;
   view["schema"] = 2;
   const std::string& path = device.source->name();
   view["source"] = path.substr(path.find_last_of('/') + 1);
-  view["name"] = device.name;
+  view["name"] = names.space();
   view["vendor_name"] = device.vendor_name;
   view["vendor_number"] = device.vendor_number;
   view["product_name"] = device.product_name;
@@ -190,7 +191,7 @@ ordered_json device_view(const Device& device) {
   for (const TypeDefinition& type : device.types) types.push_back(type_view(type));
   view["types"] = std::move(types);
   ordered_json objects = ordered_json::array();
-  for (const Object& object : device.objects) objects.push_back(object_view(object));
+  for (const Object& object : device.objects) objects.push_back(object_view(object, names));
   view["objects"] = std::move(objects);
   ordered_json pdos = ordered_json::array();
   for (const Pdo& pdo : device.pdos) pdos.push_back(pdo_view(pdo));

@@ -31,12 +31,11 @@ class HeaderWriter {
  private:
   /// The device with the values of the network. The PDOs of a master without a file cannot be mapped otherwise.
   std::string add_master(const NetworkNode& node) {
-    Device device = node.device;
-    device.name = namespaces_.take(to_namespace(node.name), "device");
+    const std::string name = namespaces_.take(to_namespace(node.name), "device");
     Options options = node.loaded->options;
     if (!node.has_file()) options.static_mapping.all = true;
-    add(device, options);
-    return device.name;
+    add(node.device, options, name);
+    return name;
   }
 
   std::string add_sheet(const NetworkNode& node) {
@@ -55,18 +54,19 @@ class HeaderWriter {
     Diagnostics known;  // reported when the network was loaded
     const std::unique_ptr<LoadedDevice> loaded = load_device(settings, known);
     if (loaded->device) {
-      add(*loaded->device, loaded->options);
+      add(*loaded->device, loaded->options, name);
     } else {
       diagnostics_.error("network-file", node.position, fmt::format("{} has changed meanwhile", path));
     }
     return name;
   }
 
-  void add(const Device& device, const Options& options) {
-    const nlohmann::ordered_json view = cpp_view(device, options, diagnostics_);
+  void add(const Device& device, const Options& options, const std::string& name) {
+    const CppNames names{device, options, name};
+    const nlohmann::ordered_json view = cpp_view({device, names}, options, diagnostics_);
     for (const Template& header : built_in_templates()) {
       if (!is_needed(header, view)) continue;
-      headers_.files.push_back({fmt::format("{}/{}", device.name, header.file_name), render(header.text, view)});
+      headers_.files.push_back({fmt::format("{}/{}", name, header.file_name), render(header.text, view)});
     }
   }
 

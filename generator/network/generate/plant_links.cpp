@@ -44,11 +44,12 @@ std::vector<LinkedValue> linked_values(const PdoLink& link) {
   return values;
 }
 
-std::string signal_identifier(const Device& device, const PdoEntry& entry) {
+std::string signal_identifier(const NamedDevice& named, const PdoEntry& entry) {
+  const auto& [device, names] = named;
   const Object& object = *device.find(entry.index);
-  if (!object.has_sub_indices()) return object.identifier;
-  if (describes_uniform_array(object)) return fmt::format("{}_{}", object.identifier, entry.sub_index);
-  return fmt::format("{}_{}", object.identifier, entry.object->identifier);
+  if (!object.has_sub_indices()) return names.of(object);
+  if (describes_uniform_array(object)) return fmt::format("{}_{}", names.of(object), entry.sub_index);
+  return fmt::format("{}_{}", names.of(object), names.of(*entry.object));
 }
 
 }  // namespace edsc

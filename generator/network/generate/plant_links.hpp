@@ -30,6 +30,6 @@ struct LinkedValue {
 [[nodiscard]] std::vector<LinkedValue> linked_values(const PdoLink& link);
 
 /// The identifier of an entry in its device: `position`, `write_output_8_bit_1`, `identity_object_vendor_id`.
-[[nodiscard]] std::string signal_identifier(const Device& device, const PdoEntry& entry);
+[[nodiscard]] std::string signal_identifier(const NamedDevice& named, const PdoEntry& entry);
 
 }  // namespace edsc

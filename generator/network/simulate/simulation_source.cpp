@@ -17,7 +17,6 @@
 #include "backend/cpp/cpp_text.hpp"
 #include "backend/cpp/cpp_view.hpp"
 #include "backend/cpp/identifier.hpp"
-#include "backend/cpp/name_objects.hpp"
 #include "backend/render.hpp"
 #include "device/resolve.hpp"
 #include "diagnostics/rule.hpp"
@@ -104,9 +103,9 @@ class SourceWriter {
     Diagnostics reported;  // when the network was loaded
     if (keep_going) reported.keep_going(loaded.source.get(), fatal_rules());
     const auto node_id = loaded.sheet.is_dcf ? std::optional{node.node_id} : std::nullopt;
-    Device device = resolve_device(loaded.sheet, loaded.options, node_id, reported);
-    name_objects(device, loaded.options, name);
-    const auto view = cpp_view(device, loaded.options, diagnostics_);
+    const Device device = resolve_device(loaded.sheet, loaded.options, node_id, reported);
+    const CppNames names{device, loaded.options, name};
+    const auto view = cpp_view({device, names}, loaded.options, diagnostics_);
     for (const Template& one : built_in_templates()) {
       if (!one.needed.empty() && view.at(std::string{one.needed}).is_null()) continue;
       source_.files.push_back({fmt::format("{}/{}", name, one.file_name), render(one.text, view)});

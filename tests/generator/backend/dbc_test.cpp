@@ -46,7 +46,7 @@ bool has_line(const Dbc& dbc, const std::string& line) {
 
 Dbc dbc_from(const std::string& pdos, const std::string& name = "drive") {
   const DeviceFromText read{objects() + pdos, {}, {.name = name, .node_id = 5}};
-  return dbc_of(read.device);
+  return dbc_of(read.named());
 }
 
 TEST(Dbc, HasATpdoWithTheTypesOfItsObjects) {

@@ -250,7 +250,7 @@ TEST(DynamicMapping, OffersNoConstantToAnRpdo) {
 /// The layouts of the PDOs that the runtime serves: "1 Rpdo1".
 std::vector<std::string> served(DeviceFromText& text, const char* list) {
   std::vector<std::string> rows;
-  const auto view = cpp_view(text.device, text.options, text.diagnostics);
+  const auto view = cpp_view(text.named(), text.options, text.diagnostics);
   for (const auto& row : view.at(list)) {
     rows.push_back(fmt::format("{} {}", row.at("number").get<int>(), row.at("layout").get<std::string>()));
   }

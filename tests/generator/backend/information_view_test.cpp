@@ -15,7 +15,7 @@ using nlohmann::json;
 /// The view of a device with these sections and one object.
 json sections_view(const std::string& sections) {
   const DeviceFromText text(sections + var("2000", "Value", "5"));
-  return device_view(text.device);
+  return device_view(text.named());
 }
 
 TEST(InformationView, HasTheFileInfoAsWritten) {

@@ -80,7 +80,7 @@ std::vector<std::string> element_names(const std::vector<std::string>& names, Op
   for (std::size_t i = 0; i < names.size(); ++i) text += var("2000sub" + std::to_string(i + 1), names[i], "7");
   const DeviceFromText device{text + var("2001", other, "7"), std::move(options)};
   Diagnostics ignored;
-  const ordered_json array = cpp_view(device.device, device.options, ignored)["types"][0]["array"];
+  const ordered_json array = cpp_view(device.named(), device.options, ignored)["types"][0]["array"];
   std::vector<std::string> found;
   if (array["elements"].is_null()) return found;
   for (const ordered_json& row : array["elements"]["rows"]) {

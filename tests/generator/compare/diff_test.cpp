@@ -29,7 +29,7 @@ struct Compared {
   Compared(std::string old_text, std::string new_text, std::optional<std::uint8_t> node_id = std::nullopt)
       : before(std::move(old_text), {}, {"device", node_id}, "old.eds"),
         after(std::move(new_text), {}, {"device", node_id}, "new.eds"),
-        changes(compare_devices(before.device, after.device)) {}
+        changes(compare_devices(before.named(), after.named())) {}
 
   [[nodiscard]] std::vector<std::string> short_list() const {
     std::vector<std::string> list;

@@ -101,7 +101,7 @@ TEST(StoredValues, FollowTheOptions) {
 TEST(StoredValues, ThatAreLostBreakTheStorage) {
   const std::string sheet = store() + entry_text("2000", "Gain", "6", "rw");
   const ComparedStorage compared(sheet, sheet, {}, storing(0x2000, "never"));
-  Changes changes = compare_devices(compared.before.device, compared.after.device);
+  Changes changes = compare_devices(compared.before.named(), compared.after.named());
   EXPECT_EQ(changes.all().size(), 0U);
   add_lost_values(compared.values, changes);
   ASSERT_EQ(changes.breaking(), 1U) << "it is not compatible";

@@ -16,32 +16,32 @@ TEST(Names, AreUniqueInTheDevice) {
   const DeviceFromText text(var("2000", "Speed", "5") + var("2001", "speed", "5") + var("2002", "SPEED!", "5") +
                             var("2003", "speed_2001", "5"));
   std::set<std::string> names;
-  for (const Object& each : text.device.objects) names.insert(each.identifier);
+  for (const Object& each : text.device.objects) names.insert(text.names.of(each));
   EXPECT_EQ(names.size(), 4U);
-  EXPECT_EQ(text.device.find(0x2000)->identifier, "speed");
-  EXPECT_EQ(text.device.find(0x2001)->identifier, "speed_2001");
+  EXPECT_EQ(text.names.of(*text.device.find(0x2000)), "speed");
+  EXPECT_EQ(text.names.of(*text.device.find(0x2001)), "speed_2001");
 }
 
 TEST(Names, OfSubObjectsAreUniqueInTheirObject) {
   const DeviceFromText text(group("2000", "Group", "0x9", 4) + sub("2000", 0, "Value", "5") +
                             sub("2000", 1, "Value", "5") + sub("2000", 2, "Value", "5") + sub("2000", 3, "", "5"));
-  EXPECT_EQ(text.entry(0x2000, 0).identifier, "value");
-  EXPECT_EQ(text.entry(0x2000, 1).identifier, "value_01");
-  EXPECT_EQ(text.entry(0x2000, 2).identifier, "value_02");
-  EXPECT_EQ(text.entry(0x2000, 3).identifier, "sub_03");
+  EXPECT_EQ(text.names.of(text.entry(0x2000, 0)), "value");
+  EXPECT_EQ(text.names.of(text.entry(0x2000, 1)), "value_01");
+  EXPECT_EQ(text.names.of(text.entry(0x2000, 2)), "value_02");
+  EXPECT_EQ(text.names.of(text.entry(0x2000, 3)), "sub_03");
 }
 
 TEST(Names, OfSubIndex0ThatRepeatTheObjectAreTheStandardOne) {
   const DeviceFromText text(group("2000", "Group", "0x9", 2) + sub("2000", 0, "Group", "5") +
                             sub("2000", 1, "One", "5"));
-  EXPECT_EQ(text.entry(0x2000, 0).identifier, "highest_sub_index_supported");
+  EXPECT_EQ(text.names.of(text.entry(0x2000, 0)), "highest_sub_index_supported");
 }
 
 TEST(Names, ComeFromTheOptionsWhereTheseHaveOne) {
   Options options;
   options.names[{0x2000, 0}] = "target";
   const DeviceFromText text(var("2000", "Sollwert", "5"), options);
-  EXPECT_EQ(text.device.find(0x2000)->identifier, "target");
+  EXPECT_EQ(text.names.of(*text.device.find(0x2000)), "target");
 }
 
 TEST(Names, OfTheDeviceComeFromTheFile) {

@@ -99,7 +99,7 @@ TEST(Resolve, TakesAnyOtherPdoMappingNumberForOneWithAWarning) {
 
 TEST(Resolve, NamesAnObjectWithoutParameterNameByItsIndex) {
   const DeviceFromText text(var("2000", "", "5"));
-  EXPECT_EQ(text.device.find(0x2000)->identifier, "object_2000");
+  EXPECT_EQ(text.names.of(*text.device.find(0x2000)), "object_2000");
   EXPECT_EQ(findings(text.diagnostics, "parameter-name"), (std::vector{warning_at(1, 2, "parameter-name")}));
 }
 

@@ -26,7 +26,7 @@ Options keeping(StoredEds what) {
 
 struct Rendered : DeviceFromText {
   explicit Rendered(std::string text, Options given = {})
-      : DeviceFromText{std::move(text), std::move(given)}, view(cpp_view(device, options, diagnostics)) {}
+      : DeviceFromText{std::move(text), std::move(given)}, view(cpp_view(named(), options, diagnostics)) {}
   ordered_json view;
 };
 

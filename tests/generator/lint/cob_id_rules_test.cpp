@@ -63,7 +63,7 @@ const CobIdCase cob_id_cases[] = {
 TEST(CobIdRules, RefuseACanIdThatCia301Restricts) {
   for (const CobIdCase& row : cob_id_cases) {
     DeviceFromText text(sheet_with_cob_id(row.index, row.sub_index, row.value));
-    check_device(text.device, text.sheet, text.options, text.diagnostics);
+    check_device(text.named(), text.sheet, text.options, text.diagnostics);
     const auto found = findings(text.diagnostics, "cob-id-restricted");
     EXPECT_EQ(found.size(), row.restricted ? 1U : 0U) << row.index << " " << row.value;
     for (const Finding& one : found) EXPECT_EQ(one.severity, Severity::error);
@@ -72,14 +72,14 @@ TEST(CobIdRules, RefuseACanIdThatCia301Restricts) {
 
 TEST(CobIdRules, KnowTheNodeId) {
   DeviceFromText text(sheet_with_cob_id("1800", 1, "$NODEID+0x680"), {}, {"", std::uint8_t{5}});
-  check_device(text.device, text.sheet, text.options, text.diagnostics);
+  check_device(text.named(), text.sheet, text.options, text.diagnostics);
   EXPECT_TRUE(findings(text.diagnostics, "cob-id-restricted").empty()) << "685h";
 }
 
 /// CiA 301, 7.3.5: 6E0h to 6FFh are reserved.
 TEST(CobIdRules, SayForWhichNodeIdsAFormulaIsRestricted) {
   DeviceFromText text(sheet_with_cob_id("1800", 1, "$NODEID+0x680"));
-  check_device(text.device, text.sheet, text.options, text.diagnostics);
+  check_device(text.named(), text.sheet, text.options, text.diagnostics);
   EXPECT_NE(text.finding("cob-id-restricted").message.find("for node-IDs 96 to 127 (CAN-ID 6E0h"), std::string::npos)
       << text.finding("cob-id-restricted").message;
 }
@@ -88,7 +88,7 @@ TEST(CobIdRules, SayForWhichNodeIdsAFormulaIsRestricted) {
 std::vector<Finding> found_in_tpdo_1(const std::string& value, std::string_view rule,
                                      std::optional<std::uint8_t> node_id = std::nullopt, const std::string& more = "") {
   DeviceFromText text(sheet_with_cob_id("1800", 1, value) + more, {}, {"", node_id});
-  check_device(text.device, text.sheet, text.options, text.diagnostics);
+  check_device(text.named(), text.sheet, text.options, text.diagnostics);
   return findings(text.diagnostics, rule);
 }
 
@@ -117,7 +117,7 @@ TEST(CobIdRules, ReportACanIdOfManyServicesOnce) {
   std::string sheet;
   for (const std::string_view index : {"1800", "1801", "1802", "1803"}) sheet += sheet_with_cob_id(index, 1, "0x280");
   DeviceFromText text(sheet + sheet_with_cob_id("1804", 1, "$NODEID+0x27B"));
-  check_device(text.device, text.sheet, text.options, text.diagnostics);
+  check_device(text.named(), text.sheet, text.options, text.diagnostics);
   const Diagnostic& finding = text.finding("cob-id-twice");
   EXPECT_EQ(findings(text.diagnostics, "cob-id-twice").size(), 1U);
   EXPECT_EQ(finding.message,
@@ -128,7 +128,7 @@ TEST(CobIdRules, ReportACanIdOfManyServicesOnce) {
 
 TEST(CobIdRules, SayWhatIsMeantByAFunctionCodeAlone) {
   DeviceFromText text(sheet_with_cob_id("1800", 1, "0x40000180"));
-  check_device(text.device, text.sheet, text.options, text.diagnostics);
+  check_device(text.named(), text.sheet, text.options, text.diagnostics);
   EXPECT_EQ(
       text.finding("cob-id-restricted").message,
       "1800h:01 \"COB-ID\" is CAN-ID 180h, which is restricted (reserved); use $NODEID+0x40000180 to add the node-ID");
@@ -163,7 +163,7 @@ TEST(CobIdRules, LeaveAPdoOutWhoseCobIdIsRestricted) {
   Diagnostics ignored;
   for (const std::string& value : std::vector<std::string>{"$NODEID+0x180", "$NODEID+0x580", "0"}) {
     const DeviceFromText text(sheet_with_cob_id("1800", 1, value) + mapping);
-    const nlohmann::ordered_json view = cpp_view(text.device, text.options, ignored);
+    const nlohmann::ordered_json view = cpp_view(text.named(), text.options, ignored);
     const bool wrong = value == "$NODEID+0x580";
     EXPECT_EQ(view["tpdos"].size(), wrong ? 0U : 1U) << value;
     ASSERT_EQ(view["pdos"].size(), 1U);
@@ -195,7 +195,7 @@ TEST(CobIdRules, GiveTheCompilerTheCobIdsOfTheServicesThatAreOn) {
   const auto rows_of = [&](std::string emcy) {
     const DeviceFromText text(var("1005", "SYNC", "7") + sheet_with_cob_id("1014", 0, std::move(emcy)) +
                               sheet_with_cob_id("1201", 1, "0"));
-    return cpp_view(text.device, text.options, ignored)["cob_ids"]["rows"];
+    return cpp_view(text.named(), text.options, ignored)["cob_ids"]["rows"];
   };
   const nlohmann::ordered_json rows = rows_of("$NODEID+0x480");
   ASSERT_EQ(rows.size(), 2U);

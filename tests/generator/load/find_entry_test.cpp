@@ -21,7 +21,7 @@ class FindEntry : public testing::Test {
 
   /// The label of the entry or whole object that is found, otherwise the problem.
   static std::string find(std::string_view text, const LoadedDevice& device = *drive) {
-    const FoundEntry found = find_entry(*device.device, text);
+    const FoundEntry found = find_entry(device.named(), text);
     if (!found.ok()) return found.problem;
     return found.entry != nullptr ? entry_label(found.entry->index, found.entry->sub_index)
                                   : index_label(found.object->index);
@@ -74,10 +74,10 @@ TEST_F(FindEntry, SuggestsWhatWasMeant) {
 TEST_F(FindEntry, AsksWhichEntryWhereANameIsTaken) {
   EXPECT_NE(find("transmission_type").find("\"transmission_type\" is ambiguous: 1400h:02"), std::string::npos)
       << find("transmission_type");
-  const FoundEntry whole = find_one_entry(*drive->device, "1018h");
+  const FoundEntry whole = find_one_entry(drive->named(), "1018h");
   EXPECT_NE(whole.problem.find("1018h \"Identity object\" has sub-indices: 1018h:00"), std::string::npos)
       << whole.problem;
-  EXPECT_TRUE(find_one_entry(*drive->device, "6064h").ok());
+  EXPECT_TRUE(find_one_entry(drive->named(), "6064h").ok());
 }
 
 }  // namespace

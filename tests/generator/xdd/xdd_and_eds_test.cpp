@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "backend/cpp/name_objects.hpp"
+#include "backend/cpp/cpp_names.hpp"
 #include "backend/json/device_view.hpp"
 #include "device/resolve.hpp"
 #include "eds/ini.hpp"
@@ -87,10 +87,10 @@ const Profile pump_xdd{
 /// The view without members that depend on the file.
 nlohmann::ordered_json view_of(const DataSheet& sheet, Diagnostics& diagnostics) {
   const Options options;
-  Device device = resolve_device(sheet, options, {}, diagnostics);
-  name_objects(device, options, "pump");
-  check_device(device, sheet, options, diagnostics);
-  nlohmann::ordered_json view = device_view(device).flatten();
+  const Device device = resolve_device(sheet, options, {}, diagnostics);
+  const CppNames names{device, options, "pump"};
+  check_device({device, names}, sheet, options, diagnostics);
+  nlohmann::ordered_json view = device_view({device, names}).flatten();
   for (auto row = view.begin(); row != view.end();) {
     row = row.key().ends_with("/line") || row.key() == "/source" ? view.erase(row) : std::next(row);
   }
