@@ -28,7 +28,7 @@ std::string values(int count, std::string_view data_type) {
 
 /// The findings about the size.
 std::vector<std::string> size_findings(DeviceFromText& device, const Options& options = {}) {
-  static_cast<void>(lay_out(device.device, options, device.diagnostics));
+  static_cast<void>(lay_out(device.named(), options, device.diagnostics));
   std::vector<std::string> messages;
   for (const Diagnostic& finding : device.diagnostics.all()) {
     if (finding.rule == "dictionary-size") messages.push_back(finding.message);

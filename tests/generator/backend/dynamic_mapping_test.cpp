@@ -47,7 +47,7 @@ Options with_static(StaticMapping mapping) {
 
 bool first_is_dynamic(const DeviceFromText& text) { return text.device.pdos.at(0).dynamic; }
 
-MemoryLayout layout_of(DeviceFromText& text) { return lay_out(text.device, text.options, text.diagnostics); }
+MemoryLayout layout_of(DeviceFromText& text) { return lay_out(text.named(), text.options, text.diagnostics); }
 
 /// The rows of a table in C++, each with its comment.
 std::vector<std::pair<std::string, std::string>> table_of(DeviceFromText& text, const char* table) {

@@ -60,7 +60,7 @@ TEST(UniformArray, HasTheSameLimitsForAllElements) {
 
 std::vector<std::string> limits_of(DeviceFromText& text) {
   std::vector<std::string> limits;
-  const auto view = layout_view(lay_out(text.device, text.options, text.diagnostics));
+  const auto view = layout_view(lay_out(text.named(), text.options, text.diagnostics));
   for (const auto& row : view["limits"]["rows"]) limits.push_back(row["text"].get<std::string>());
   return limits;
 }
@@ -115,7 +115,7 @@ constexpr std::string_view dynamic_tpdo =
 /// `array` or `record`: the kind of 2000h in the table of objects.
 std::string kind_of_2000h(const std::string& file) {
   DeviceFromText text(file);
-  for (const EntryRow& row : lay_out(text.device, text.options, text.diagnostics).entries) {
+  for (const EntryRow& row : lay_out(text.named(), text.options, text.diagnostics).entries) {
     if (row.object->index == 0x2000) return row.is_array ? "array" : "record";
   }
   return "";

@@ -45,17 +45,19 @@ TEST(Names, ComeFromTheOptionsWhereTheseHaveOne) {
 }
 
 TEST(Names, OfTheDeviceComeFromTheFile) {
-  const auto name_of = [](const char* file) { return DeviceFromText(var("2000", "V", "5"), {}, {}, file).device.name; };
+  const auto name_of = [](const char* file) {
+    return DeviceFromText(var("2000", "V", "5"), {}, {}, file).names.space();
+  };
   EXPECT_EQ(name_of("drives/EZD-1136.eds"), "ezd_1136");
   EXPECT_EQ(name_of("1.eds"), "n_1");
   EXPECT_EQ(name_of("---.eds"), "device");
   EXPECT_EQ(name_of("namespace.eds"), "namespace_");
-  EXPECT_EQ(DeviceFromText(var("2000", "V", "5"), {}, {"axis1", std::nullopt}).device.name, "axis1");
+  EXPECT_EQ(DeviceFromText(var("2000", "V", "5"), {}, {"axis1", std::nullopt}).names.space(), "axis1");
 }
 
 TEST(Names, OfTheDeviceHideNoFunctionOfTheCLibraryAndNoWordOfTheTables) {
   for (const char* word : {"signal", "time", "read", "index", "array", "record", "domain", "ram", "string"}) {
-    EXPECT_EQ(DeviceFromText(var("2000", "V", "5"), {}, {}, std::string{word} + ".eds").device.name,
+    EXPECT_EQ(DeviceFromText(var("2000", "V", "5"), {}, {}, std::string{word} + ".eds").names.space(),
               std::string{word} + "_");
   }
 }
