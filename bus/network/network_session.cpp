@@ -113,7 +113,7 @@ void NetworkSession::compare(LiveNode& live) {
   if (!choose_different(live.run, *live.access, live.configuration, false, hooks_for(live, "compared"))) {
     return add_problem(live, " no longer answers" + place_text(live.run.result));
   }
-  live.run.steps = plan_configuration(live.run.values, &live.node->device);
+  live.run.steps = plan_configuration(live.run.values, &live.node->device());
   live.is_compared = true;
   hooks_.compared(live);
 }

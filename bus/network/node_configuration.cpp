@@ -25,10 +25,10 @@ class NodeValues {
   }
 
   void set(std::uint16_t index, std::uint8_t sub_index, const Value& value) {
-    const Entry* const entry = node_.device.find(index, sub_index);
+    const Entry* const entry = node_.device().find(index, sub_index);
     if (entry == nullptr) return;
     const std::string bytes = bytes_of(value, *entry->type);
-    set({live_entry(&node_.device, index, sub_index), {bytes.begin(), bytes.end()}, value.position});
+    set({live_entry(&node_.device(), index, sub_index), {bytes.begin(), bytes.end()}, value.position});
   }
 
   /// The default value of a writable entry, unless it has a value.
@@ -95,7 +95,7 @@ Configuration configuration_of(const Network& network, const NetworkNode& node, 
                                Diagnostics& diagnostics) {
   const bool is_dcf = node.loaded->sheet.is_dcf;
   Diagnostics ignored;  // the ParameterValues of an EDS have no meaning
-  Configuration configuration = configuration_of(node.loaded->sheet, node.device, is_dcf ? diagnostics : ignored);
+  Configuration configuration = configuration_of(node.loaded->sheet, node.device(), is_dcf ? diagnostics : ignored);
   NodeValues values{node};
   if (is_dcf) {
     for (ConfigurationValue& value : configuration.values) values.set(std::move(value));
@@ -103,12 +103,12 @@ Configuration configuration_of(const Network& network, const NetworkNode& node, 
     configuration.left_out = 0;
   }
   for (const Setting& setting : node.settings) values.set(setting.index, setting.sub_index, setting.value);
-  for (const Pdo& pdo : node.device.pdos) {
+  for (const Pdo& pdo : node.device().pdos) {
     if (linked.contains(&pdo) || values.has_one_of(pdo.communication) || values.has_one_of(pdo.mapping)) {
       values.add_pdo(pdo);
     }
   }
-  if (const Entry* const sync = node.device.find(communication::cob_id_sync, 0);
+  if (const Entry* const sync = node.device().find(communication::cob_id_sync, 0);
       sync != nullptr && network.description.sync.producer) {
     values.add_default(*sync);
   }
@@ -120,7 +120,7 @@ Configuration configuration_of(const Network& network, const NetworkNode& node, 
 }
 
 Identity expected_identity(const NetworkNode& node) {
-  Identity identity = identity_of(node.device);
+  Identity identity = identity_of(node.device());
   if (const WrittenNumber& serial_number = node.description->serial_number) {
     identity.serial_number = serial_number->value != 0 ? std::optional{serial_number->value} : std::nullopt;
   }
@@ -136,8 +136,8 @@ Position place_of_difference(const NetworkNode& node, const Identity& expected, 
   if (at == std::ranges::end(identity_numbers)) return node.position;
   const WrittenNumber& serial_number = node.description->serial_number;
   if (at->value == &Identity::serial_number && serial_number) return serial_number->position;
-  const bool has_entry = node.device.find(at->index, at->sub_index) != nullptr;
-  return has_entry ? place_of_value(node.device, at->index, at->sub_index) : node.position;
+  const bool has_entry = node.device().find(at->index, at->sub_index) != nullptr;
+  return has_entry ? place_of_value(node.device(), at->index, at->sub_index) : node.position;
 }
 
 std::string label(const NetworkNode& node) { return fmt::format("node {} ({})", node.name, node.node_id); }

@@ -133,7 +133,17 @@ struct TypeDefinition {
   Position position;
 };
 
+struct Options;
+class ValueOverlay;
+
+/// It does not change after it has been resolved. It is moved or shared, not copied: its PDOs point to its objects.
 struct Device {
+  Device() = default;
+  Device(Device&&) = default;
+  Device& operator=(Device&&) = default;
+  ~Device() = default;
+  Device& operator=(const Device&) = delete;
+
   const SourceFile* source = nullptr;
   std::string vendor_name;
   std::string product_name;
@@ -149,6 +159,12 @@ struct Device {
 
   [[nodiscard]] const Object* find(std::uint16_t index) const;
   [[nodiscard]] const Entry* find(std::uint16_t index, std::uint8_t sub_index) const;
+
+ private:
+  /// Resolves the PDOs of the copy.
+  friend Device with_values(const Device& device, const ValueOverlay& values, const Options& options,
+                            Diagnostics& of_mapping);
+  Device(const Device&) = default;
 };
 
 /// The position of the default value of an entry, or of its section if it has none.

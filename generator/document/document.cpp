@@ -43,7 +43,7 @@ std::filesystem::path node_page(const std::filesystem::path& network_page, const
 
 /// `page` is that of the network if its nodes have pages, otherwise empty.
 Json node_view(const NetworkNode& node, const std::filesystem::path& page) {
-  const Device& device = node.device;
+  const Device& device = node.device();
   return {{"name", node.name},
           {"page", page.empty() ? Json(nullptr) : Json(document::url_of(node_page(page, node).filename().string()))},
           {"node_id", node.node_id},

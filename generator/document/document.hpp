@@ -36,7 +36,7 @@ struct DeviceToDocument {
   const NodeOfNetwork* node = nullptr;       ///< null outside of a network
 
   /// The device with the values that the network sets, if it is a node of one.
-  [[nodiscard]] const Device& device() const { return node != nullptr ? node->node.device : *loaded.device; }
+  [[nodiscard]] const Device& device() const { return node != nullptr ? node->node.device() : *loaded.device; }
 };
 
 /// Renders identity, services, PDO layouts, findings, changes and the object dictionary. Texts of the EDS are printable

@@ -168,13 +168,10 @@ class ObjectRows {
   }
 
   [[nodiscard]] std::optional<ReplacedDefault> set_by_network(const Entry& entry) const {
-    if (input_.node == nullptr) return std::nullopt;
-    const auto is_of_entry = [&](const Setting& one) {
-      return one.index == entry.index && one.sub_index == entry.sub_index;
-    };
-    const std::vector<Setting>& settings = input_.node->node.settings;
-    const auto first = std::ranges::find_if(settings, is_of_entry);
-    return first == settings.end() ? std::nullopt : std::optional{ReplacedDefault{first->before}};
+    if (input_.node == nullptr || input_.node->node.settings.find(entry.index, entry.sub_index) == nullptr) {
+      return std::nullopt;
+    }
+    return ReplacedDefault{input_.loaded.device->find(entry.index, entry.sub_index)->default_value};
   }
 
   Json entry_view(const Object& object, const Entry& entry) {

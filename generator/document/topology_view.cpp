@@ -68,7 +68,7 @@ std::string contents_of(const CobIdUse& use) {
   const Object* last = nullptr;
   for (const PdoEntry& mapped : use.pdo->entries) {
     if (mapped.object == nullptr) continue;
-    const Object* const object = use.node->device.find(mapped.index);
+    const Object* const object = use.node->device().find(mapped.index);
     const bool is_sub = object != nullptr && object->has_sub_indices();
     text += text.empty() ? "" : ", ";
     text += is_sub && object != last ? fmt::format("{}: {}", object->name, mapped.object->name) : mapped.object->name;

@@ -106,6 +106,12 @@ std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnost
   return loaded;
 }
 
+Device device_for(const LoadedDevice& loaded, std::optional<std::uint8_t> node_id, bool keep_going) {
+  Diagnostics reported;
+  if (keep_going) reported.keep_going(loaded.source.get(), fatal_rules());
+  return resolve_device(loaded.sheet, loaded.options, node_id, reported);
+}
+
 void silence_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics) {
   for (const SilencedRule& silenced : loaded.options.silence) {
     if (find_rule(silenced.rule) == nullptr) {
@@ -137,13 +143,16 @@ void report_unused_allowances(const LoadedDevice& loaded, Diagnostics& diagnosti
   }
 }
 
-void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics) {
+void read_sheet(LoadedDevice& loaded, Diagnostics& diagnostics) {
   allow_findings(loaded, diagnostics);
   for (const DeprecatedOption& one : loaded.options.deprecated) {
     diagnostics.warning("deprecated-option", one.position, one.message);
   }
   loaded.sheet = is_xml(*loaded.source) ? read_xdd(*loaded.source, diagnostics)
                                         : read_data_sheet(parse_ini(*loaded.source, diagnostics), diagnostics);
+}
+
+void resolve_sheet(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics) {
   if (loaded.sheet.objects.empty()) return;
   if (is_xml(*loaded.source) && loaded.options.stored_eds != StoredEds::of_application) {
     diagnostics.error("options", Position{loaded.source.get()},
@@ -153,6 +162,11 @@ void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagn
   imply_options(*loaded.device, loaded.options, diagnostics);
   loaded.names.emplace(*loaded.device, loaded.options, settings.name);
   if (settings.check) check_device(loaded.named(), loaded.sheet, loaded.options, diagnostics);
+}
+
+void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics) {
+  read_sheet(loaded, diagnostics);
+  resolve_sheet(loaded, settings, diagnostics);
 }
 
 }  // namespace edsc

@@ -41,6 +41,10 @@ struct LoadedDevice {
 /// result.
 [[nodiscard]] std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnostics& diagnostics);
 
+/// The device of the data sheet with another node-ID, or without one. Findings are not reported: those of the first
+/// device were. `keep_going` as in its settings.
+[[nodiscard]] Device device_for(const LoadedDevice& loaded, std::optional<std::uint8_t> node_id, bool keep_going);
+
 /// Silences the rules that the options name. An unknown rule is an error.
 void silence_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics);
 
@@ -50,7 +54,11 @@ void silence_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics);
 /// Reports options and comments that silence or allow findings that did not occur.
 void report_unused_allowances(const LoadedDevice& loaded, Diagnostics& diagnostics);
 
-/// The part of load_device() after reading the source and the options into `loaded`.
+/// The parts of load_device() after reading the source and the options into `loaded`: the data sheet, and the device of
+/// the data sheet.
+void read_sheet(LoadedDevice& loaded, Diagnostics& diagnostics);
+void resolve_sheet(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics);
+/// Both parts.
 void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -89,7 +89,7 @@ class SignalPlanner {
  public:
   SignalPlanner(const Network& network, Diagnostics& diagnostics)
       : network_{network}, diagnostics_{diagnostics}, uses_{cob_id_uses(network)} {
-    for (const NetworkNode& node : network.nodes) add_can_ids(node.device, used_);
+    for (const NetworkNode& node : network.nodes) add_can_ids(node.device(), used_);
   }
 
   SignalPlan plan(const std::vector<Signal>& signals) {
@@ -158,7 +158,7 @@ class SignalPlanner {
       }
       sub_index = static_cast<std::uint8_t>(one.sub_index + 1);
     }
-    const Object& object = *end.owner->device.find(end.entry->index);
+    const Object& object = *end.owner->device().find(end.entry->index);
     const std::string name =
         object.has_sub_indices() ? fmt::format("{} {}", object.name, end.entry->name) : object.name;
     plan_.master_entries.push_back({index, sub_index, end.owner->name, name, end.entry, is_sent});
@@ -227,11 +227,11 @@ class SignalPlanner {
 
   template <class Condition>
   const Pdo* find_pdo(const NetworkNode& node, PdoDirection direction, Condition condition) const {
-    const auto at = std::ranges::find_if(node.device.pdos, [&](const Pdo& pdo) {
+    const auto at = std::ranges::find_if(node.device().pdos, [&](const Pdo& pdo) {
       return pdo.direction == direction && pdo.communication != nullptr && pdo.mapping != nullptr &&
              !taken_.contains({&node, direction, pdo.number}) && condition(pdo);
     });
-    return at == node.device.pdos.end() ? nullptr : &*at;
+    return at == node.device().pdos.end() ? nullptr : &*at;
   }
 
   [[nodiscard]] bool is_sent_by_another(canopen::CobId cob_id, const NetworkNode& sender) const {
@@ -325,18 +325,19 @@ void set_receiver_timing(SignalPlan& plan) {
 /// Sets an entry unless it has the value. A signal does not change what `set` states.
 void set_if_different(NetworkNode& node, std::uint16_t index, std::uint8_t sub_index, std::uint64_t number,
                       const Position& position, Diagnostics& diagnostics) {
-  if (value_of(node.device, index, sub_index) == number) return;
-  const auto stated = std::ranges::find_if(
-      node.settings, [&](const Setting& one) { return one.index == index && one.sub_index == sub_index; });
-  if (stated == node.settings.end()) {
+  const Entry* const entry = node.device().find(index, sub_index);
+  if (const Value* const value = entry != nullptr ? node.settings.value_of(*entry) : nullptr) {
+    if (value->bits == number) return;
+  }
+  const Setting* const stated = node.settings.find(index, sub_index);
+  if (stated == nullptr) {
     return set_number(node, index, sub_index, number, position, diagnostics);
   }
   const bool is_hexadecimal = sub_index == 1 || contains(mapping_parameters, index);
-  diagnostics.error(
-      "network-signal", stated->value.position,
-      fmt::format("node {}: {} must be {} for a signal", node.name, named(*node.device.find(index, sub_index)),
-                  is_hexadecimal ? fmt::format("0x{:X}", number) : std::to_string(number)),
-      {{position, "the signal"}});
+  diagnostics.error("network-signal", stated->value.position,
+                    fmt::format("node {}: {} must be {} for a signal", node.name, named(*entry),
+                                is_hexadecimal ? fmt::format("0x{:X}", number) : std::to_string(number)),
+                    {{position, "the signal"}});
 }
 
 void apply(NetworkNode& node, const PlannedPdo& pdo, Diagnostics& diagnostics) {
@@ -349,7 +350,7 @@ void apply(NetworkNode& node, const PlannedPdo& pdo, Diagnostics& diagnostics) {
   };
   set(communication, 1, pdo.cob_id);
   set(communication, transmission_type_sub_index, pdo.transmission_type);
-  const bool has_timer = node.device.find(communication, event_timer_sub_index) != nullptr;
+  const bool has_timer = node.device().find(communication, event_timer_sub_index) != nullptr;
   if (pdo.event_timer_ms && (has_timer || *pdo.event_timer_ms != 0)) {
     set(communication, event_timer_sub_index, *pdo.event_timer_ms);
   }

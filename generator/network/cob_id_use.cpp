@@ -21,13 +21,13 @@ class UseCollector {
   UseCollector(const NetworkNode& node, std::vector<CobIdUse>& uses) : node_{node}, uses_{uses} {}
 
   void collect() {
-    for (const Object& object : node_.device.objects) {
+    for (const Object& object : node_.device().objects) {
       for (const Entry& entry : object.entries) {
         const CobIdParameter* const row = find_cob_id_parameter(entry.index, entry.sub_index);
         if (row != nullptr && entry.default_value && !is_pdo(row->service)) add_parameter(*row, entry);
       }
     }
-    for (const Pdo& pdo : node_.device.pdos) add_pdo(pdo);
+    for (const Pdo& pdo : node_.device().pdos) add_pdo(pdo);
     add_fixed();
   }
 
@@ -78,7 +78,7 @@ class UseCollector {
   void add_fixed() {
     add_fixed(FrameService::nmt, node_.is_master, code::nmt, "NMT");
     add_fixed(FrameService::error_control, true, code::error_control + node_.node_id, "error control");
-    if (node_.device.find(0x1200) == nullptr) {
+    if (node_.device().find(0x1200) == nullptr) {
       add_fixed(FrameService::sdo, false, code::sdo_request + node_.node_id, "SDO server 1 request");
       add_fixed(FrameService::sdo, true, code::sdo_response + node_.node_id, "SDO server 1 response");
     }

@@ -38,7 +38,7 @@ class NetworkLoader {
     for (NetworkNode& node : network_.nodes) {
       if (!node.has_file()) apply_settings(node);
       apply_signals(node, plan, diagnostics_);
-      update_pdos(node, *network_.source, diagnostics_);
+      configure(node, *network_.source, diagnostics_);
     }
   }
 
@@ -48,7 +48,7 @@ class NetworkLoader {
     apply_sync(node, network_.description.sync, diagnostics_);
     apply_node_members(node, diagnostics_);
     Diagnostics of_mapping;  // reported when the signals are assigned
-    update_pdos(node, *network_.source, of_mapping);
+    configure(node, *network_.source, of_mapping);
   }
 
   void add_node(const NodeDescription& description) {
@@ -80,8 +80,6 @@ class NetworkLoader {
     report_errors(of_file, file.position, loaded);
     if (!loaded.device) return false;
     node.loaded = &loaded;
-    node.device = *std::move(loaded.device);
-    loaded.device.reset();
     check_node_id(node, description);
     return true;
   }
@@ -114,8 +112,8 @@ class NetworkLoader {
   /// A DCF states the node-ID, which the network file may repeat.
   void check_node_id(NetworkNode& node, const NodeDescription& description) {
     if (description.node_id || !description.dcf) return;
-    if (node.device.node_id) {
-      node.node_id = *node.device.node_id;
+    if (node.device().node_id) {
+      node.node_id = *node.device().node_id;
     } else {
       diagnostics_.error("network-file", node.position,
                          fmt::format("node {} needs \"node_id\": its DCF has no NodeID", quote(node.name)));

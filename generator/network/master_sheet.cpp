@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "eds/number.hpp"
 #include "network/node_settings.hpp"
 
 namespace edsc {
@@ -151,7 +152,7 @@ class MasterSheet {
     std::vector<SheetEntry> consumers;
     for_each_slave([&](const NetworkNode& node) {
       const NodeDescription& description = *node.description;
-      const auto of_device = static_cast<std::uint32_t>(heartbeat_time(node.device));
+      const auto of_device = static_cast<std::uint32_t>(heartbeat_time(node.device()));
       const std::uint32_t of_master = description.heartbeat_ms ? description.heartbeat_ms->value : 0;
       const std::uint32_t produced = node.has_file() ? of_device : of_master;
       if (produced == 0 || (produced == 0xFFFF && !description.heartbeat_timeout_ms)) return;
@@ -183,7 +184,7 @@ class MasterSheet {
     sheet_.add_var(0x1F80, {0, "NMT startup", unsigned32, "rw", "0x1"});
     add_for_slaves(0x1F22, "Concise DCF", domain, [](const NetworkNode&) { return std::string{}; });
     add_for_slaves(communication::slave_assignment, "NMT slave assignment", unsigned32,
-                   [](const NetworkNode& node) { return hex(slave_assignment(node.device)); });
+                   [](const NetworkNode& node) { return hex(slave_assignment(node.device())); });
     add_for_slaves(0x1F84, "Device type identification", unsigned32,
                    [](const NetworkNode& node) { return identity_value(node, 0x1000, 0); });
     add_for_slaves(0x1F85, "Vendor identification", unsigned32,
@@ -200,7 +201,7 @@ class MasterSheet {
 
   /// 0 if the EDS of the node does not state it: the master does not compare it.
   static std::string identity_value(const NetworkNode& node, std::uint16_t index, std::uint8_t sub_index) {
-    return hex(static_cast<std::uint32_t>(value_of(node.device, index, sub_index).value_or(0)));
+    return hex(static_cast<std::uint32_t>(value_of(node.device(), index, sub_index).value_or(0)));
   }
 
   /// An ARRAY with the value of each slave at its node-ID.
@@ -262,19 +263,25 @@ class MasterSheet {
 };
 
 /// The text of the EDS is not a file that the user can open: values are where the network file implies them.
-void move_positions(NetworkNode& master, const Network& network) {
-  for (Object& object : master.device.objects) {
-    object.position = master.position;
-    for (Entry& entry : object.entries) {
-      entry.position = master.position;
-      if (entry.default_value) entry.default_value->position = master.position;
-      if (object.index != communication::consumer_heartbeat || !entry.default_value) continue;
+void move_positions(DataSheet& sheet, const NetworkNode& master, const Network& network) {
+  const auto move = [&](EntryDescription& entry) {
+    for (Position* const position :
+         {&entry.position, &entry.access_type.position, &entry.default_value.position, &entry.pdo_mapping.position}) {
+      *position = master.position;
+    }
+  };
+  for (ObjectDescription& object : sheet.objects) {
+    move(object);
+    for (SubObjectDescription& entry : object.sub_objects) {
+      move(entry);
+      if (object.index != communication::consumer_heartbeat || entry.sub_index == 0) continue;
+      const std::uint64_t value = parse_unsigned(entry.default_value.text).value_or(0);
       for (const NetworkNode& node : network.nodes) {
-        if (entry.sub_index == 0 || (entry.default_value->bits >> 16 & 0xFF) != node.node_id) continue;
+        if ((value >> 16 & 0xFF) != node.node_id) continue;
         const NodeDescription& of_node = *node.description;
-        entry.default_value->position = of_node.heartbeat_timeout_ms ? of_node.heartbeat_timeout_ms->position
-                                        : of_node.heartbeat_ms       ? of_node.heartbeat_ms->position
-                                                                     : node.position;
+        entry.default_value.position = of_node.heartbeat_timeout_ms ? of_node.heartbeat_timeout_ms->position
+                                       : of_node.heartbeat_ms       ? of_node.heartbeat_ms->position
+                                                                    : node.position;
       }
     }
   }
@@ -291,10 +298,9 @@ void add_master_sheet(NetworkNode& master, Network& network, const SignalPlan& p
   settings.name = master.name;
   settings.check = false;
   Diagnostics of_sheet;  // empty: the text is ours
-  resolve_and_check(*loaded, settings, of_sheet);
-  master.device = *std::move(loaded->device);
-  loaded->device.reset();
-  move_positions(master, network);
+  read_sheet(*loaded, of_sheet);
+  move_positions(loaded->sheet, master, network);
+  resolve_sheet(*loaded, settings, of_sheet);
   master.loaded = loaded.get();
   network.files.push_back(std::move(loaded));
 }

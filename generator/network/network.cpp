@@ -29,6 +29,12 @@ const NetworkNode* Network::master() const {
   return at == nodes.end() ? nullptr : &*at;
 }
 
+const Device& NetworkNode::device() const {
+  static const Device without_objects;
+  if (configured) return *configured;
+  return loaded != nullptr ? *loaded->device : without_objects;
+}
+
 std::optional<std::uint64_t> value_of(const Device& device, std::uint16_t index, std::uint8_t sub_index) {
   const Entry* const entry = device.find(index, sub_index);
   return entry != nullptr && entry->default_value ? std::optional{entry->default_value->bits} : std::nullopt;

@@ -9,18 +9,11 @@
 #include <vector>
 
 #include "device/device.hpp"
+#include "device/value_overlay.hpp"
 #include "load/load_device.hpp"
 #include "network/network_description.hpp"
 
 namespace edsc {
-
-/// A value that the network file gives an entry of a node.
-struct Setting {
-  std::uint16_t index = 0;
-  std::uint8_t sub_index = 0;
-  Value value;
-  std::optional<Value> before;  ///< the default value that it replaces
-};
 
 struct NetworkNode {
   std::string name;
@@ -28,11 +21,14 @@ struct NetworkNode {
   std::uint8_t node_id = 0;
   bool is_master = false;
   const NodeDescription* description = nullptr;
-  const LoadedDevice* loaded = nullptr;  ///< of a master without a file: its generated EDS
-  Device device;                         ///< with the settings applied as default values
-  std::vector<Setting> settings;         ///< in the order in which the network file implies and states them
+  const LoadedDevice* loaded = nullptr;      ///< of a master without a file: its generated EDS
+  ValueOverlay settings;                     ///< in the order in which the network file implies and states them
+  std::unique_ptr<const Device> configured;  ///< with the settings; null without settings
 
-  [[nodiscard]] NamedDevice named() const { return {device, *loaded->names}; }
+  /// The device as it will be configured: the settings are its default values. A master without a file has no objects
+  /// until it has its generated EDS.
+  [[nodiscard]] const Device& device() const;
+  [[nodiscard]] NamedDevice named() const { return {device(), *loaded->names}; }
   /// Whether the network file names an EDS or DCF.
   [[nodiscard]] bool has_file() const { return description->eds || description->dcf; }
 };

@@ -6,14 +6,15 @@
 #include <algorithm>
 #include <canopen/can/cob_id.hpp>
 #include <map>
+#include <memory>
 #include <utility>
 
 #include "device/drive_modes.hpp"
 #include "device/index_range.hpp"
 #include "device/pdo/fixed_mapping.hpp"
-#include "device/pdo/resolve_pdos.hpp"
 #include "device/reserved_values.hpp"
 #include "device/types/value.hpp"
+#include "device/value_overlay.hpp"
 #include "diagnostics/quote.hpp"
 #include "load/find_entry.hpp"
 
@@ -23,12 +24,8 @@ namespace {
 /// The entries that the members of a node give a value, and where.
 using StatedEntries = std::map<std::pair<std::uint16_t, std::uint8_t>, Position>;
 
-Entry* find_entry(Device& device, std::uint16_t index, std::uint8_t sub_index) {
-  return const_cast<Entry*>(std::as_const(device).find(index, sub_index));
-}
-
-bool same(const std::optional<Value>& a, const Value& b) {
-  return a && a->bits == b.bits && a->bytes == b.bytes && a->plus_node_id == b.plus_node_id;
+bool same(const Value* a, const Value& b) {
+  return a != nullptr && a->bits == b.bits && a->bytes == b.bytes && a->plus_node_id == b.plus_node_id;
 }
 
 bool is_outside_limits(const Entry& entry, const Value& value) {
@@ -38,30 +35,30 @@ bool is_outside_limits(const Entry& entry, const Value& value) {
 }
 
 /// Sets a value whose position is that in the network file.
-void set_value(NetworkNode& node, Entry& entry, Value value, Diagnostics& diagnostics) {
+void set_value(NetworkNode& node, const Entry& entry, Value value, Diagnostics& diagnostics) {
   const auto error = [&](std::string_view why) {
     diagnostics.error("network-value", value.position, fmt::format("node {}: {} {}", node.name, named(entry), why));
   };
-  if (!canopen::writable(entry.access) && !same(entry.default_value, value)) {
+  const bool changes = !same(node.settings.value_of(entry), value);
+  if (changes && !canopen::writable(entry.access)) {
     return error(fmt::format("cannot be written (AccessType {})", canopen::row_of(entry.access).name));
   }
-  if (is_of_fixed_mapping(node.device, entry) && !same(entry.default_value, value)) {
+  if (changes && is_of_fixed_mapping(node.device(), entry)) {
     return error("cannot be changed: sub-index 0 of the mapping cannot be written");
   }
   if (is_outside_limits(entry, value)) return error("is outside its limits");
-  if (value.bytes.empty() && !accepts_mode(node.device, node.loaded->options, entry, value.bits)) {
+  if (value.bytes.empty() && !accepts_mode(node.device(), node.loaded->options, entry, value.bits)) {
     return error("is not one of the supported drive modes");
   }
   if (const std::string_view why = why_reserved(entry.index, entry.sub_index, value.bits); !why.empty()) {
     return error(fmt::format("must not be {}: {}", value.bits, why));
   }
-  const std::optional<Value> before = std::exchange(entry.default_value, value);
-  node.settings.push_back({entry.index, entry.sub_index, std::move(value), before});
+  node.settings.set(entry, std::move(value));
 }
 
 /// Sets an object that the device may lack.
 void set_if_present(NetworkNode& node, std::uint16_t index, const WrittenNumber& number, Diagnostics& diagnostics) {
-  if (!number || find_entry(node.device, index, 0) == nullptr) return;
+  if (!number || node.device().find(index, 0) == nullptr) return;
   set_number(node, index, 0, number->value, number->position, diagnostics);
 }
 
@@ -69,14 +66,14 @@ void set_if_present(NetworkNode& node, std::uint16_t index, const WrittenNumber&
 
 void set_number(NetworkNode& node, std::uint16_t index, std::uint8_t sub_index, std::uint64_t number,
                 const Position& position, Diagnostics& diagnostics) {
-  Entry* const entry = find_entry(node.device, index, sub_index);
+  const Entry* const entry = node.device().find(index, sub_index);
   if (entry == nullptr) {
     diagnostics.error("network-value", position,
                       fmt::format("node {} does not have {}", node.name, entry_label(index, sub_index)));
     return;
   }
-  const bool is_hexadecimal =
-      contains(mapping_parameters, index) || (entry->default_value && entry->default_value->hexadecimal);
+  const Value* const before = node.settings.value_of(*entry);
+  const bool is_hexadecimal = contains(mapping_parameters, index) || (before != nullptr && before->hexadecimal);
   set_value(node, *entry, Value{.bits = number, .hexadecimal = is_hexadecimal, .position = position}, diagnostics);
 }
 
@@ -104,7 +101,7 @@ void set_text(NetworkNode& node, const WrittenValue& written, StatedEntries& sta
     diagnostics.error("network-value", one.position, fmt::format("node {}: {}", node.name, one.message));
   }
   if (!value || of_value.errors() > 0) return;
-  set_value(node, *find_entry(node.device, found.entry->index, found.entry->sub_index), *value, diagnostics);
+  set_value(node, *found.entry, *value, diagnostics);
 }
 
 }  // namespace
@@ -113,7 +110,7 @@ void apply_sync(NetworkNode& node, const SyncDescription& sync, Diagnostics& dia
   if (sync.producer) {
     const bool is_producer = sync.producer->value == node.name;
     constexpr std::uint32_t produces = canopen::CobId::no_rtr_bit;
-    const auto cob_id = value_of(node.device, communication::cob_id_sync);
+    const auto cob_id = value_of(node.device(), communication::cob_id_sync);
     const Position& position = sync.producer->position;
     if (is_producer && !cob_id) {
       diagnostics.error("network-value", position,
@@ -138,11 +135,11 @@ void apply_node_members(NetworkNode& node, Diagnostics& diagnostics) {
   for (const WrittenValue& value : node.description->set) set_text(node, value, stated, diagnostics);
 }
 
-void update_pdos(NetworkNode& node, const SourceFile& network_file, Diagnostics& diagnostics) {
-  node.device.pdos.clear();
-  resolve_pdos(node.device, node.loaded->options);
+void configure(NetworkNode& node, const SourceFile& network_file, Diagnostics& diagnostics) {
+  if (node.settings.empty()) return;
   Diagnostics of_mapping;
-  mark_broken_pdos(node.device, node.loaded->options, of_mapping);
+  node.configured = std::make_unique<const Device>(
+      with_values(*node.loaded->device, node.settings, node.loaded->options, of_mapping));
   for (const Diagnostic& one : of_mapping.all()) {
     if (one.position.file != &network_file || one.severity != Severity::error) continue;
     diagnostics.error("network-pdo-mapping", one.position, fmt::format("node {}: {}", node.name, one.message));

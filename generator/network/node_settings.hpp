@@ -19,8 +19,7 @@ void apply_sync(NetworkNode& node, const SyncDescription& sync, Diagnostics& dia
 /// The settings of the node itself: `heartbeat_ms`, `set`. Two values of one entry are reported.
 void apply_node_members(NetworkNode& node, Diagnostics& diagnostics);
 
-/// Resolves the PDOs of the device again, after settings of their parameters. Reports mappings of the network file that
-/// the device does not allow.
-void update_pdos(NetworkNode& node, const SourceFile& network_file, Diagnostics& diagnostics);
+/// Makes the configured device of the settings. Reports mappings of the network file that the device does not allow.
+void configure(NetworkNode& node, const SourceFile& network_file, Diagnostics& diagnostics);
 
 }  // namespace edsc

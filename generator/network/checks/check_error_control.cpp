@@ -41,7 +41,7 @@ class HeartbeatCheck {
 
  private:
   void check_consumer(const NetworkNode& consumer) {
-    const Object* const object = consumer.device.find(communication::consumer_heartbeat);
+    const Object* const object = consumer.device().find(communication::consumer_heartbeat);
     if (object == nullptr) return;
     for (const Entry& entry : object->entries) {
       if (entry.sub_index == 0 || !entry.default_value) continue;
@@ -68,34 +68,35 @@ class HeartbeatCheck {
     }
     if (&*producer == &consumer) return error("which is itself");
     monitored_.insert(&*producer);
-    const std::uint64_t produced = heartbeat_time(producer->device);
+    const std::uint64_t produced = heartbeat_time(producer->device());
     if (produced == 0) return error(fmt::format("but {} does not produce a heartbeat (1017h is 0)", producer->name));
     if (time <= produced) error(fmt::format("but {} produces it every {} ms (1017h)", producer->name, produced));
   }
 
   void check_guarding(const NetworkNode& node) {
-    if (!node_guarding(node.device)) return;
-    if (heartbeat_time(node.device) != 0) {
-      context_.diagnostics.warning("network-guarding", place_of_value(node.device, communication::guard_time),
-                                   fmt::format("node {} has guarding (100Ch, 100Dh) and a heartbeat (1017h); the "
-                                               "heartbeat is used",
-                                               node.name),
-                                   {{place_of_value(node.device, communication::producer_heartbeat), "the heartbeat"}});
+    if (!node_guarding(node.device())) return;
+    if (heartbeat_time(node.device()) != 0) {
+      context_.diagnostics.warning(
+          "network-guarding", place_of_value(node.device(), communication::guard_time),
+          fmt::format("node {} has guarding (100Ch, 100Dh) and a heartbeat (1017h); the "
+                      "heartbeat is used",
+                      node.name),
+          {{place_of_value(node.device(), communication::producer_heartbeat), "the heartbeat"}});
       return;
     }
     if (context_.network.master() == nullptr) {
       context_.diagnostics.warning(
-          "network-guarding", place_of_value(node.device, communication::guard_time),
+          "network-guarding", place_of_value(node.device(), communication::guard_time),
           fmt::format("node {} expects guarding, but the network has no NMT master", node.name));
     }
   }
 
   void check_monitoring(const NetworkNode& node) {
     if (node.is_master || monitored_.contains(&node)) return;
-    const bool is_guarded_by_master = node_guarding(node.device) && heartbeat_time(node.device) == 0;
+    const bool is_guarded_by_master = node_guarding(node.device()) && heartbeat_time(node.device()) == 0;
     if (is_guarded_by_master && context_.network.master() != nullptr) return;
     context_.diagnostics.warning("network-unmonitored", node.position,
-                                 heartbeat_time(node.device) == 0
+                                 heartbeat_time(node.device()) == 0
                                      ? fmt::format("node {} has neither heartbeat nor guarding", node.name)
                                      : fmt::format("no node monitors the heartbeat of node {}", node.name),
                                  {}, "error control");

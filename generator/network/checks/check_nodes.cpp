@@ -24,7 +24,7 @@ constexpr MaxLength max_lengths[] = {{1000, 25}, {800, 50},  {500, 100}, {250, 2
 /// The NodeID of a DCF is that of the network file.
 void check_commissioned_node_ids(const NetworkContext& context) {
   for (const NetworkNode& node : context.network.nodes) {
-    const Device& device = node.device;
+    const Device& device = node.device();
     const bool is_other = device.node_id && node.description->dcf && node.description->node_id &&
                           node.loaded->sheet.commissioning.node_id.present;
     if (!is_other) continue;
@@ -54,14 +54,14 @@ void check_bit_rate(const NetworkContext& context) {
                                             length->value, bit_rate->value, row->metres));
   }
   for (const NetworkNode& node : context.network.nodes) {
-    const std::vector<std::uint16_t>& supported = node.device.information.capabilities.baud_rates;
+    const std::vector<std::uint16_t>& supported = node.device().information.capabilities.baud_rates;
     if (!supported.empty() && std::ranges::find(supported, bit_rate->value) == supported.end()) {
       context.diagnostics.error("network-bit-rate", node.position,
                                 fmt::format("node {} does not support {} kbit/s; its EDS has {}", node.name,
                                             bit_rate->value, fmt::join(supported, ", ")),
                                 {{bit_rate->position, "the bit rate of the network"}});
     }
-    const auto& commissioning = node.device.information.commissioning;
+    const auto& commissioning = node.device().information.commissioning;
     const bool is_of_dcf = node.description->dcf && commissioning && commissioning->baudrate;
     if (is_of_dcf && *commissioning->baudrate != bit_rate->value) {
       context.diagnostics.warning("network-bit-rate", node.description->dcf->position,
@@ -75,7 +75,7 @@ void check_bit_rate(const NetworkContext& context) {
 /// type of device.
 std::uint32_t serial_number(const NetworkNode& node) {
   if (node.description->serial_number) return node.description->serial_number->value;
-  const auto& commissioning = node.device.information.commissioning;
+  const auto& commissioning = node.device().information.commissioning;
   if (node.description->dcf && commissioning && commissioning->lss_serial_number) {
     return *commissioning->lss_serial_number;
   }
@@ -88,7 +88,7 @@ void check_lss_addresses(const NetworkContext& context) {
     const std::uint32_t serial = serial_number(node);
     if (serial == 0) continue;
     const auto part = [&](std::uint8_t sub_index) {
-      return value_of(node.device, communication::identity, sub_index).value_or(0);
+      return value_of(node.device(), communication::identity, sub_index).value_or(0);
     };
     const auto [at, is_new] = addresses.emplace(std::tuple{part(1), part(2), part(3), serial}, &node);
     if (is_new) continue;

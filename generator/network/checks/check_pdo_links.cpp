@@ -149,7 +149,7 @@ bool is_link(const CobIdUse& sender, const CobIdUse& receiver) {
 
 /// Granularity: the lengths of entries that the device can map (CiA 306-1, 4.5).
 void check_granularity(const NetworkContext& context, const CobIdUse& use) {
-  const auto granularity = use.node->device.information.capabilities.granularity;
+  const auto granularity = use.node->device().information.capabilities.granularity;
   if (!granularity || *granularity == 0) return;
   for (const PdoEntry& entry : use.pdo->entries) {
     if (entry.place.file != context.network.source.get() || entry.bits % *granularity == 0) continue;

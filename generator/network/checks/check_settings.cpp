@@ -34,7 +34,7 @@ void check_settings(const NetworkContext& context) {
   for (const NetworkNode& node : context.network.nodes) {
     if (node.settings.empty()) continue;
     Diagnostics of_node;
-    const RuleContext rules{node.device, node.loaded->sheet, node.loaded->options, of_node};
+    const RuleContext rules{node.device(), node.loaded->sheet, node.loaded->options, of_node};
     check_communication_values(rules);
     check_pdo_communication(rules);
     check_pdo_mapping(rules);

@@ -42,9 +42,9 @@ void check_producers(const NetworkContext& context, const std::vector<const CobI
         {{producers[0]->position, producers[0]->node->name}});
   }
   const NetworkNode& node = *producers.front()->node;
-  if (value_of(node.device, communication::cycle_period).value_or(0) == 0) {
+  if (value_of(node.device(), communication::cycle_period).value_or(0) == 0) {
     context.diagnostics.warning(
-        "network-sync", place_of_value(node.device, communication::cycle_period),
+        "network-sync", place_of_value(node.device(), communication::cycle_period),
         fmt::format("node {} produces SYNC, but its communication cycle period (1006h) is 0", node.name));
   }
 }
@@ -61,27 +61,27 @@ void check_consumer(const NetworkContext& context, const CobIdUse& producer, con
                                           producer.node->name, can_id_text(producer.can_id, producer.extended)),
                               {{producer.position, producer.node->name}});
   }
-  const std::uint64_t sent = value_of(producer.node->device, communication::sync_overflow).value_or(0);
-  const std::uint64_t expected = value_of(consumer.node->device, communication::sync_overflow).value_or(0);
+  const std::uint64_t sent = value_of(producer.node->device(), communication::sync_overflow).value_or(0);
+  const std::uint64_t expected = value_of(consumer.node->device(), communication::sync_overflow).value_or(0);
   if (sent != expected) {
     context.diagnostics.error(
-        "network-sync-counter", place_of_value(consumer.node->device, communication::sync_overflow),
+        "network-sync-counter", place_of_value(consumer.node->device(), communication::sync_overflow),
         fmt::format("node {} expects a SYNC counter overflow value (1019h) of {}, node {} has {}", consumer.node->name,
                     expected, producer.node->name, sent),
-        {{place_of_value(producer.node->device, communication::sync_overflow), producer.node->name}});
+        {{place_of_value(producer.node->device(), communication::sync_overflow), producer.node->name}});
   }
 }
 
 /// A window that is not shorter than the period has no effect (CiA 301, 7.5.2.7). That of `sync` is the window of all
 /// nodes: it is reported once.
 void check_windows(const NetworkContext& context, const NetworkNode& producer) {
-  const std::uint64_t period = value_of(producer.device, communication::cycle_period).value_or(0);
+  const std::uint64_t period = value_of(producer.device(), communication::cycle_period).value_or(0);
   const WrittenNumber& of_network = context.network.description.sync.window_us;
   bool is_reported = false;
   for (const NetworkNode& node : context.network.nodes) {
-    const std::uint64_t window = value_of(node.device, communication::window_length).value_or(0);
+    const std::uint64_t window = value_of(node.device(), communication::window_length).value_or(0);
     if (period == 0 || window <= period) continue;
-    const Position place = place_of_value(node.device, communication::window_length);
+    const Position place = place_of_value(node.device(), communication::window_length);
     const bool is_of_network = of_network && place.file == of_network->position.file &&
                                place.line == of_network->position.line && place.column == of_network->position.column;
     if (is_of_network && std::exchange(is_reported, true)) continue;

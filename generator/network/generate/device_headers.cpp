@@ -1,15 +1,14 @@
 #include "network/generate/device_headers.hpp"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <map>
-#include <memory>
+#include <optional>
 #include <tuple>
 
-#include "backend/cpp/cpp_view.hpp"
+#include "backend/cpp/headers.hpp"
 #include "backend/cpp/identifier.hpp"
-#include "backend/render.hpp"
 
 namespace edsc {
 namespace {
@@ -34,7 +33,7 @@ class HeaderWriter {
     const std::string name = namespaces_.take(to_namespace(node.name), "device");
     Options options = node.loaded->options;
     if (!node.has_file()) options.static_mapping.all = true;
-    add(node.device, options, name);
+    add(node.device(), options, name);
     return name;
   }
 
@@ -45,29 +44,12 @@ class HeaderWriter {
     std::string& name = sheets_[{path, options, keeps_going}];
     if (!name.empty()) return name;
     name = namespaces_.take(to_namespace(std::filesystem::path{path}.stem().string()), "device");
-    LoadSettings settings;
-    settings.path = path;
-    settings.options_path = options;
-    settings.name = name;
-    settings.check = false;
-    settings.keep_going = keeps_going;
-    Diagnostics known;  // reported when the network was loaded
-    const std::unique_ptr<LoadedDevice> loaded = load_device(settings, known);
-    if (loaded->device) {
-      add(*loaded->device, loaded->options, name);
-    } else {
-      diagnostics_.error("network-file", node.position, fmt::format("{} has changed meanwhile", path));
-    }
+    add(device_for(*node.loaded, std::nullopt, keeps_going), node.loaded->options, name);
     return name;
   }
 
   void add(const Device& device, const Options& options, const std::string& name) {
-    const CppNames names{device, options, name};
-    const nlohmann::ordered_json view = cpp_view({device, names}, options, diagnostics_);
-    for (const Template& header : built_in_templates()) {
-      if (!is_needed(header, view)) continue;
-      headers_.files.push_back({fmt::format("{}/{}", name, header.file_name), render(header.text, view)});
-    }
+    std::ranges::move(headers_of(device, options, name, diagnostics_), std::back_inserter(headers_.files));
   }
 
   const Network& network_;

@@ -32,7 +32,7 @@ std::vector<std::string> inputs_of(const Network& network) {
 Dbc dbc_of(const Network& network) {
   std::vector<DbcNode> nodes;
   for (const NetworkNode& node : network.nodes)
-    nodes.push_back({to_namespace(node.name), &node.device, &*node.loaded->names});
+    nodes.push_back({to_namespace(node.name), &node.device(), &*node.loaded->names});
   return dbc_of(nodes);
 }
 

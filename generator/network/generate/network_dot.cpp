@@ -35,7 +35,7 @@ std::string objects(const NetworkNode& node, const Pdo& pdo) {
   std::string lines;
   for (const PdoEntry& mapped : pdo.entries) {
     if (mapped.object == nullptr) continue;
-    const Object* const object = node.device.find(mapped.index);
+    const Object* const object = node.device().find(mapped.index);
     lines += "\\n" + escaped(object != nullptr && object->has_sub_indices()
                                  ? fmt::format("{} {}", object->name, mapped.object->name)
                                  : mapped.object->name);

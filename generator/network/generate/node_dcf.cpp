@@ -75,8 +75,8 @@ class NodeDcfMaker {
 
   NodeDcf make() {
     choose_values();
-    Document document = canonical_form(sheet_.ini, sheet_.sheet, node_.device);
-    make_dcf(document, sheet_.sheet, node_.device, given_, bit_rate());
+    Document document = canonical_form(sheet_.ini, sheet_.sheet, node_.device());
+    make_dcf(document, sheet_.sheet, node_.device(), given_, bit_rate());
     for (DocumentSection& section : document.sections) complete(section);
     NodeDcf dcf;
     dcf.text = to_text(document);
@@ -100,7 +100,7 @@ class NodeDcfMaker {
       if (belongs_together) choose_object(setting.index);
       choose(setting.index, setting.sub_index);
     }
-    for (const Object& object : node_.device.objects) {
+    for (const Object& object : node_.device().objects) {
       for (const Entry& entry : object.entries) {
         if (is_outdated(entry)) given_.known.insert(&entry);
       }
@@ -121,13 +121,13 @@ class NodeDcfMaker {
   }
 
   void choose_object(std::uint16_t index) {
-    for (const Entry& entry : node_.device.find(index)->entries) {
+    for (const Entry& entry : node_.device().find(index)->entries) {
       if (canopen::writable(entry.access)) choose(index, entry.sub_index);
     }
   }
 
   void choose(std::uint16_t index, std::uint8_t sub_index) {
-    const Entry* const entry = node_.device.find(index, sub_index);
+    const Entry* const entry = node_.device().find(index, sub_index);
     if (entry == nullptr || !entry->default_value) return;
     const std::string bytes = bytes_of(*entry->default_value, *entry->type);
     const std::vector<std::uint8_t> data{bytes.begin(), bytes.end()};
@@ -172,7 +172,7 @@ class NodeDcfMaker {
     Diagnostics ignored;
     const auto held = configured_values(read.sheet, read.device, ignored);
     for (const Setting& setting : node_.settings) {
-      const Entry& entry = *node_.device.find(setting.index, setting.sub_index);
+      const Entry& entry = *node_.device().find(setting.index, setting.sub_index);
       const bool is_held = std::ranges::any_of(held, [&](const ConfiguredValue& one) {
         return one.entry->index == entry.index && one.entry->sub_index == entry.sub_index &&
                one.data == bytes_of(*entry.default_value, *entry.type);

@@ -160,7 +160,7 @@ class PlantHeader {
     };
     add(begin + sizeof(std::uint32_t), fmt::format("number of entries: {}", entries->size()));
     for (const ConciseEntry& entry : *entries) {
-      const Entry* const known = node.device.find(entry.index, entry.sub_index);
+      const Entry* const known = node.device().find(entry.index, entry.sub_index);
       add(entry.data.data() + entry.data.size(),
           fmt::format("{} {}", entry_label(entry.index, entry.sub_index), cpp_comment(known ? known->name : "")));
     }
@@ -251,8 +251,8 @@ class PlantHeader {
     return {{"master_name", cpp_comment(master->name)},
             {"master_device", parts_.devices[position_in_file(*master)]},
             {"master_id", master->node_id},
-            {"start_up", hex_text(value_of(master->device, 0x1F80).value_or(0))},
-            {"boot_time_us", value_of(master->device, 0x1F89).value_or(0) * 1000},
+            {"start_up", hex_text(value_of(master->device(), 0x1F80).value_or(0))},
+            {"boot_time_us", value_of(master->device(), 0x1F89).value_or(0) * 1000},
             {"count", count},
             {"slaves", with_separators(std::move(slaves), ", ")},
             {"place_count", places.size()},
@@ -275,19 +275,20 @@ class PlantHeader {
   /// the identity in the EDS of the node.
   [[nodiscard]] ordered_json slave_row(const NetworkNode& master, const NetworkNode& node) const {
     const auto number = [&](std::uint16_t list, std::uint16_t index, std::uint8_t sub_index) {
-      const std::uint64_t of_master = value_of(master.device, list, node.node_id).value_or(0);
-      return hex_text(of_master != 0 ? of_master : value_of(node.device, index, sub_index).value_or(0));
+      const std::uint64_t of_master = value_of(master.device(), list, node.node_id).value_or(0);
+      return hex_text(of_master != 0 ? of_master : value_of(node.device(), index, sub_index).value_or(0));
     };
     const WrittenNumber& serial = node.description->serial_number;
-    const std::uint64_t serial_of_master = value_of(master.device, 0x1F88, node.node_id).value_or(0);
-    const std::uint64_t assignment = value_of(master.device, communication::slave_assignment, node.node_id).value_or(0);
+    const std::uint64_t serial_of_master = value_of(master.device(), 0x1F88, node.node_id).value_or(0);
+    const std::uint64_t assignment =
+        value_of(master.device(), communication::slave_assignment, node.node_id).value_or(0);
     return {{"label", label(node)},
             {"identifier", identifier(node)},
             {"class_name", to_camel_case(identifier(node)) + "Node"},
             {"text_name", cpp_string(node.name)},
             {"position", slave_position(node)},
             {"emcy", emcy_cob_id(node)},
-            {"assignment", hex_text(assignment != 0 ? assignment : slave_assignment(node.device))},
+            {"assignment", hex_text(assignment != 0 ? assignment : slave_assignment(node.device()))},
             {"device_type", number(0x1F84, 0x1000, 0)},
             {"vendor_id", number(0x1F85, communication::identity, 1)},
             {"product_code", number(0x1F86, communication::identity, 2)},
@@ -302,12 +303,12 @@ class PlantHeader {
   /// Bits of an EMCY COB-ID that a received frame has; 0x80000000: the node does not send EMCY.
   [[nodiscard]] static std::string emcy_cob_id(const NetworkNode& node) {
     constexpr std::uint64_t invalid = 0x8000'0000;
-    return hex_text(value_of(node.device, 0x1014).value_or(invalid) & 0xBFFF'FFFF);
+    return hex_text(value_of(node.device(), 0x1014).value_or(invalid) & 0xBFFF'FFFF);
   }
 
   /// 1016h of the master for this node; 0 if it does not have it.
   [[nodiscard]] static std::uint64_t heartbeat_timeout(const NetworkNode& master, const NetworkNode& node) {
-    const Object* const consumers = master.device.find(communication::consumer_heartbeat);
+    const Object* const consumers = master.device().find(communication::consumer_heartbeat);
     if (consumers == nullptr) return 0;
     for (const Entry& entry : consumers->entries) {
       if (entry.sub_index == 0 || !entry.default_value) continue;

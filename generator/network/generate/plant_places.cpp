@@ -44,7 +44,7 @@ class PlantPlaces {
     for (const ConciseEntry& entry : *entries) {
       const auto at = values.find({entry.index, entry.sub_index});
       add({entry.index, entry.sub_index},
-          at != values.end() ? at->second : place_of_value(node_.device, entry.index, entry.sub_index));
+          at != values.end() ? at->second : place_of_value(node_.device(), entry.index, entry.sub_index));
     }
     return std::move(rows_);
   }
@@ -53,19 +53,19 @@ class PlantPlaces {
   [[nodiscard]] Position place_of_number(const ComparedNumber& number) const {
     const NetworkNode* const master = network_.master();
     if (master != nullptr && master->has_file() &&
-        value_of(master->device, number.list, node_.node_id).value_or(0) != 0)
-      return place_of_value(master->device, number.list, node_.node_id);
+        value_of(master->device(), number.list, node_.node_id).value_or(0) != 0)
+      return place_of_value(master->device(), number.list, node_.node_id);
     const bool is_serial_number = number.list == 0x1F88;
     const WrittenNumber& serial_number = node_.description->serial_number;
     if (is_serial_number && serial_number) return serial_number->position;
-    return place_of_value(node_.device, number.index, number.sub_index);
+    return place_of_value(node_.device(), number.index, number.sub_index);
   }
 
   /// Of the ParameterValues of a DCF and of the settings of the network file, which replace them.
   [[nodiscard]] std::map<Key, Position> places_of_values() const {
     std::map<Key, Position> places;
     Diagnostics ignored;
-    for (const ConfiguredValue& value : configured_values(node_.loaded->sheet, node_.device, ignored)) {
+    for (const ConfiguredValue& value : configured_values(node_.loaded->sheet, node_.device(), ignored)) {
       places[{value.entry->index, value.entry->sub_index}] = value.position;
     }
     for (const Setting& setting : node_.settings) places[{setting.index, setting.sub_index}] = setting.value.position;

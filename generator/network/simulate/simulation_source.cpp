@@ -15,11 +15,8 @@
 #include <utility>
 
 #include "backend/cpp/cpp_text.hpp"
-#include "backend/cpp/cpp_view.hpp"
+#include "backend/cpp/headers.hpp"
 #include "backend/cpp/identifier.hpp"
-#include "backend/render.hpp"
-#include "device/resolve.hpp"
-#include "diagnostics/rule.hpp"
 #include "network/generate/node_dcf.hpp"
 #include "network/simulate/changing_objects.hpp"
 
@@ -100,16 +97,9 @@ class SourceWriter {
 
   void add_device(const NetworkNode& node, const std::string& name, bool keep_going) {
     const LoadedDevice& loaded = *node.loaded;
-    Diagnostics reported;  // when the network was loaded
-    if (keep_going) reported.keep_going(loaded.source.get(), fatal_rules());
     const auto node_id = loaded.sheet.is_dcf ? std::optional{node.node_id} : std::nullopt;
-    const Device device = resolve_device(loaded.sheet, loaded.options, node_id, reported);
-    const CppNames names{device, loaded.options, name};
-    const auto view = cpp_view({device, names}, loaded.options, diagnostics_);
-    for (const Template& one : built_in_templates()) {
-      if (!one.needed.empty() && view.at(std::string{one.needed}).is_null()) continue;
-      source_.files.push_back({fmt::format("{}/{}", name, one.file_name), render(one.text, view)});
-    }
+    std::ranges::move(headers_of(device_for(loaded, node_id, keep_going), loaded.options, name, diagnostics_),
+                      std::back_inserter(source_.files));
     const std::string function = fmt::format(
         "std::unique_ptr<canopen::SimulatedNode> make_{}(canopen::SimulatedBus& bus, canopen::SimulatedMemory& memory)",
         name);

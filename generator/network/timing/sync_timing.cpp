@@ -10,7 +10,7 @@ namespace edsc {
 namespace {
 
 Nanoseconds microseconds_of(const CobIdUse& use, std::uint16_t index) {
-  return std::chrono::microseconds{static_cast<std::int64_t>(value_of(use.node->device, index).value_or(0))};
+  return std::chrono::microseconds{static_cast<std::int64_t>(value_of(use.node->device(), index).value_or(0))};
 }
 
 }  // namespace

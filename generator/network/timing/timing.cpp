@@ -48,7 +48,7 @@ class MessageCollector {
   [[nodiscard]] Nanoseconds sync_period() const {
     const CobIdUse* const producer = sync_producer(uses_);
     if (producer == nullptr) return {};
-    const auto period = value_of(producer->node->device, communication::cycle_period).value_or(0);
+    const auto period = value_of(producer->node->device(), communication::cycle_period).value_or(0);
     return microseconds{static_cast<std::int64_t>(period)};
   }
 
@@ -56,13 +56,13 @@ class MessageCollector {
     switch (use.service) {
       case FrameService::pdo: return add_pdo(use);
       case FrameService::sync: {
-        const bool is_counted = value_of(use.node->device, communication::sync_overflow).value_or(0) != 0;
+        const bool is_counted = value_of(use.node->device(), communication::sync_overflow).value_or(0) != 0;
         return add(use, is_counted ? 1 : 0, sync_period_);
       }
       case FrameService::time: return add_assumed(use, time_of_day_bytes, interval(assume_.time_ms, 1000));
       case FrameService::nmt: return add_assumed(use, nmt_command_bytes, interval(assume_.nmt_ms, 1000));
       case FrameService::emcy: {
-        const auto inhibit = value_of(use.node->device, communication::inhibit_time_emcy).value_or(0);
+        const auto inhibit = value_of(use.node->device(), communication::inhibit_time_emcy).value_or(0);
         if (inhibit != 0) return add(use, 8, inhibit_time(inhibit));
         return add_assumed(use, 8, interval(assume_.emcy_ms, 1000));
       }
@@ -108,7 +108,7 @@ class MessageCollector {
     if (sync_period_ == Nanoseconds{}) return;
     TimedMessage one = message_of(use, size, sync_period_ * static_cast<std::int64_t>(cycles));
     one.is_synchronous = true;
-    const auto window = value_of(use.node->device, communication::window_length).value_or(0);
+    const auto window = value_of(use.node->device(), communication::window_length).value_or(0);
     one.message.deadline = window != 0 ? microseconds{static_cast<std::int64_t>(window)} : sync_period_;
     messages_.push_back(std::move(one));
   }
@@ -131,7 +131,7 @@ class MessageCollector {
 
   /// Heartbeat, or node guarding with a request of the master.
   void add_error_control(const CobIdUse& use) {
-    const Device& device = use.node->device;
+    const Device& device = use.node->device();
     const std::uint64_t heartbeat = heartbeat_time(device);
     if (heartbeat != 0) {
       messages_.push_back(message_of(use, 1, milliseconds{static_cast<std::int64_t>(heartbeat)}));
@@ -152,7 +152,7 @@ class MessageCollector {
   [[nodiscard]] Nanoseconds slack_of_heartbeat(const NetworkNode& producer, std::uint64_t heartbeat) const {
     std::optional<std::uint64_t> shortest;
     for (const NetworkNode& node : network_.nodes) {
-      const Object* const object = node.device.find(communication::consumer_heartbeat);
+      const Object* const object = node.device().find(communication::consumer_heartbeat);
       if (object == nullptr) continue;
       for (const Entry& entry : object->entries) {
         const std::uint64_t value = entry.sub_index != 0 && entry.default_value ? entry.default_value->bits : 0;

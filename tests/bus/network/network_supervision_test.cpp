@@ -80,7 +80,7 @@ class NetworkApply : public testing::Test {
     nodes.push_back(std::move(live));
     values.clear();
     expected.clear();
-    for (const Object& object : node.device.objects) {
+    for (const Object& object : node.device().objects) {
       for (const Entry& entry : object.entries) {
         if (!entry.default_value) continue;
         const std::string bytes = bytes_of(*entry.default_value, *entry.type);
