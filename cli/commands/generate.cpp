@@ -17,6 +17,7 @@
 #include "shared/output.hpp"
 #include "text/depfile.hpp"
 #include "text/printable.hpp"
+#include "text/suggestion.hpp"
 #include "text/write_files.hpp"
 
 namespace edsc {
@@ -57,8 +58,22 @@ struct ChosenTemplate {
   }
 };
 
+/// A file that replaces nothing has a misspelled name. Hidden files, such as those of git and of editors, are no
+/// templates.
+void check_template_names(const std::string& folder) {
+  std::vector<std::string> known;
+  for (const Template& built_in : built_in_templates()) known.push_back(std::string{built_in.file_name} + ".mustache");
+  for (const fs::directory_entry& file : fs::directory_iterator{folder}) {
+    const std::string name = file.path().filename().string();
+    if (name.starts_with('.') || !file.is_regular_file() || std::ranges::find(known, name) != known.end()) continue;
+    throw std::runtime_error{fmt::format("{}: there is no built-in template with this name{}", file.path().string(),
+                                         did_you_mean(name, known))};
+  }
+}
+
 /// The built-in templates, each replaced by the file of the same name in `folder`, if it exists.
 std::vector<ChosenTemplate> choose_templates(const std::string& folder) {
+  if (!folder.empty()) check_template_names(folder);
   std::vector<ChosenTemplate> chosen;
   for (const Template& built_in : built_in_templates()) {
     ChosenTemplate one{built_in, nullptr};

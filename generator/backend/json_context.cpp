@@ -1,12 +1,13 @@
 #include "backend/json_context.hpp"
 
 #include <functional>
+#include <stdexcept>
 
 namespace edsc {
 
 const JsonContext::Data* JsonContext::get(const std::string& name) const {
   const Json* node = find(name);
-  if (node == nullptr) return nullptr;
+  if (node == nullptr) throw std::runtime_error{"{{" + name + "}}: the view does not have this name"};
   switch (node->type()) {
     case Json::value_t::string: text_ = Data{node->get_ref<const std::string&>()}; return &text_;
     case Json::value_t::number_integer:

@@ -22,7 +22,8 @@ class JsonContext : public kainjow::mustache::basic_context<std::string> {
   void push(const Data* data) override { nodes_.push_back(node_of(data)); }
   void pop() override { nodes_.pop_back(); }
 
-  /// Numbers are text; null is false. The result is valid until the next call at the same depth.
+  /// Numbers are text; null is false. The result is valid until the next call at the same depth. Throws
+  /// std::runtime_error if no open section has the name.
   const Data* get(const std::string& name) const override;
   const Data* get_partial(const std::string&) const override { return nullptr; }
 

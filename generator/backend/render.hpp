@@ -27,7 +27,8 @@ struct Template {
 /// Whether a header is generated for this view.
 [[nodiscard]] bool is_needed(const Template& header, const nlohmann::ordered_json& view);
 
-/// Renders a template. Throws std::runtime_error with a message if the template is invalid.
+/// Renders a template. Throws std::runtime_error with a message if the template is invalid, or uses a name that the
+/// view does not have.
 [[nodiscard]] std::string render(std::string_view text, const nlohmann::ordered_json& view);
 
 /// The same for HTML: each value becomes printable, and <, >, &, " and ' in it become entities.

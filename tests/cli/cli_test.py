@@ -456,10 +456,19 @@ class Generate(CommandLine):
         (templates / "pdo.hpp.mustache").write_text("// {{namespace}}\n")
         self.expect(FINE, self.edsc("generate", GOOD, "-o", self.output, "--templates", templates))
         self.assertEqual((self.output / "every_type/pdo.hpp").read_text(), "// every_type\n")
-        (templates / "pdo.hpp.mustache").write_text("{{#open}}\n")
+        (templates / "pdo.hpp.mustache").write_text("{{#open}}\n{{/open}}{{namespce}}\n")
+        self.expect(WRONG_USAGE, self.edsc("generate", GOOD, "-o", "other", "--templates", templates),
+                    f"edsc: {templates}/pdo.hpp.mustache: {{{{open}}}}: the view does not have this name\n")
+        (templates / "pdo.hpp.mustache").write_text("{{#namespace}}\n")
         self.expect(WRONG_USAGE, self.edsc("generate", GOOD, "-o", "other", "--templates", templates),
                     f"edsc: {templates}/pdo.hpp.mustache: ")
+        (templates / "pdo.hpp.mustache").rename(templates / "pdo.hp.mustache")
+        self.expect(WRONG_USAGE, self.edsc("generate", GOOD, "-o", "other", "--templates", templates),
+                    f"edsc: {templates}/pdo.hp.mustache: there is no built-in template with this name; did you mean "
+                    '"pdo.hpp.mustache"?\n')
         self.assertFalse((self.folder / "other").exists())
+        (templates / "pdo.hp.mustache").rename(templates / ".pdo.hp.mustache.swp")
+        self.expect(FINE, self.edsc("generate", GOOD, "-o", self.output, "--templates", templates))
 
 
 class Check(CommandLine):

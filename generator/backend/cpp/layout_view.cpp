@@ -89,8 +89,7 @@ ordered_json section_view(const Struct& s) {
 // ---- tables ----
 
 ordered_json row_view(std::string text, std::string_view remark = {}) {
-  if (remark.empty()) return json_object("text", std::move(text));
-  return json_object("text", std::move(text), "remark", "  // " + cpp_comment(remark));
+  return json_object("text", std::move(text), "remark", remark.empty() ? "" : "  // " + cpp_comment(remark));
 }
 
 /// A table for the template: its rows, and whether there are any.

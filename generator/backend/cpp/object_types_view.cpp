@@ -76,9 +76,11 @@ class ObjectTypes {
 
  private:
   [[nodiscard]] ordered_json object_row(const Object& object) {
-    if (!object.has_sub_indices()) return json_object("var", entry_row(object.entries.front()));
-    if (describes_uniform_array(object)) return json_object("array", array_row(object));
-    return json_object("record", record_row(object));
+    const bool is_var = !object.has_sub_indices();
+    const bool is_array = !is_var && describes_uniform_array(object);
+    return json_object("var", is_var ? entry_row(object.entries.front()) : nullptr,  //
+                       "array", is_array ? array_row(object) : nullptr,              //
+                       "record", is_var || is_array ? nullptr : record_row(object));
   }
 
   [[nodiscard]] ordered_json record_row(const Object& object) const {

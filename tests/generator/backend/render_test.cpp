@@ -57,6 +57,19 @@ TEST(Render, TakesNullAndFalseForNothing) {
 
 TEST(Render, DoesNotReadTagsInValues) { EXPECT_EQ(render("{{name}}", {{"name", "{{#x}}"}}), "{{#x}}"); }
 
+TEST(Render, ThrowsWhenTheViewDoesNotHaveAName) {
+  const ordered_json view{{"name", "a"}, {"row", {{"text", "b"}}}};
+  for (const char* text : {"{{nmae}}", "{{#nmae}}{{/nmae}}", "{{^nmae}}{{/nmae}}", "{{#row}}{{nmae}}{{/row}}"}) {
+    try {
+      static_cast<void>(render(text, view));
+      ADD_FAILURE() << text;
+    } catch (const std::runtime_error& error) {
+      EXPECT_STREQ(error.what(), "{{nmae}}: the view does not have this name");
+    }
+  }
+  EXPECT_EQ(render("{{#row}}{{name}}{{text}}{{/row}}", view), "ab");
+}
+
 TEST(Render, ThrowsWhenATemplateIsWrong) {
   EXPECT_THROW(static_cast<void>(render("{{#open}}\n", ordered_json::object())), std::runtime_error);
 }
