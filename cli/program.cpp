@@ -16,6 +16,7 @@
 #include "shared/command_line.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/output.hpp"
+#include "system/standard_streams.hpp"
 #include "text/printable.hpp"
 #include "text/suggestion.hpp"
 

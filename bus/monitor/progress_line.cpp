@@ -1,8 +1,8 @@
 #include "monitor/progress_line.hpp"
+#include "system/standard_streams.hpp"
 #include "text/printable.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdio>
 
@@ -14,7 +14,7 @@ constexpr std::chrono::milliseconds between{100};
 
 }  // namespace
 
-ProgressLine::ProgressLine() : terminal_{isatty(fileno(stderr)) != 0}, next_{Clock::now() + before_the_first} {}
+ProgressLine::ProgressLine() : terminal_{is_terminal(stderr)}, next_{Clock::now() + before_the_first} {}
 
 ProgressLine::~ProgressLine() { hide(); }
 

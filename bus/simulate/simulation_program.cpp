@@ -13,7 +13,7 @@
 #include <thread>
 #include <utility>
 
-#include "text/run_program.hpp"
+#include "system/run_program.hpp"
 
 namespace edsc {
 namespace {

@@ -8,7 +8,7 @@
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/output.hpp"
-#include "shared/waiting_signals.hpp"
+#include "system/waiting_signals.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -37,7 +37,7 @@ std::string bad_bus_name(const std::string& name) {
 
 int serve(const Settings& settings) {
   const ListenAddress address = parse_listen_address(settings.listen);
-  const WaitingSignals signals({SIGINT, SIGTERM}, 0);
+  const WaitingSignals signals({SIGINT, SIGTERM}, WaitingSignals::Second::is_recorded);
   BusEvents events;
   events.on_frame = [&settings](const canopen::Frame& frame, const std::string& bus, socketcand::TimeStamp time) {
     if (settings.log) print_visibly(stdout, "{}\n", candump_line(frame, bus, time));

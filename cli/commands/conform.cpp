@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <map>
 #include <memory>
 
@@ -25,6 +24,7 @@
 #include "shared/live_options.hpp"
 #include "shared/output.hpp"
 #include "shared/with_bus.hpp"
+#include "system/run_program.hpp"
 
 namespace edsc {
 namespace {
@@ -83,8 +83,7 @@ class CommandStimuli final : public conform::Stimuli {
   bool run(const char* what) {
     const auto found = commands_.find(case_);
     if (found == commands_.end()) return false;
-    ::setenv("EDSC_STIMULUS", what, 1);
-    return std::system(found->second.c_str()) == 0;  // NOLINT(cert-env33-c): the user's own command line
+    return run_command_line(found->second, "EDSC_STIMULUS", what);
   }
 
   std::map<std::string, std::string, std::less<>> commands_;

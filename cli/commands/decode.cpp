@@ -1,8 +1,7 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <csignal>
+#include <cstdio>
 #include <cstring>
 
 #include "commands/commands.hpp"
@@ -11,6 +10,7 @@
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/log_options.hpp"
+#include "system/standard_streams.hpp"
 
 namespace edsc {
 namespace {
@@ -30,14 +30,10 @@ struct Settings : LogSettings {
 };
 
 /// Ends the command without a message if the reader of standard output has closed it.
-void write_all(int descriptor, std::string& text) {
-  for (std::string_view rest = text; !rest.empty();) {
-    const ssize_t count = ::write(descriptor, rest.data(), rest.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0 && errno == EPIPE) throw Exit{exit_fine};
-    if (count < 0) fail(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
-    rest.remove_prefix(static_cast<std::size_t>(count));
-  }
+void write_out(std::FILE* stream, std::string& text) {
+  const int error_number = write_unbuffered(stream, text);
+  if (error_number == EPIPE) throw Exit{exit_fine};
+  if (error_number != 0) fail(fmt::format("cannot write to standard output: {}", std::strerror(error_number)));
   text.clear();
 }
 
@@ -65,11 +61,11 @@ int decode(const Settings& settings) {
   constexpr std::size_t output_bytes = std::size_t{64} * 1024;
   const LogNodes nodes = load_log_nodes(settings);
   LogDecoder decoder{nodes.known(), nodes.labels, decoder_settings(settings)};
-  std::signal(SIGPIPE, SIG_IGN);
+  report_closed_pipes();
   std::string out, complaints;
   const auto flush = [&] {
-    write_all(STDOUT_FILENO, out);
-    write_all(STDERR_FILENO, complaints);
+    write_out(stdout, out);
+    write_out(stderr, complaints);
   };
   if (settings.format == "csv") append_csv_header(out);
   const auto use = [&](LogLine& line) {

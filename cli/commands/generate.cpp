@@ -15,10 +15,10 @@
 #include "shared/exit_code.hpp"
 #include "shared/left_out_text.hpp"
 #include "shared/output.hpp"
+#include "system/write_files.hpp"
 #include "text/depfile.hpp"
 #include "text/printable.hpp"
 #include "text/suggestion.hpp"
-#include "text/write_files.hpp"
 
 namespace edsc {
 namespace {

@@ -1,10 +1,9 @@
 #include "shared/common_options.hpp"
 
-#include <unistd.h>
-
 #include <cstdlib>
 
 #include "diagnostics/print.hpp"
+#include "system/standard_streams.hpp"
 
 namespace edsc {
 
@@ -20,7 +19,7 @@ void ColorOption::add_to(Command command) {
 
 bool ColorOption::on(std::FILE* stream) const {
   if (when != "auto") return when == "always";
-  return isatty(fileno(stream)) != 0 && std::getenv("NO_COLOR") == nullptr;
+  return is_terminal(stream) && std::getenv("NO_COLOR") == nullptr;
 }
 
 void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color, bool with_allowed) {

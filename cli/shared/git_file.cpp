@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "system/run_program.hpp"
 #include "text/gzip.hpp"
-#include "text/run_program.hpp"
 
 namespace edsc {
 namespace {

@@ -1,11 +1,7 @@
 #include "shared/log_options.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <csignal>
 #include <cstring>
 
@@ -13,7 +9,8 @@
 #include "device/pdo/resolve_pdos.hpp"
 #include "eds/number.hpp"
 #include "shared/exit_code.hpp"
-#include "shared/waiting_signals.hpp"
+#include "system/input_file.hpp"
+#include "system/waiting_signals.hpp"
 
 namespace edsc {
 namespace {
@@ -59,41 +56,6 @@ std::unique_ptr<LoadedDevice> load_node(NodeArgument& argument, const ColorOptio
     fail(fmt::format("--node {0}: the file does not state a node-ID; use --node 5={0}", argument.path));
   }
   return loaded;
-}
-
-/// A file, or standard input.
-class InputFile {
- public:
-  explicit InputFile(const std::string& path)
-      : descriptor_{path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)} {
-    if (descriptor_ < 0) fail(fmt::format("{}: {}", path, std::strerror(errno)));
-  }
-  InputFile(const InputFile&) = delete;
-  InputFile& operator=(const InputFile&) = delete;
-  ~InputFile() {
-    if (descriptor_ != STDIN_FILENO) ::close(descriptor_);
-  }
-  [[nodiscard]] int descriptor() const { return descriptor_; }
-
- private:
-  int descriptor_;
-};
-
-/// Waits for input. Returns false at an interrupt.
-bool wait_for(int descriptor, const WaitingSignals& interrupts) {
-  pollfd input{descriptor, POLLIN, 0};
-  while (ppoll(&input, 1, nullptr, interrupts.while_waiting()) < 0 && errno == EINTR) {
-    if (WaitingSignals::noted()) return false;
-  }
-  return true;
-}
-
-std::ptrdiff_t read_some(int descriptor, char* to, std::size_t most) {
-  ssize_t count = 0;
-  do {
-    count = ::read(descriptor, to, most);
-  } while (count < 0 && errno == EINTR);
-  return count < 0 ? -errno : count;
 }
 
 }  // namespace
@@ -145,11 +107,12 @@ LogNodes load_log_nodes(const LogSettings& settings) {
 std::function<void()> read_log(const LogSettings& settings, const std::function<void(LogLine&)>& use,
                                const std::function<void()>& before_waiting) {
   const InputFile file{settings.log};
+  if (file.error() != 0) fail(fmt::format("{}: {}", settings.log, std::strerror(file.error())));
   // An interrupt ends the log, so that the summary is printed; the second one ends the program.
-  const WaitingSignals interrupts({SIGINT}, static_cast<int>(SA_RESETHAND));
+  const WaitingSignals interrupts({SIGINT}, WaitingSignals::Second::ends_program);
   LogInput input{[&](char* to, std::size_t most) -> std::ptrdiff_t {
     before_waiting();
-    return wait_for(file.descriptor(), interrupts) ? read_some(file.descriptor(), to, most) : 0;
+    return file.read_some(to, most, interrupts);
   }};
   const LogFormat* const named = find_format(settings.log_format);
   const std::string_view conversion = named == nullptr ? conversion_of(input.beginning()) : std::string_view{};

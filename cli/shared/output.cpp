@@ -1,8 +1,6 @@
 #include "shared/output.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -24,14 +22,6 @@ bool flushed() {
 }
 
 }  // namespace
-
-void occupy_standard_descriptors() {
-  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
-    // The lowest free number is this one. Opened for the other direction, so that using it fails like a closed one.
-    if (::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
-  }
-}
 
 bool finish_output(int error_number) {
   errno = error_number;

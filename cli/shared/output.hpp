@@ -5,13 +5,9 @@
 #include <string_view>
 #include <vector>
 
-#include "text/write_files.hpp"
+#include "system/write_files.hpp"
 
 namespace edsc {
-
-/// Opens descriptors 0 to 2 if the caller has closed them, so that no file or bus gets their numbers. Writing to a
-/// closed standard output fails.
-void occupy_standard_descriptors();
 
 /// Flushes standard output. Returns false if any output was lost, which is reported on standard error. `error_number`
 /// is that of an earlier failed write, or 0.

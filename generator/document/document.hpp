@@ -9,7 +9,7 @@
 #include "diagnostics/diagnostics.hpp"
 #include "load/load_device.hpp"
 #include "network/network.hpp"
-#include "text/write_files.hpp"
+#include "system/write_files.hpp"
 
 namespace edsc {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "network/network.hpp"
-#include "text/write_files.hpp"
+#include "system/write_files.hpp"
 
 namespace edsc {
 

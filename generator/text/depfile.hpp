@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "text/write_files.hpp"
+#include "system/write_files.hpp"
 
 namespace edsc {
 

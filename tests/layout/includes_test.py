@@ -21,6 +21,8 @@ RUNTIME = "runtime/include/canopen"
 TOPS = {"runtime": "runtime/include", "generator": "generator", "bus": "bus", "cli": "cli"}  # each with its include folder
 UMBRELLAS = ("node.hpp", "master.hpp")
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+SYSTEM_HEADER = re.compile(r"^#include <((?:arpa|net|netinet|sys|linux)/[\w./]+|"
+                           r"(?:dirent|dlfcn|fcntl|poll|pthread|pwd|signal|spawn|termios|unistd|windows)\.h)>", re.MULTILINE)
 ROW = re.compile(r"^\| `((?:runtime|generator|bus|cli)(?:/[\w.]+)?)/?` \| (.*?) \|", re.MULTILINE)
 
 
@@ -93,6 +95,12 @@ class Includes(unittest.TestCase):
         upward = [f"{module} -> {other}" for module, others in documented.items() for other in others
                   if rank[other.split("/")[0]] > rank[module.split("/")[0]]]
         self.assertEqual(upward, [])
+
+    def test_one_module_of_the_compiler_uses_the_operating_system(self) -> None:
+        found = [f"{path.relative_to(SOURCE_DIR)}: {name}" for path in sources()
+                 if top_of(path) in ("generator", "cli") and module_of(path) != "generator/system"
+                 for name in SYSTEM_HEADER.findall(path.read_text(encoding="utf-8"))]
+        self.assertEqual(found, [], "headers of POSIX belong into generator/system")
 
     def test_the_runtime_includes_itself_alone(self) -> None:
         names = {f"{path.relative_to(SOURCE_DIR)}: {name}"

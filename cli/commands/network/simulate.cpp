@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include "commands/commands.hpp"
@@ -22,6 +21,7 @@
 #include "simulate/simulation_fault.hpp"
 #include "simulate/simulation_program.hpp"
 #include "simulate/simulation_report.hpp"
+#include "system/temporary_folder.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -49,29 +49,6 @@ struct Settings {
   ColorOption color;
 };
 
-/// A folder that is removed at the end, unless the user has named one.
-class WorkFolder {
- public:
-  explicit WorkFolder(const std::string& named) : path_{named}, is_temporary_{named.empty()} {
-    if (!is_temporary_) return;
-    std::string pattern = (fs::temp_directory_path() / "edsc-simulation-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) fail("cannot create a temporary folder " + pattern);
-    path_ = pattern;
-  }
-  ~WorkFolder() {
-    std::error_code ignored;
-    if (is_temporary_) fs::remove_all(path_, ignored);
-  }
-  WorkFolder(const WorkFolder&) = delete;
-  WorkFolder& operator=(const WorkFolder&) = delete;
-
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-  bool is_temporary_;
-};
-
 std::vector<SimulationFault> parse_faults(const Settings& settings, const Network& network) {
   std::vector<SimulationFault> faults;
   for (const std::string& text : settings.faults) {
@@ -94,16 +71,18 @@ void assume_errors(NetworkDescription& description, const std::vector<Simulation
 }
 
 SimulationResult run(const Settings& settings, SimulationSource source, SimulationRun run) {
-  const WorkFolder folder{settings.output};
+  std::optional<TemporaryFolder> temporary;
+  if (settings.output.empty()) temporary.emplace("edsc-simulation-");
+  const std::string folder = temporary ? temporary->path() : settings.output;
   const std::string include_folder =
       settings.include_folder.empty() ? runtime_include_folder() : settings.include_folder;
   if (include_folder.empty()) fail("cannot find the headers of the runtime; --runtime names their folder");
-  for (OutputFile& file : source.files) file.path = (fs::path{folder.path()} / file.path).string();
+  for (OutputFile& file : source.files) file.path = (fs::path{folder} / file.path).string();
   write_all_files(source.files);
   const std::size_t sources = source.sources.size();
   ProgressLine progress;
   progress.show(fmt::format("compiling {} files", sources));
-  run.program = build_simulation({folder.path(), std::move(source.sources), include_folder}, [&](std::size_t done) {
+  run.program = build_simulation({folder, std::move(source.sources), include_folder}, [&](std::size_t done) {
     progress.show(fmt::format("compiling {} of {}", done, sources));
   });
   return run_simulation(run, [&](std::uint64_t time_us) {

@@ -6,7 +6,7 @@
 
 #include "backend/cpp/cpp_names.hpp"
 #include "device/options/options.hpp"
-#include "text/write_files.hpp"
+#include "system/write_files.hpp"
 
 namespace edsc {
 

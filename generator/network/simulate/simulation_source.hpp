@@ -6,7 +6,7 @@
 
 #include "network/network.hpp"
 #include "network/timing/timing.hpp"
-#include "text/write_files.hpp"
+#include "system/write_files.hpp"
 
 namespace edsc {
 

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "text/write_files.hpp"
+#include "system/write_files.hpp"
 
 namespace {
 

@@ -4,6 +4,7 @@
 #include <signal.h>
 
 #include <csignal>
+#include <cstdint>
 #include <initializer_list>
 
 namespace edsc {
@@ -11,20 +12,10 @@ namespace edsc {
 /// Records these signals, which are delivered only while the command waits with `while_waiting`, as in ppoll().
 class WaitingSignals {
  public:
-  /// `flags` of sigaction()
-  WaitingSignals(std::initializer_list<int> signals, int flags) {
-    struct sigaction action {};
-    action.sa_handler = [](int) { noted_ = 1; };
-    action.sa_flags = flags;
-    sigset_t blocked{};
-    sigemptyset(&blocked);
-    for (const int signal : signals) {
-      sigaction(signal, &action, nullptr);
-      sigaddset(&blocked, signal);
-    }
-    sigprocmask(SIG_BLOCK, &blocked, &while_waiting_);
-    for (const int signal : signals) sigdelset(&while_waiting_, signal);
-  }
+  /// What the second signal of a kind does.
+  enum class Second : std::uint8_t { is_recorded, ends_program };
+
+  WaitingSignals(std::initializer_list<int> signals, Second second);
 
   [[nodiscard]] static bool noted() { return noted_ != 0; }
   [[nodiscard]] const sigset_t* while_waiting() const { return &while_waiting_; }

@@ -1,8 +1,7 @@
-#include "text/write_files.hpp"
+#include "system/write_files.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -22,6 +21,8 @@
 #include <system_error>
 #include <utility>
 
+#include "system/write_all.hpp"
+
 namespace edsc {
 namespace {
 
@@ -36,22 +37,6 @@ using canopen::Descriptor;
 
 /// Some file systems report a full disk only at this point.
 bool closed(Descriptor& descriptor) { return descriptor.close() == 0 || errno == EINTR; }
-
-/// Waits if a descriptor currently does not accept more bytes.
-bool write_all(int descriptor, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::write(descriptor, bytes.data(), bytes.size());
-    if (count >= 0) {
-      bytes.remove_prefix(static_cast<std::size_t>(count));
-    } else if (errno == EAGAIN) {
-      pollfd output{descriptor, POLLOUT, 0};
-      ::poll(&output, 1, -1);
-    } else if (errno != EINTR) {
-      return false;
-    }
-  }
-  return true;
-}
 
 /// The descriptor of this process that a path in /proc/self/fd names.
 std::optional<int> own_descriptor(const fs::path& path) {
@@ -133,7 +118,7 @@ class Target {
       opened = Descriptor{::open(path_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY)};
       if (!opened) return problem();
     }
-    if (!write_all(descriptor_.value_or(opened.number()), file_->content)) return problem();
+    if (write_all(descriptor_.value_or(opened.number()), file_->content) != 0) return problem();
     return descriptor_ || closed(opened) ? "" : problem();
   }
 
@@ -143,7 +128,7 @@ class Target {
     struct stat before {};
     exists_ = ::lstat(path_.c_str(), &before) == 0;
     if (exists_) keep_owner_and_mode(out.number(), before);
-    const bool written = write_all(out.number(), file_->content) && is_on_disk(out.number()) && closed(out);
+    const bool written = write_all(out.number(), file_->content) == 0 && is_on_disk(out.number()) && closed(out);
     return written ? "" : problem();
   }
 

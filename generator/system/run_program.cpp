@@ -1,4 +1,4 @@
-#include "text/run_program.hpp"
+#include "system/run_program.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -8,8 +8,7 @@
 
 #include <array>
 #include <cerrno>
-
-#include "text/source_file.hpp"
+#include <cstdlib>
 
 namespace edsc {
 namespace {
@@ -53,7 +52,7 @@ void drain(const Pipe& output, const Pipe& errors, ProgramOutcome& outcome,
       if (count < 0 && errno == EINTR) continue;
       if (count > 0 && i == 0 && on_output) {
         on_output({buffer.data(), static_cast<std::size_t>(count)});
-      } else if (count > 0 && texts[i]->size() <= SourceFile::max_bytes) {
+      } else if (count > 0 && texts[i]->size() <= max_program_output_bytes) {
         texts[i]->append(buffer.data(), static_cast<std::size_t>(count));
       } else if (count <= 0) {
         open[i].fd = -1;
@@ -92,6 +91,11 @@ std::optional<ProgramOutcome> run_program(std::vector<std::string> words,
   }
   outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return outcome;
+}
+
+bool run_command_line(const std::string& line, const std::string& variable, const std::string& value) {
+  ::setenv(variable.c_str(), value.c_str(), 1);
+  return std::system(line.c_str()) == 0;  // NOLINT(cert-env33-c): the user's own command line
 }
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-#include "text/write_files.hpp"
+#include "system/write_files.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

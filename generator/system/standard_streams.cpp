@@ -1,0 +1,27 @@
+#include "system/standard_streams.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+
+#include "system/write_all.hpp"
+
+namespace edsc {
+
+void occupy_standard_descriptors() {
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
+    // The lowest free number is this one. Opened for the other direction, so that using it fails like a closed one.
+    if (::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
+  }
+}
+
+bool is_terminal(std::FILE* stream) { return isatty(fileno(stream)) != 0; }
+
+void report_closed_pipes() { std::signal(SIGPIPE, SIG_IGN); }
+
+int write_unbuffered(std::FILE* stream, std::string_view text) { return write_all(fileno(stream), text); }
+
+}  // namespace edsc

@@ -1,0 +1,21 @@
+/// Standard input, output and error of this process.
+#pragma once
+
+#include <cstdio>
+#include <string_view>
+
+namespace edsc {
+
+/// Opens descriptors 0 to 2 if the caller has closed them, so that no file or bus gets their numbers. Writing to a
+/// closed standard output fails.
+void occupy_standard_descriptors();
+
+[[nodiscard]] bool is_terminal(std::FILE* stream);
+
+/// From now on, writing to a pipe that its reader has closed fails with EPIPE and does not end the program.
+void report_closed_pipes();
+
+/// Writes text immediately, past the buffer of the stream, which must be empty. Returns 0, or the error number.
+[[nodiscard]] int write_unbuffered(std::FILE* stream, std::string_view text);
+
+}  // namespace edsc
