@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "system/path.hpp"
 #include "text/ascii.hpp"
 #include "text/printable.hpp"
 
@@ -123,7 +124,7 @@ class NetworkText {
   std::string name_of(const FoundNode& node, const SheetFile& sheet) {
     const bool is_usable = !sheet.node_name.empty() && sheet.node_name.find('.') == std::string::npos;
     if (is_usable && names_.insert(sheet.node_name).second) return sheet.node_name;
-    std::string name = fs::path{sheet.path}.stem().string();
+    std::string name{stem_of(sheet.path)};
     for (char& c : name) c = is_letter(c) || is_digit(c) ? to_lower(c) : '_';
     name += fmt::format("_{}", node.node_id);
     while (!names_.insert(name).second) name += '_';
@@ -132,8 +133,9 @@ class NetworkText {
 
   [[nodiscard]] std::string beside_network_file(const std::string& path) const {
     std::error_code error;
-    const fs::path relative = fs::proximate(path, settings_.folder.empty() ? "." : settings_.folder, error);
-    return (error ? fs::path{path} : relative).generic_string();
+    const fs::path relative =
+        fs::proximate(to_native(path), settings_.folder.empty() ? fs::path{"."} : to_native(settings_.folder), error);
+    return error ? path : from_native(relative);
   }
 
   const std::vector<SheetFile>& sheets_;

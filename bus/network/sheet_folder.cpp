@@ -14,6 +14,7 @@
 #include "load/load_device.hpp"
 #include "network/communication_objects.hpp"
 #include "network/network.hpp"
+#include "system/path.hpp"
 #include "text/ascii.hpp"
 
 namespace edsc {
@@ -26,13 +27,13 @@ constexpr std::array<std::string_view, 4> extensions = {".eds", ".dcf", ".xdd", 
 std::vector<std::string> sheet_paths(const std::string& folder, std::vector<std::string>& problems) {
   std::vector<std::string> paths;
   std::error_code error;
-  fs::recursive_directory_iterator at{folder, fs::directory_options::skip_permission_denied, error};
+  fs::recursive_directory_iterator at{to_native(folder), fs::directory_options::skip_permission_denied, error};
   for (; !error && at != fs::recursive_directory_iterator{}; at.increment(error)) {
     std::error_code of_file;
-    std::string extension = at->path().extension().string();
+    std::string extension = from_native(at->path().extension());
     std::ranges::transform(extension, extension.begin(), to_lower);
     const bool is_sheet = std::ranges::find(extensions, extension) != extensions.end();
-    if (is_sheet && at->is_regular_file(of_file)) paths.push_back(at->path().string());
+    if (is_sheet && at->is_regular_file(of_file)) paths.push_back(from_native(at->path()));
   }
   if (error) problems.push_back(fmt::format("{}: {}", folder, error.message()));
   std::ranges::sort(paths);

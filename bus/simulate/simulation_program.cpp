@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "system/path.hpp"
 #include "system/run_program.hpp"
 
 namespace edsc {
@@ -45,6 +46,8 @@ std::string compile(const std::vector<std::string>& arguments) {
   return fmt::format("{} has failed:\n{}", name, outcome->errors);
 }
 
+std::string object_file(const std::string& source) { return from_native(to_native(source).replace_extension(".o")); }
+
 /// Compiles one source after the other, with another thread for each further processor.
 class Compilation {
  public:
@@ -65,9 +68,9 @@ class Compilation {
  private:
   void work() {
     for (std::size_t i = 0; (i = next_++) < build_.sources.size();) {
-      const fs::path source = fs::path{build_.folder} / build_.sources[i];
+      const std::string source = join_path(build_.folder, build_.sources[i]);
       std::string error = compile({"-std=c++20", "-O2", "-I" + build_.folder, "-I" + build_.include_folder, "-c",
-                                   source.string(), "-o", fs::path{source}.replace_extension(".o").string()});
+                                   source, "-o", object_file(source)});
       const std::scoped_lock lock{mutex_};
       if (error.empty()) {
         progress_(++done_);
@@ -93,7 +96,7 @@ std::string runtime_include_folder() {
   for (fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path(); !error && folder.has_relative_path();
        folder = folder.parent_path()) {
     for (const char* const include : {"include/edsc", "runtime/include"}) {
-      if (fs::exists(folder / include / runtime_header, error)) return (folder / include).string();
+      if (fs::exists(folder / include / runtime_header, error)) return from_native(folder / include);
     }
     error.clear();
   }
@@ -102,11 +105,11 @@ std::string runtime_include_folder() {
 
 std::string build_simulation(const SimulationBuild& build, const std::function<void(std::size_t)>& progress) {
   std::string error = Compilation{build, progress}.run();
-  const std::string program = fs::absolute(fs::path{build.folder} / "simulate").string();
+  const std::string program = from_native(fs::absolute(to_native(join_path(build.folder, "simulate"))));
   if (error.empty()) {
     std::vector<std::string> arguments{"-o", program};
     for (const std::string& source : build.sources) {
-      arguments.push_back((fs::path{build.folder} / source).replace_extension(".o").string());
+      arguments.push_back(object_file(join_path(build.folder, source)));
     }
     error = compile(arguments);
   }

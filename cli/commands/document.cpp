@@ -13,6 +13,7 @@
 #include "shared/exit_code.hpp"
 #include "shared/git_device.hpp"
 #include "shared/output.hpp"
+#include "system/path.hpp"
 
 namespace edsc {
 namespace {
@@ -64,8 +65,7 @@ std::unique_ptr<LoadedDevice> load_older(const Settings& settings, std::vector<s
 
 std::string name_of_older(const Settings& settings, const LoadedDevice& older) {
   if (names_git_revision(settings.against)) return settings.against;
-  const std::string& path = older.source->name();
-  return path.substr(path.find_last_of('/') + 1);
+  return std::string{file_name_of(older.source->name())};
 }
 
 int document_device(const Settings& settings) {

@@ -17,6 +17,7 @@
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/output.hpp"
+#include "system/path.hpp"
 #include "text/printable.hpp"
 #include "text/source_file.hpp"
 #include "xdd/read_xdd.hpp"
@@ -85,11 +86,11 @@ void convert(const Settings& settings, Input& input, Diagnostics& diagnostics) {
                      fmt::format("{} cannot be expressed in the {}; it is left out", lost.what, format));
   }
   input.has_values_for_eds = sheet.is_dcf && ends_with_ignoring_case(settings.output, ".eds");
-  std::filesystem::path path = settings.output.empty() ? settings.paths.front() : settings.output;
+  std::filesystem::path path = to_native(settings.output.empty() ? settings.paths.front() : settings.output);
   if (settings.output.empty()) path.replace_extension(sheet.is_dcf ? ".dcf" : ".eds");
   input.source =
       std::make_unique<SourceFile>(sheet.is_dcf && !sheet.commissioning.present ? "converted.dcf" : "converted.eds",
-                                   to_text(document_of(sheet, path.filename().string())));
+                                   to_text(document_of(sheet, from_native(path.filename()))));
 }
 
 std::string canonical_text(const Settings& settings, const Input& input) {
@@ -134,7 +135,7 @@ int check(const SourceFile& source, const std::string& text) {
 /// Whether `path` is the file that was read, by any of its names.
 bool is_file_of(const SourceFile& source, const std::string& path) {
   std::error_code error;
-  return std::filesystem::equivalent(source.name(), path, error);
+  return std::filesystem::equivalent(to_native(source.name()), to_native(path), error);
 }
 
 void write(const Settings& settings, const SourceFile& source, const std::string& path, std::string content) {

@@ -15,6 +15,7 @@
 #include "shared/exit_code.hpp"
 #include "shared/left_out_text.hpp"
 #include "shared/output.hpp"
+#include "system/path.hpp"
 #include "system/write_files.hpp"
 #include "text/depfile.hpp"
 #include "text/printable.hpp"
@@ -77,11 +78,11 @@ std::vector<ChosenTemplate> choose_templates(const std::string& folder) {
   std::vector<ChosenTemplate> chosen;
   for (const Template& built_in : built_in_templates()) {
     ChosenTemplate one{built_in, nullptr};
-    const fs::path path = fs::path{folder} / (std::string{built_in.file_name} + ".mustache");
-    if (!folder.empty() && fs::exists(path)) {
+    const std::string path = join_path(folder, std::string{built_in.file_name} + ".mustache");
+    if (!folder.empty() && fs::exists(to_native(path))) {
       std::string error;
-      one.replacement = read_source_file(path.string(), error);
-      if (!one.replacement) throw std::runtime_error{path.string() + ": " + error};
+      one.replacement = read_source_file(path, error);
+      if (!one.replacement) throw std::runtime_error{path + ": " + error};
     }
     chosen.push_back(std::move(one));
   }
@@ -95,14 +96,14 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
   const auto templates = choose_templates(settings.templates);
   loaded.sheet = {};
   const auto view = cpp_view(loaded.named(), loaded.options, diagnostics);
-  const fs::path folder = fs::path{settings.output} / loaded.names->space();
+  const std::string folder = join_path(settings.output, loaded.names->space());
   loaded.device.reset();
   std::vector<OutputFile> files;
   inputs = {settings.load.path};
   if (loaded.options_source) inputs.push_back(loaded.options_source->name());
   for (const ChosenTemplate& one : templates) {
     if (!is_needed(one.built_in, view)) continue;
-    files.push_back({(folder / one.built_in.file_name).string(), one.rendered(view)});
+    files.push_back({join_path(folder, one.built_in.file_name), one.rendered(view)});
     if (one.replacement) inputs.push_back(one.replacement->name());
   }
   if (!settings.depfile.empty())

@@ -1,10 +1,10 @@
 #include "shared/git_device.hpp"
 
-#include <filesystem>
 #include <utility>
 
 #include "backend/cpp/identifier.hpp"
 #include "diagnostics/rule.hpp"
+#include "system/path.hpp"
 
 namespace edsc {
 
@@ -13,7 +13,7 @@ std::unique_ptr<LoadedDevice> load_git_device(GitFile committed, const std::stri
   auto loaded = std::make_unique<LoadedDevice>();
   loaded->source = std::move(committed.source);
   if (settings.keep_going) diagnostics.keep_going(loaded->source.get(), fatal_rules());
-  const std::string options_path = std::filesystem::path{settings.path}.replace_extension(".options.json").string();
+  const std::string options_path = from_native(to_native(settings.path).replace_extension(".options.json"));
   loaded->options_source = read_git_file(revision, options_path).source;
   if (loaded->options_source) loaded->options = read_options(*loaded->options_source, is_identifier, diagnostics);
   silence_by_options(*loaded, diagnostics);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "system/path.hpp"
 #include "system/run_program.hpp"
 #include "text/gzip.hpp"
 
@@ -29,11 +30,11 @@ std::optional<ProgramOutcome> run_git(std::vector<std::string> arguments) {
 std::pair<std::vector<std::string>, std::string> place_of(const std::string& path) {
   std::error_code error;
   if (std::getenv("GIT_DIR") != nullptr) {
-    const fs::path relative = fs::relative(path, error);
-    return {{}, "./" + (error ? path : relative.string())};
+    const fs::path relative = fs::relative(to_native(path), error);
+    return {{}, "./" + (error ? path : from_native(relative))};
   }
-  const fs::path folder = fs::path{path}.parent_path();
-  return {{"-C", folder.empty() ? "." : folder.string()}, "./" + fs::path{path}.filename().string()};
+  const std::string folder = from_native(to_native(path).parent_path());
+  return {{"-C", folder.empty() ? "." : folder}, "./" + from_native(to_native(path).filename())};
 }
 
 std::string first_line(std::string_view text) { return std::string{text.substr(0, text.find('\n'))}; }

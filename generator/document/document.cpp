@@ -8,10 +8,13 @@
 #include "backend/render.hpp"
 #include "backend/template_parts.hpp"
 #include "document/views.hpp"
+#include "system/path.hpp"
 #include "text/counted.hpp"
 
 namespace edsc {
 namespace {
+
+namespace fs = std::filesystem;
 
 using document::Json;
 
@@ -34,31 +37,33 @@ std::string rendered(std::string_view name, Json view, DocumentFormat format) {
 }
 
 /// The file of the page of a node, beside that of the network: `plant-axis1.html`.
-std::filesystem::path node_page(const std::filesystem::path& network_page, const NetworkNode& node) {
-  std::filesystem::path name = network_page.stem();
-  name += "-" + node.name;
-  name += network_page.extension();
-  return network_page.parent_path() / name;
+std::string node_page(const std::string& network_page, const NetworkNode& node) {
+  const fs::path page = to_native(network_page);
+  fs::path name = page.stem();
+  name += to_native("-" + node.name);
+  name += page.extension();
+  return from_native(page.parent_path() / name);
 }
 
 /// `page` is that of the network if its nodes have pages, otherwise empty.
-Json node_view(const NetworkNode& node, const std::filesystem::path& page) {
+Json node_view(const NetworkNode& node, const std::string& page) {
   const Device& device = node.device();
   return {{"name", node.name},
-          {"page", page.empty() ? Json(nullptr) : Json(document::url_of(node_page(page, node).filename().string()))},
+          {"page", page.empty() ? Json(nullptr)
+                                : Json(document::url_of(from_native(to_native(node_page(page, node)).filename())))},
           {"node_id", node.node_id},
           {"role", node.is_master ? "NMT master" : ""},
           {"vendor", device.vendor_name},
           {"product", device.product_name},
-          {"file", node.has_file() ? document::file_name_of(device.source->name()) : "generated"},
+          {"file", node.has_file() ? file_name_of(device.source->name()) : "generated"},
           {"settings", node.settings.size()}};
 }
 
 std::string network_document(const Network& network, const Diagnostics& diagnostics, DocumentFormat format,
-                             const std::filesystem::path& page) {
+                             const std::string& page) {
   Json view;
-  view["source"] = document::file_name_of(network.source->name());
-  view["page_title"] = document::file_name_of(network.source->name()) + ", CANopen network";
+  view["source"] = file_name_of(network.source->name());
+  view["page_title"] = std::string{file_name_of(network.source->name())} + ", CANopen network";
   view["bit_rate"] = network.description.bit_rate ? Json(network.description.bit_rate->value) : Json(nullptr);
   view["length"] = network.description.length_m ? Json(network.description.length_m->value) : Json(nullptr);
   view["node_count"] = counted(network.nodes.size(), "node");
@@ -91,13 +96,13 @@ std::string document_of(const Network& network, const Diagnostics& diagnostics, 
 
 std::vector<OutputFile> documents_of(const Network& network, const Diagnostics& diagnostics, DocumentFormat format,
                                      const std::string& path) {
-  const std::string name = document::file_name_of(network.source->name());
+  const std::string name{file_name_of(network.source->name())};
   std::vector<OutputFile> files{{path, network_document(network, diagnostics, format, path)}};
   for (const NetworkNode& node : network.nodes) {
-    const NodeOfNetwork in_network{node, name, document::file_name_of(path)};
+    const NodeOfNetwork in_network{node, name, std::string{file_name_of(path)}};
     DeviceToDocument device{*node.loaded};
     device.node = &in_network;
-    files.push_back({node_page(path, node).string(), document_of(device, format)});
+    files.push_back({node_page(path, node), document_of(device, format)});
   }
   return files;
 }

@@ -2,6 +2,7 @@
 
 #include "compare/print_changes.hpp"
 #include "document/views.hpp"
+#include "system/path.hpp"
 #include "text/counted.hpp"
 
 namespace edsc::document {
@@ -12,7 +13,7 @@ std::string line_text(const Position& position) {
 }
 
 std::string place_text(const Position& position) {
-  const std::string file = position.file == nullptr ? std::string{} : file_name_of(position.file->name());
+  const std::string file = position.file == nullptr ? std::string{} : std::string{file_name_of(position.file->name())};
   return position.line == 0 ? file : fmt::format("{}:{}", file, position.line);
 }
 

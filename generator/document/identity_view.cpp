@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "document/views.hpp"
+#include "system/path.hpp"
 
 namespace edsc::document {
 namespace {
@@ -136,7 +137,8 @@ Json bit_rate_rows(const Device& device) {
 
 void add_identity(const DeviceToDocument& input, Json& view) {
   const Device& device = input.device();
-  view["title"] = device.product_name.empty() ? file_name_of(device.source->name()) : device.product_name;
+  view["title"] =
+      device.product_name.empty() ? file_name_of(device.source->name()) : std::string_view{device.product_name};
   view["network"] = nullptr;
   if (input.node != nullptr) {
     view["title"] = input.node->node.name;

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <cstddef>
-#include <filesystem>
 #include <string_view>
 #include <utility>
 
 #include "backend/render.hpp"
 #include "backend/template_parts.hpp"
 #include "document/views.hpp"
+#include "system/path.hpp"
 
 namespace edsc {
 namespace {
@@ -63,7 +63,7 @@ std::string svg(std::string_view section, std::string title, const Json& drawing
 }  // namespace
 
 std::vector<OutputFile> network_drawings(const Network& network) {
-  const std::string name = std::filesystem::path{network.source->name()}.stem().string();
+  const std::string name{stem_of(network.source->name())};
   std::vector<OutputFile> files;
   files.push_back({name + ".svg", svg("topology", name, document::topology_drawing(network), "topology")});
   const Json cycle = document::cycle_drawing(network);

@@ -25,8 +25,6 @@ std::string_view without_semicolons(std::string_view line) {
 
 }  // namespace
 
-std::string file_name_of(std::string_view path) { return std::string{path.substr(path.find_last_of("/\\") + 1)}; }
-
 std::string url_of(std::string_view file_name) {
   constexpr std::string_view unreserved = "-._~";  // RFC 3986, 2.3, with letters and digits
   std::string url;

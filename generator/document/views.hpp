@@ -26,9 +26,6 @@ inline void add_property(Json& rows, std::string_view name, std::string_view val
   if (!value.empty()) rows.push_back(property(name, value));
 }
 
-/// The name of a file without its folders.
-[[nodiscard]] std::string file_name_of(std::string_view path);
-
 /// The name of a file as a relative URL.
 [[nodiscard]] std::string url_of(std::string_view file_name);
 

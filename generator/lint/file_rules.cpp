@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <string_view>
 
 #include "diagnostics/quote.hpp"
@@ -9,6 +8,7 @@
 #include "eds/number.hpp"
 #include "lint/baud_rates.hpp"
 #include "lint/rule_groups.hpp"
+#include "system/path.hpp"
 #include "text/ascii.hpp"
 #include "text/source_file.hpp"
 #include "text/utf8.hpp"
@@ -72,7 +72,7 @@ void check_file_name(const RuleContext& context) {
     context.report("file-name", context.sheet.file_info.position, "missing FileName");
     return;
   }
-  const std::string name = std::filesystem::path{context.device.source->name()}.filename().string();
+  const std::string_view name = file_name_of(context.device.source->name());
   if (name == "-" || equal_ignoring_case(field.text, name)) return;
   context.report("file-name", field.position,
                  fmt::format("FileName is {}, but the name of the file is {}", quote(field.text), quote(name)));

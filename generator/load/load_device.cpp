@@ -18,6 +18,7 @@
 #include "eds/allow_comments.hpp"
 #include "eds/ini.hpp"
 #include "lint/check_device.hpp"
+#include "system/path.hpp"
 #include "xdd/read_xdd.hpp"
 
 namespace edsc {
@@ -28,9 +29,9 @@ namespace fs = std::filesystem;
 /// The options file of an EDS: `drive.options.json` beside `drive.eds`.
 std::string options_path_of(const LoadSettings& settings) {
   if (!settings.options_path.empty()) return settings.options_path;
-  const fs::path beside = fs::path{settings.path}.replace_extension(".options.json");
+  const fs::path beside = to_native(settings.path).replace_extension(".options.json");
   std::error_code error;
-  return fs::is_regular_file(beside, error) ? beside.string() : "";
+  return fs::is_regular_file(beside, error) ? from_native(beside) : "";
 }
 
 std::unique_ptr<SourceFile> read_or_report(const std::string& path, LoadedDevice& loaded, Diagnostics& diagnostics) {

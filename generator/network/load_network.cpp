@@ -13,6 +13,7 @@
 #include "network/master_sheet.hpp"
 #include "network/network.hpp"
 #include "network/node_settings.hpp"
+#include "system/path.hpp"
 
 namespace edsc {
 namespace {
@@ -86,10 +87,10 @@ class NetworkLoader {
 
   /// Without `..`, unless a symlink makes that another file.
   [[nodiscard]] std::string beside_network_file(const std::string& name) const {
-    const fs::path path = fs::path{network_.source->name()}.parent_path() / name;
+    const fs::path path = to_native(network_.source->name()).parent_path() / to_native(name);
     const fs::path normal = path.lexically_normal();
     std::error_code missing;
-    return (fs::equivalent(path, normal, missing) ? normal : path).string();
+    return from_native(fs::equivalent(path, normal, missing) ? normal : path);
   }
 
   void report_errors(const Diagnostics& of_file, const Position& file, const LoadedDevice& loaded) {

@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <system_error>
 
+#include "system/path.hpp"
+
 namespace edsc {
 
 namespace fs = std::filesystem;
 
 TemporaryFolder::TemporaryFolder(const std::string& prefix)
-    : path_{(fs::temp_directory_path() / (prefix + "XXXXXX")).string()} {
+    : path_{from_native(fs::temp_directory_path() / to_native(prefix + "XXXXXX"))} {
   if (mkdtemp(path_.data()) == nullptr) {
     throw std::system_error{errno, std::generic_category(), "cannot create a temporary folder " + path_};
   }
@@ -18,7 +20,7 @@ TemporaryFolder::TemporaryFolder(const std::string& prefix)
 
 TemporaryFolder::~TemporaryFolder() {
   std::error_code ignored;
-  fs::remove_all(path_, ignored);
+  fs::remove_all(to_native(path_), ignored);
 }
 
 }  // namespace edsc

@@ -21,6 +21,7 @@
 #include <system_error>
 #include <utility>
 
+#include "system/path.hpp"
 #include "system/write_all.hpp"
 
 namespace edsc {
@@ -51,7 +52,7 @@ std::optional<int> own_descriptor(const fs::path& path) {
 /// One file to write.
 class Target {
  public:
-  explicit Target(const OutputFile& file) : file_{&file}, path_{file.path} {}
+  explicit Target(const OutputFile& file) : file_{&file}, path_{to_native(file.path)} {}
 
   /// Follows symlinks and examines the target. Does not change anything.
   [[nodiscard]] std::string find() {
@@ -74,7 +75,7 @@ class Target {
   [[nodiscard]] std::string make_folder() const {
     std::error_code error;
     fs::create_directories(folder(), error);
-    return error ? folder().string() + ": " + error.message() : "";
+    return error ? from_native(folder()) + ": " + error.message() : "";
   }
 
   /// The message if it is the file of `input`, also by a hard link or symlink.
@@ -178,7 +179,7 @@ class Target {
   Descriptor make_temporary() {
     std::random_device random;
     for (int i = 0; i < max_names; ++i) {
-      const std::string path = (folder() / fmt::format(".edsc-{:08x}{:08x}", random(), random())).string();
+      const std::string path = from_native(folder() / fmt::format(".edsc-{:08x}{:08x}", random(), random()));
       Descriptor out{::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666)};
       if (out) temporary_ = path;
       if (out || errno != EEXIST) return out;

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "system/path.hpp"
 #include "text/code_page.hpp"
 #include "text/gzip.hpp"
 #include "text/utf8.hpp"
@@ -82,8 +83,8 @@ std::string read_all(std::FILE* file, std::string& bytes) {
 
 std::string read_file(const std::string& path, std::string& bytes) {
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(path, ignored)) {
-    const std::uintmax_t size = std::filesystem::file_size(path, ignored);
+  if (const std::filesystem::path native = to_native(path); std::filesystem::is_regular_file(native, ignored)) {
+    const std::uintmax_t size = std::filesystem::file_size(native, ignored);
     if (!ignored && size > SourceFile::max_bytes) {
       return std::string(too_large);
     }
@@ -174,7 +175,7 @@ std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::strin
   const bool is_standard_input = path == "-";
   std::string bytes;
   std::string why = is_standard_input ? read_all(stdin, bytes) : read_file(path, bytes);
-  const std::string name = is_standard_input ? "<stdin>" : path;
+  const std::string name = is_standard_input ? "<stdin>" : from_native(to_native(path));
   const Packing packing = is_gzip(bytes) ? Packing::gzip : Packing::none;
   if (why.empty() && packing == Packing::gzip) {
     const std::string file = std::move(bytes);

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
 #include <string>
 
@@ -14,6 +13,7 @@
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/output.hpp"
+#include "system/path.hpp"
 #include "text/depfile.hpp"
 #include "text/printable.hpp"
 
@@ -43,7 +43,7 @@ int generate(const Settings& settings) {
   for (const std::string& note : generated.notes) print_visibly(stderr, "edsc: not in the DBC file: {}\n", note);
   std::vector<OutputFile>& files = generated.files;
   std::ranges::move(network_drawings(loaded->network), std::back_inserter(files));
-  for (OutputFile& file : files) file.path = (std::filesystem::path{settings.output} / file.path).string();
+  for (OutputFile& file : files) file.path = join_path(settings.output, file.path);
   if (!settings.depfile.empty()) {
     files.push_back({settings.depfile, depfile_text(settings.depfile_target, files, generated.inputs)});
   }

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <optional>
 
 #include "commands/commands.hpp"
@@ -11,6 +10,7 @@
 #include "shared/live_options.hpp"
 #include "shared/output.hpp"
 #include "shared/with_bus.hpp"
+#include "system/path.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
 
@@ -34,7 +34,7 @@ int scan_network(LiveBus& bus, const Settings& settings, const SheetFolder& shee
   scan(bus, settings.scan.parsed(), found);
   if (found.empty()) fail("no node answers on " + settings.bus, exit_device_failed);
   DescribeSettings describe;
-  describe.folder = std::filesystem::path{settings.output}.parent_path().string();
+  describe.folder = from_native(to_native(settings.output).parent_path());
   describe.bit_rate = settings.bit_rate;
   const DescribedNetwork network = describe_network(found, sheets.files, describe);
   std::vector<std::string> inputs;

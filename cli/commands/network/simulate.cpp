@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -21,13 +20,12 @@
 #include "simulate/simulation_fault.hpp"
 #include "simulate/simulation_program.hpp"
 #include "simulate/simulation_report.hpp"
+#include "system/path.hpp"
 #include "system/temporary_folder.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr const char* examples = R"(Examples:
   edsc network simulate plant.json                                load and response times of a minute
@@ -77,7 +75,7 @@ SimulationResult run(const Settings& settings, SimulationSource source, Simulati
   const std::string include_folder =
       settings.include_folder.empty() ? runtime_include_folder() : settings.include_folder;
   if (include_folder.empty()) fail("cannot find the headers of the runtime; --runtime names their folder");
-  for (OutputFile& file : source.files) file.path = (fs::path{folder} / file.path).string();
+  for (OutputFile& file : source.files) file.path = join_path(folder, file.path);
   write_all_files(source.files);
   const std::size_t sources = source.sources.size();
   ProgressLine progress;

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "backend/cpp/identifier.hpp"
 #include "backend/cpp/placement.hpp"
+#include "system/path.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {
@@ -22,8 +21,7 @@ std::string identifier(const Options& options, std::string_view name, std::uint1
 }  // namespace
 
 CppNames::CppNames(const Device& device, const Options& options, std::string_view space)
-    : space_{space.empty() ? to_namespace(std::filesystem::path{device.source->name()}.stem().string())
-                           : std::string{space}} {
+    : space_{space.empty() ? to_namespace(stem_of(device.source->name())) : std::string{space}} {
   IdentifierScope scope;
   for (const Object& object : device.objects) {
     const std::string& name = objects_[object.index] =

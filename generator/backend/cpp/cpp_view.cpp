@@ -10,6 +10,7 @@
 #include "backend/cpp/json_object.hpp"
 #include "backend/cpp/views.hpp"
 #include "device/stored_eds.hpp"
+#include "system/path.hpp"
 #include "text/ascii.hpp"
 #include "text/source_file.hpp"
 
@@ -71,14 +72,13 @@ ordered_json description_rows(const Device& device) {
 ordered_json cpp_view(const NamedDevice& named, const Options& options, Diagnostics& diagnostics) {
   const Device& device = named.device;
   const std::string& space = named.names.space();
-  const std::string& path = device.source->name();
   const auto table = [](ordered_json rows) {
     const bool any_row = !rows.empty();
     return json_object("any", any_row, "rows", std::move(rows));
   };
   OptionsView view = options_view(device, options);
   return json_object(
-      "file", cpp_comment(path.substr(path.find_last_of('/') + 1)), "namespace", space, "guard",
+      "file", cpp_comment(file_name_of(device.source->name())), "namespace", space, "guard",
       upper_case("edsc_" + space), "product_name",
       cpp_string(device.product_name.empty() ? space : device.product_name), "types", object_types_view(named, options),
       "object_rows", object_rows_view(named), "memory", layout_view(lay_out(named, options, diagnostics)),

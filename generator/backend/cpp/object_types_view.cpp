@@ -12,6 +12,7 @@
 #include "backend/cpp/json_object.hpp"
 #include "backend/cpp/placement.hpp"
 #include "device/drive_modes.hpp"
+#include "system/path.hpp"
 #include "text/source_file.hpp"
 #include "text/utf8.hpp"
 
@@ -63,8 +64,7 @@ class ObjectTypes {
  public:
   ObjectTypes(const NamedDevice& named, const Options& options)
       : device_{named.device}, names_{named.names}, options_{options} {
-    const std::string& path = device_.source->name();
-    file_ = cpp_comment(path.substr(path.find_last_of('/') + 1));
+    file_ = cpp_comment(file_name_of(device_.source->name()));
     for (const Object& object : device_.objects) static_cast<void>(scope_.take(names_.of(object), ""));
   }
 

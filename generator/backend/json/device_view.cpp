@@ -8,6 +8,7 @@
 #include "backend/json/information_view.hpp"
 #include "backend/json/replaced_default.hpp"
 #include "device/types/value_bytes.hpp"
+#include "system/path.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {
@@ -176,8 +177,7 @@ ordered_json device_view(const NamedDevice& named) {
   const auto& [device, names] = named;
   ordered_json view;
   view["schema"] = 2;
-  const std::string& path = device.source->name();
-  view["source"] = path.substr(path.find_last_of('/') + 1);
+  view["source"] = file_name_of(device.source->name());
   view["name"] = names.space();
   view["vendor_name"] = device.vendor_name;
   view["vendor_number"] = device.vendor_number;

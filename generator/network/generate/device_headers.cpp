@@ -1,7 +1,6 @@
 #include "network/generate/device_headers.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -9,6 +8,7 @@
 
 #include "backend/cpp/headers.hpp"
 #include "backend/cpp/identifier.hpp"
+#include "system/path.hpp"
 
 namespace edsc {
 namespace {
@@ -43,7 +43,7 @@ class HeaderWriter {
     const std::string options = node.loaded->options_source ? node.loaded->options_source->name() : "";
     std::string& name = sheets_[{path, options, keeps_going}];
     if (!name.empty()) return name;
-    name = namespaces_.take(to_namespace(std::filesystem::path{path}.stem().string()), "device");
+    name = namespaces_.take(to_namespace(stem_of(path)), "device");
     add(device_for(*node.loaded, std::nullopt, keeps_going), node.loaded->options, name);
     return name;
   }

@@ -1,7 +1,6 @@
 #include "network/generate/generate_network.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
 #include <utility>
 
@@ -11,6 +10,7 @@
 #include "network/generate/network_dot.hpp"
 #include "network/generate/node_dcf.hpp"
 #include "network/generate/plant_header.hpp"
+#include "system/path.hpp"
 
 namespace edsc {
 namespace {
@@ -50,7 +50,7 @@ GeneratedNetwork generate_network(const Network& network, Diagnostics& diagnosti
     parts.concise_dcfs.push_back(dcf.concise);
     generated.files.push_back({node_file(node, "cdcf"), std::move(dcf.concise)});
   }
-  const std::string name = std::filesystem::path{network.source->name()}.stem().string();
+  const std::string name{stem_of(network.source->name())};
   Dbc dbc = dbc_of(network);
   generated.files.push_back({name + ".dbc", std::move(dbc.text)});
   generated.files.push_back({name + ".dot", network_dot(network)});

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <string_view>
 #include <vector>
 
 #include "network/cob_id_use.hpp"
 #include "network/generate/plant_links.hpp"
+#include "system/path.hpp"
 
 namespace edsc {
 namespace {
@@ -46,7 +46,7 @@ std::string objects(const NetworkNode& node, const Pdo& pdo) {
 }  // namespace
 
 std::string network_dot(const Network& network) {
-  const std::string name = std::filesystem::path{network.source->name()}.stem().string();
+  const std::string name{stem_of(network.source->name())};
   std::string text = fmt::format("digraph \"{}\" {{\n  rankdir=LR;\n  node [shape=box];\n", escaped(name));
   for (const NetworkNode& node : network.nodes) text += box(network, node);
   const std::vector<CobIdUse> uses = cob_id_uses(network);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -20,11 +19,10 @@
 #include "format/dcf/parameter_text.hpp"
 #include "format/sheet_document.hpp"
 #include "network/communication_objects.hpp"
+#include "system/path.hpp"
 
 namespace edsc {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// An EDS or DCF as text, read.
 struct ReadSheet {
@@ -151,7 +149,7 @@ class NodeDcfMaker {
 
   void complete_commissioning(DocumentSection& section) const {
     set_key(section, "NodeName", line_of(node_.name));
-    set_key(section, "NetworkName", line_of(fs::path{network_.source->name()}.stem().string()));
+    set_key(section, "NetworkName", line_of(std::string{stem_of(network_.source->name())}));
     set_key(section, "CANopenManager", node_.is_master ? "1" : "0");
     if (const WrittenNumber& serial = node_.description->serial_number) {
       set_key(section, "LSS_SerialNumber", fmt::format("{}", serial->value));

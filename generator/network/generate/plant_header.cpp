@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -22,6 +21,7 @@
 #include "network/error_control.hpp"
 #include "network/generate/plant_links.hpp"
 #include "network/generate/plant_places.hpp"
+#include "system/path.hpp"
 #include "text/ascii.hpp"
 
 namespace edsc {
@@ -41,9 +41,7 @@ ordered_json with_separators(ordered_json rows, std::string_view separator) {
 }
 
 /// The name of the network file without its folders.
-std::string file_comment(const Network& network) {
-  return cpp_comment(std::filesystem::path{network.source->name()}.filename().string());
-}
+std::string file_comment(const Network& network) { return cpp_comment(file_name_of(network.source->name())); }
 
 /// The names of a node that are not available for its signals: members of canopen::PlantNodeAccess.
 constexpr std::string_view access_members[] = {"boot", "booted", "node_id", "plant", "state"};
@@ -93,7 +91,7 @@ class PlantHeader {
   }
   [[nodiscard]] static std::string label(const NetworkNode& node) {
     const std::string& path = node.loaded->source->name();
-    const std::string file = node.has_file() ? path.substr(path.find_last_of('/') + 1) : "no EDS";
+    const std::string file = node.has_file() ? std::string{file_name_of(path)} : "no EDS";
     return cpp_comment(fmt::format("{}: node-ID {}, {}", node.name, node.node_id, file));
   }
 

@@ -1,7 +1,6 @@
 #include "network/generate/plant_places.hpp"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <utility>
 
@@ -9,6 +8,7 @@
 #include "format/dcf/concise_dcf.hpp"
 #include "format/dcf/configured_values.hpp"
 #include "network/communication_objects.hpp"
+#include "system/path.hpp"
 
 namespace edsc {
 namespace {
@@ -80,7 +80,7 @@ class PlantPlaces {
   /// As the network file names it, so that the header does not depend on the folder of the build.
   [[nodiscard]] std::string file_text(const SourceFile* file) const {
     if (file == nullptr) return {};
-    if (file == network_.source.get()) return std::filesystem::path{file->name()}.filename().string();
+    if (file == network_.source.get()) return std::string{file_name_of(file->name())};
     for (const NetworkNode& one : network_.nodes) {
       if (!one.has_file() || one.loaded->source.get() != file) continue;
       return one.description->dcf ? one.description->dcf->value : one.description->eds->value;

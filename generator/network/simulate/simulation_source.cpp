@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <canopen/can/cob_id.hpp>
 #include <chrono>
-#include <filesystem>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -19,6 +18,7 @@
 #include "backend/cpp/identifier.hpp"
 #include "network/generate/node_dcf.hpp"
 #include "network/simulate/changing_objects.hpp"
+#include "system/path.hpp"
 
 namespace edsc {
 namespace {
@@ -83,7 +83,7 @@ class SourceWriter {
                         loaded.sheet.is_dcf ? node.node_id : 0};
     const auto known = devices_.find(key);
     if (known != devices_.end()) return known->second;
-    const std::string name = unique_name(to_namespace(std::filesystem::path{loaded.source->name()}.stem().string()));
+    const std::string name = unique_name(to_namespace(stem_of(loaded.source->name())));
     devices_.emplace(key, name);
     add_device(node, name, keep_going);
     return name;

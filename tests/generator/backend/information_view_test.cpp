@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "backend/cpp/cpp_view.hpp"
 #include "backend/json/device_view.hpp"
+#include "diagnostics/diagnostics.hpp"
 #include "support/device_from_text.hpp"
 
 namespace edsc {
@@ -16,6 +18,15 @@ using nlohmann::json;
 json sections_view(const std::string& sections) {
   const DeviceFromText text(sections + var("2000", "Value", "5"));
   return device_view(text.named());
+}
+
+TEST(InformationView, HasTheNameOfTheFileWithoutFolders) {
+  for (const std::string path : {"drive \xC3\xA4.eds", "/eds/drive \xC3\xA4.eds", "C:\\EDS\\drive \xC3\xA4.eds"}) {
+    const DeviceFromText text(var("2000", "Value", "5"), {}, {}, path);
+    Diagnostics diagnostics;
+    EXPECT_EQ(device_view(text.named())["source"], "drive \xC3\xA4.eds") << path;
+    EXPECT_EQ(cpp_view(text.named(), {}, diagnostics)["file"], "drive \xC3\xA4.eds") << path;
+  }
 }
 
 TEST(InformationView, HasTheFileInfoAsWritten) {

@@ -49,6 +49,8 @@ TEST(Names, OfTheDeviceComeFromTheFile) {
     return DeviceFromText(var("2000", "V", "5"), {}, {}, file).names.space();
   };
   EXPECT_EQ(name_of("drives/EZD-1136.eds"), "ezd_1136");
+  EXPECT_EQ(name_of(R"(C:\Drives\EZD-1136.eds)"), "ezd_1136");
+  EXPECT_EQ(name_of("C:EZD-1136.eds"), "ezd_1136");
   EXPECT_EQ(name_of("1.eds"), "n_1");
   EXPECT_EQ(name_of("---.eds"), "device");
   EXPECT_EQ(name_of("namespace.eds"), "namespace_");

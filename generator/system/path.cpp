@@ -1,0 +1,39 @@
+#include "system/path.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace edsc {
+
+namespace fs = std::filesystem;
+
+fs::path to_native(std::string_view path) { return fs::path{std::u8string{path.begin(), path.end()}}; }
+
+// generic_u8string() also drops one of two slashes.
+std::string from_native(const fs::path& path) {
+  return with_slashes(path.u8string(), static_cast<char>(fs::path::preferred_separator));
+}
+
+std::string with_slashes(std::u8string_view path, char separator) {
+  std::string text{path.begin(), path.end()};
+  std::ranges::replace(text, separator, '/');
+  return text;
+}
+
+std::string join_path(std::string_view folder, std::string_view name) {
+  return from_native(to_native(folder) / to_native(name));
+}
+
+std::string_view file_name_of(std::string_view path) {
+  const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+  if (path.size() >= 2 && path[1] == ':' && is_letter(path[0])) path.remove_prefix(2);
+  return path.substr(path.find_last_of("/\\") + 1);
+}
+
+std::string_view stem_of(std::string_view path) {
+  const std::string_view name = file_name_of(path);
+  const std::size_t dot = name.rfind('.');
+  return dot == 0 || name == ".." ? name : name.substr(0, dot);
+}
+
+}  // namespace edsc
