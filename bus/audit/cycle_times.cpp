@@ -106,7 +106,7 @@ void CycleTimes::see(const SeenMessage& seen, const AuditState& audit) {
   if (!seen.at.has_time || seen.frame.remote) return;
   switch (message.service) {
     case Service::sync: return see_sync(seen, audit);
-    case Service::heartbeat: return message.state.empty() ? void() : see_heartbeat(seen, audit);
+    case Service::heartbeat: return message.state ? see_heartbeat(seen, audit) : void();
     case Service::tpdo: return see_tpdo(seen, audit);
     case Service::rpdo:
       (void)count({message.node_id, CycleKind::rpdo, message.number, std::nullopt}, seen, audit.times_since);

@@ -205,7 +205,7 @@ void Decoder::decode_error_control(const Frame& frame, Message& message) {
     message.problem = true;
     return;
   }
-  message.state = canopen::to_text(found->state);
+  message.state = found->state;
   if (found->state == canopen::NmtState::initialisation && !found->toggle) {
     message.service = Service::boot_up;
     message.text += "boot-up";
@@ -213,7 +213,7 @@ void Decoder::decode_error_control(const Frame& frame, Message& message) {
     if (model != nullptr && model->reset()) find_routes();
     return;
   }
-  message.text += message.state;
+  message.text += canopen::to_text(found->state);
   if (!was_asked && !found->toggle) return;
   message.service = Service::guarding;
   message.text += found->toggle ? ", toggle 1" : ", toggle 0";

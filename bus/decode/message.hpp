@@ -2,8 +2,10 @@
 #pragma once
 
 #include <canopen/can/frame.hpp>
+#include <canopen/nmt/nmt.hpp>
 #include <canopen/od/data_type.hpp>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -101,11 +103,11 @@ struct Message {
   std::string text;
   std::vector<MessageValue> values;
 
-  std::string_view command;         ///< of NMT
-  std::string_view state;           ///< of boot-up, heartbeat, guarding
-  std::uint16_t error_code = 0;     ///< of EMCY
-  std::uint8_t error_register = 0;  ///< of EMCY
-  std::int16_t counter = -1;        ///< of SYNC, if present
+  std::optional<canopen::NmtCommand> command;  ///< of NMT
+  std::optional<canopen::NmtState> state;      ///< of boot-up, heartbeat, guarding
+  std::uint16_t error_code = 0;                ///< of EMCY
+  std::uint8_t error_register = 0;             ///< of EMCY
+  std::int16_t counter = -1;                   ///< of SYNC, if present
 
   TransferStep step = TransferStep::none;
   bool download = false;
@@ -133,7 +135,7 @@ struct Message {
   switch (message.service) {
     case Service::boot_up:
     case Service::heartbeat:
-    case Service::guarding: return !message.state.empty();
+    case Service::guarding: return message.state.has_value();
     case Service::emcy:
     case Service::tpdo: return true;
     case Service::sdo: return !message.from_client;

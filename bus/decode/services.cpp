@@ -33,7 +33,8 @@ void decode_nmt(const Frame& frame, Message& message) {
   message.node_id = frame.data[1];
   const auto command = static_cast<canopen::NmtCommand>(frame.data[0]);
   if (const NmtCommandText* row = find_nmt_command(&NmtCommandText::command, command)) {
-    message.text += message.command = row->text;
+    message.command = command;
+    message.text += row->text;
   } else {
     fmt::format_to(std::back_inserter(message.text), "unknown command {}", frame.data[0]);
     message.problem = true;

@@ -1,5 +1,6 @@
 #include "monitor/monitor_state.hpp"
 
+#include <algorithm>
 #include <canopen/can/frame_length.hpp>
 
 #include "decode/log/value_number.hpp"
@@ -11,6 +12,13 @@ namespace {
 constexpr std::int64_t second_us = 1'000'000;
 constexpr std::size_t max_others = 4096;
 
+/// Whether the mapping of a PDO is that of its last frame.
+bool has_same_objects(const MonitoredPdo& pdo, const Message& message) {
+  return std::ranges::equal(pdo.values, message.values, [](const MonitoredValue& one, const MessageValue& other) {
+    return one.index == other.index && one.sub_index == other.sub_index;
+  });
+}
+
 }  // namespace
 
 bool MonitorState::add(const canopen::Frame& frame, const Message& message, std::int64_t now_us) {
@@ -21,7 +29,7 @@ bool MonitorState::add(const canopen::Frame& frame, const Message& message, std:
     case Service::heartbeat:
     case Service::guarding: return add_state(message, now_us);
     case Service::tpdo:
-    case Service::rpdo: return add_pdo(message, now_us);
+    case Service::rpdo: return add_pdo(frame, message, now_us);
     case Service::emcy: {
       MonitoredNode& node = node_of(message.node_id);
       ++node.emergencies;
@@ -59,8 +67,8 @@ void MonitorState::add_command(const canopen::Frame& frame) {
   const auto command = static_cast<canopen::NmtCommand>(frame.data[0]);
   const NmtCommandText* const row = find_nmt_command(&NmtCommandText::command, command);
   if (row == nullptr) return;
-  const bool resets = row->leads_to == canopen::NmtState::initialisation;
-  const std::string_view state = resets ? "" : nmt_state_text(row->leads_to);
+  std::optional<canopen::NmtState> state = row->leads_to;
+  if (state == canopen::NmtState::initialisation) state.reset();  // a boot-up message reports the end of a reset
   const std::uint8_t node_id = frame.data[1];
   for (std::size_t i = 1; i < commanded_.size(); ++i) {
     const auto id = static_cast<std::uint8_t>(i);
@@ -70,14 +78,14 @@ void MonitorState::add_command(const canopen::Frame& frame) {
   }
 }
 
-void MonitorState::assume(std::uint8_t node_id, std::string_view state) {
+void MonitorState::assume(std::uint8_t node_id, std::optional<canopen::NmtState> state) {
   MonitoredNode& node = node_of(node_id);
-  node.assumed = node.state == state ? "" : state;
+  node.assumed = node.state == state ? std::nullopt : state;
 }
 
 bool MonitorState::add_state(const Message& message, std::int64_t now_us) {
-  if (message.state.empty() || message.node_id == 0) return false;
-  commanded_[message.node_id & 0x7F].clear();
+  if (!message.state || message.node_id == 0) return false;
+  commanded_[message.node_id & 0x7F].reset();
   MonitoredNode& node = node_of(message.node_id);
   const bool booted = message.service == Service::boot_up;
   const bool was_late = node.is_late(now_us);
@@ -87,19 +95,20 @@ bool MonitorState::add_state(const Message& message, std::int64_t now_us) {
   if (!booted) ++node.heartbeats;
   const bool changed = booted || was_late || node.state != message.state;
   node.state = message.state;
-  node.assumed.clear();
+  node.assumed.reset();
   return changed;
 }
 
-bool MonitorState::add_pdo(const Message& message, std::int64_t now_us) {
+bool MonitorState::add_pdo(const canopen::Frame& frame, const Message& message, std::int64_t now_us) {
   // A node sends PDOs only in Operational.
   if (message.service == Service::tpdo && message.node_id != 0) {
-    assume(message.node_id, nmt_state_text(canopen::NmtState::operational));
+    assume(message.node_id, canopen::NmtState::operational);
   }
   MonitoredPdo& pdo = pdos_[{message.node_id, message.service == Service::tpdo, message.number}];
   pdo.frames.count();
   pdo.at_us = now_us;
-  if (pdo.text == message.text && pdo.frames.total() > 1) return false;
+  const bool is_same = pdo.frames.total() > 1 && pdo.frame == frame && has_same_objects(pdo, message);
+  pdo.frame = frame;
   pdo.text = message.text;
   pdo.values.clear();
   for (const MessageValue& value : message.values) {
@@ -108,7 +117,7 @@ bool MonitorState::add_pdo(const Message& message, std::int64_t now_us) {
                           message.text.substr(value.text_begin, value.text_end - value.text_begin),
                           std::string{value.unit}, finite_number_of(value)});
   }
-  return true;
+  return !is_same;
 }
 
 template <class Update>

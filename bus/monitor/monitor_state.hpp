@@ -2,11 +2,12 @@
 #pragma once
 
 #include <array>
+#include <canopen/can/frame.hpp>
+#include <canopen/nmt/nmt.hpp>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -38,11 +39,11 @@ class Rate {
 };
 
 struct MonitoredNode {
-  std::string name;                      ///< from the EDS
-  std::string state;                     ///< reported by error control; empty: none
-  std::string assumed;                   ///< from later NMT commands and TPDOs; empty: no contradiction to `state`
-  std::optional<std::int64_t> heard_us;  ///< its last error control message
-  std::int64_t interval_us = 0;          ///< between its last two heartbeats; 0: unknown
+  std::string name;                          ///< from the EDS
+  std::optional<canopen::NmtState> state;    ///< reported by error control
+  std::optional<canopen::NmtState> assumed;  ///< from later NMT commands and TPDOs, if not `state`
+  std::optional<std::int64_t> heard_us;      ///< its last error control message
+  std::int64_t interval_us = 0;              ///< between its last two heartbeats; 0: unknown
   std::uint64_t heartbeats = 0;
   std::uint64_t emergencies = 0;
   std::string emergency;  ///< the last EMCY as text
@@ -68,7 +69,8 @@ struct MonitoredValue {
 struct MonitoredPdo {
   std::string text;  ///< the values by name
   std::vector<MonitoredValue> values;
-  std::int64_t at_us = 0;  ///< the last frame
+  canopen::Frame frame;    ///< the last one
+  std::int64_t at_us = 0;  ///< its time
   Rate frames;
 };
 
@@ -83,7 +85,8 @@ class MonitorState {
 
   void set_name(std::uint8_t node_id, std::string name) { node_of(node_id).name = std::move(name); }
 
-  /// Returns true for new information; heartbeats, PDOs, SYNC and TIME with unchanged contents are not new.
+  /// Returns true for new information. Heartbeats of the same state, PDOs with the same octets and mapping, SYNC and
+  /// TIME are not new.
   bool add(const canopen::Frame& frame, const Message& message, std::int64_t now_us);
 
   /// Call regularly: updates the rates once a second.
@@ -105,14 +108,14 @@ class MonitorState {
  private:
   MonitoredNode& node_of(std::uint8_t node_id);
   void add_command(const canopen::Frame& frame);
-  void assume(std::uint8_t node_id, std::string_view state);
+  void assume(std::uint8_t node_id, std::optional<canopen::NmtState> state);
   bool add_state(const Message& message, std::int64_t now_us);
-  bool add_pdo(const Message& message, std::int64_t now_us);
+  bool add_pdo(const canopen::Frame& frame, const Message& message, std::int64_t now_us);
   template <class Update>
   void update_rates(Update update);
 
   std::map<std::uint8_t, MonitoredNode> nodes_;
-  std::array<std::string, 128> commanded_;  ///< state after the last NMT command, by node-ID
+  std::array<std::optional<canopen::NmtState>, 128> commanded_;  ///< after the last NMT command, by node-ID
   std::map<PdoKey, MonitoredPdo> pdos_;
   std::map<std::uint32_t, Rate> others_;
   Rate frames_, bits_;

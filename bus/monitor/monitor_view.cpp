@@ -19,6 +19,10 @@ constexpr const char* plain = "\x1B[0m";
 
 Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
+Json state_or_null(std::optional<canopen::NmtState> state) {
+  return state ? Json(canopen::to_text(*state)) : Json(nullptr);
+}
+
 double seconds(std::int64_t microseconds) { return static_cast<double>(microseconds) / 1e6; }
 
 /// Percent of the bit rate, without stuff bits.
@@ -37,8 +41,8 @@ std::string other_label(std::uint32_t cob_id) {
 
 /// `operational?`: not by a heartbeat, but by NMT commands or PDOs.
 std::string state_text(const MonitoredNode& node) {
-  if (!node.assumed.empty()) return node.assumed + "?";
-  return node.state.empty() ? "-" : node.state;
+  if (node.assumed) return fmt::format("{}?", canopen::to_text(*node.assumed));
+  return node.state ? std::string{canopen::to_text(*node.state)} : "-";
 }
 
 std::string age_text(const MonitoredNode& node, std::int64_t now_us) {
@@ -146,8 +150,8 @@ Json monitor_json(const MonitorState& state, const MonitorView& view, std::int64
     json["nodes"].push_back(
         {{"node_id", node_id},
          {"name", text_or_null(node.name)},
-         {"state", text_or_null(node.state)},
-         {"assumed_state", text_or_null(node.assumed)},
+         {"state", state_or_null(node.state)},
+         {"assumed_state", state_or_null(node.assumed)},
          {"heartbeats", node.heartbeats},
          {"heard_ms_ago", node.heard_us ? Json((now_us - *node.heard_us) / 1000) : Json(nullptr)},
          {"late", node.is_late(now_us)},

@@ -38,4 +38,10 @@ template <class Value>
   return row == std::end(nmt_command_texts) ? nullptr : row;
 }
 
+/// `enter pre-operational`; empty if CiA 301 does not have the command.
+[[nodiscard]] constexpr std::string_view nmt_command_text(canopen::NmtCommand command) {
+  const NmtCommandText* const row = find_nmt_command(&NmtCommandText::command, command);
+  return row == nullptr ? std::string_view{} : row->text;
+}
+
 }  // namespace edsc

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "backend/render.hpp"
@@ -20,6 +22,10 @@ LiveRow row_of(std::string key, const Json& json) {
 }
 
 double rounded(double number) { return std::round(number * 10) / 10; }
+
+std::string_view state_text(std::optional<canopen::NmtState> state) {
+  return state ? canopen::to_text(*state) : std::string_view{};
+}
 
 Json values_json(const MonitoredPdo& pdo) {
   Json values = Json::array();
@@ -80,8 +86,8 @@ std::vector<LiveRow> monitor_rows(const MonitorState& state, std::optional<unsig
                           {{"kind", "node"},
                            {"node_id", node_id},
                            {"name", printable(node.name)},
-                           {"state", node.state},
-                           {"assumed_state", node.assumed},
+                           {"state", state_text(node.state)},
+                           {"assumed_state", state_text(node.assumed)},
                            {"heard_us", node.heard_us ? Json(*node.heard_us - state.start_us()) : Json(nullptr)},
                            {"late", node.is_late(now_us)},
                            {"emergencies", node.emergencies},

@@ -10,12 +10,6 @@
 namespace edsc {
 namespace {
 
-std::string with_commas_as(std::string_view separator, std::string_view words) {
-  std::string text;
-  for (const char c : words) c == ',' ? text += separator : text += c;
-  return text;
-}
-
 std::string examples_of(const CLI::App& command) {
   constexpr std::string_view heading = "Examples:\n";
   const std::string footer = command.get_footer();
@@ -30,18 +24,18 @@ std::vector<std::string> names_of(const CLI::Option& option) {
   return names;
 }
 
-/// CLI11 appends the values that a check accepts to the type: `TEXT:{text,json}`, `UINT:INT in [1 - 127]`, `TEXT:DIR`.
 OptionValue value_of(const CLI::Option& option) {
   if (option.get_items_expected_max() == 0) return {};
-  const std::string type = option.get_type_name();
-  const std::size_t open = type.find('{'), close = type.find('}');
-  if (open != std::string::npos && close != std::string::npos) {
-    const std::string words = type.substr(open + 1, close - open - 1), list = with_commas_as(" ", words);
-    return {with_commas_as("|", words), "_edsc_words \"" + list + "\"", "(" + list + ")", true};
+  const OptionValueKind kind = value_kind_of(option);
+  if (!kind.words.empty()) {
+    const std::string list = fmt::format("{}", fmt::join(kind.words, " "));
+    return {fmt::format("{}", fmt::join(kind.words, "|")), "_edsc_words \"" + list + "\"", "(" + list + ")", true};
   }
-  const auto is_number = [&](std::string_view name) { return type.starts_with(name); };
-  if (type.find("DIR") != std::string::npos) return {"DIR", "_edsc_files -d", "_files -/"};
-  if (is_number("UINT") || is_number("INT") || is_number("FLOAT")) return {"NUMBER", ":", " "};
+  switch (kind.type) {
+    case OptionValueKind::Type::folder: return {"DIR", "_edsc_files -d", "_files -/"};
+    case OptionValueKind::Type::number: return {"NUMBER", ":", " "};
+    case OptionValueKind::Type::text: break;
+  }
   return {"TEXT", "_edsc_files -f", "_edsc_file"};
 }
 

@@ -59,13 +59,14 @@ std::string function_of(const CommandParts& command) {
 void append_choices(std::string& out, const CommandParts& command) {
   const auto put = std::back_inserter(out);
   out += "      local -a commands\n";
-  for (const auto& [group, commands] : command.groups()) {
+  const auto groups = command.groups();
+  for (const auto& [group, commands] : groups) {
     out += "      commands=(\n";
     for (const CommandParts* sub : commands) {
       fmt::format_to(put, "        '{}:{}'\n", sub->name, quoted(sub->description));
     }
     fmt::format_to(put, "      )\n      _describe '{}' commands && ret=0\n",
-                   group == "Subcommands" ? "command" : quoted(group));
+                   groups.size() == 1 ? "command" : quoted(group));
   }
 }
 

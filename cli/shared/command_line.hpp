@@ -2,6 +2,7 @@
 /// completions see it, since it takes seconds of each file that includes it.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -12,6 +13,16 @@ class Option;
 }  // namespace CLI
 
 namespace edsc {
+
+/// What the value of an option or argument is, for completions and the manual page.
+struct OptionValueKind {
+  enum class Type : std::uint8_t { text, number, folder };
+
+  Type type = Type::text;
+  std::vector<std::string> words;  ///< the only values; empty: any
+};
+
+[[nodiscard]] OptionValueKind value_kind_of(const CLI::Option& option);
 
 /// An option, a flag or an argument of a command; a handle.
 class Option {

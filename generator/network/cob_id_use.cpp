@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <canopen/can/cob_id.hpp>
+#include <string_view>
 
 #include "device/pdo/pdo_defaults.hpp"
 
@@ -15,6 +16,11 @@ namespace code = canopen::function_code;
 /// Bits of 1005h and 1012h.
 constexpr std::uint32_t produces_bit = 0x4000'0000;
 constexpr std::uint32_t consumes_time_bit = 0x8000'0000;
+
+/// `SDO server 1 response`
+std::string sdo_text(std::string_view channel, SdoFrames frames) {
+  return fmt::format("{} {}", channel, frames == SdoFrames::requests ? "request" : "response");
+}
 
 class UseCollector {
  public:
@@ -49,43 +55,52 @@ class UseCollector {
       case CobIdService::emcy: return add(FrameService::emcy, true, cob_id, "EMCY", entry);
       case CobIdService::emcy_consumer:
         return add(FrameService::emcy, false, cob_id, fmt::format("EMCY consumer {}", entry.sub_index), entry);
-      case CobIdService::sdo_server: {
-        const unsigned server = entry.index - 0x1200U + 1;
-        return add(FrameService::sdo, !is_first, cob_id,
-                   fmt::format("SDO server {} {}", server, is_first ? "request" : "response"), entry);
-      }
+      case CobIdService::sdo_server:
+        return add_sdo(is_first ? SdoFrames::requests : SdoFrames::responses, !is_first, cob_id,
+                       fmt::format("SDO server {}", entry.index - 0x1200U + 1), entry);
       case CobIdService::sdo_client:
-        return add(FrameService::sdo, is_first, cob_id,
-                   fmt::format("SDO client {} {}", number, is_first ? "request" : "response"), entry);
+        return add_sdo(is_first ? SdoFrames::requests : SdoFrames::responses, is_first, cob_id,
+                       fmt::format("SDO client {}", number), entry);
       case CobIdService::rpdo:
       case CobIdService::tpdo: return;
     }
   }
 
   void add(FrameService service, bool transmits, canopen::CobId cob_id, std::string what, const Entry& entry) {
-    uses_.push_back({&node_, service, transmits, cob_id.can_id(), cob_id.extended(), true, nullptr, std::move(what),
-                     default_place(entry)});
+    uses_.push_back({&node_, service, SdoFrames::none, transmits, cob_id.can_id(), cob_id.extended(), true, nullptr,
+                     std::move(what), default_place(entry)});
+  }
+
+  void add_sdo(SdoFrames frames, bool transmits, canopen::CobId cob_id, std::string_view channel, const Entry& entry) {
+    add(FrameService::sdo, transmits, cob_id, sdo_text(channel, frames), entry);
+    uses_.back().sdo = frames;
   }
 
   void add_pdo(const Pdo& pdo) {
     if (!on_by_default(pdo)) return;
     const Entry& entry = *pdo.communication->find(1);
     const canopen::CobId cob_id{static_cast<std::uint32_t>(entry.default_value->bits)};
-    uses_.push_back({&node_, FrameService::pdo, pdo.direction == PdoDirection::transmit, cob_id.can_id(),
-                     cob_id.extended(), true, &pdo, pdo_label(pdo), default_place(entry)});
+    uses_.push_back({&node_, FrameService::pdo, SdoFrames::none, pdo.direction == PdoDirection::transmit,
+                     cob_id.can_id(), cob_id.extended(), true, &pdo, pdo_label(pdo), default_place(entry)});
   }
 
   void add_fixed() {
     add_fixed(FrameService::nmt, node_.is_master, code::nmt, "NMT");
     add_fixed(FrameService::error_control, true, code::error_control + node_.node_id, "error control");
     if (node_.device().find(0x1200) == nullptr) {
-      add_fixed(FrameService::sdo, false, code::sdo_request + node_.node_id, "SDO server 1 request");
-      add_fixed(FrameService::sdo, true, code::sdo_response + node_.node_id, "SDO server 1 response");
+      add_fixed_sdo(SdoFrames::requests, code::sdo_request + node_.node_id);
+      add_fixed_sdo(SdoFrames::responses, code::sdo_response + node_.node_id);
     }
   }
 
   void add_fixed(FrameService service, bool transmits, std::uint32_t can_id, std::string what) {
-    uses_.push_back({&node_, service, transmits, can_id, false, false, nullptr, std::move(what), node_.position});
+    uses_.push_back(
+        {&node_, service, SdoFrames::none, transmits, can_id, false, false, nullptr, std::move(what), node_.position});
+  }
+
+  void add_fixed_sdo(SdoFrames frames, std::uint32_t can_id) {
+    add_fixed(FrameService::sdo, frames == SdoFrames::responses, can_id, sdo_text("SDO server 1", frames));
+    uses_.back().sdo = frames;
   }
 
   const NetworkNode& node_;

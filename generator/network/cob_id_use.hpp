@@ -12,10 +12,14 @@ namespace edsc {
 
 enum class FrameService : std::uint8_t { nmt, sync, time, emcy, sdo, pdo, error_control };
 
+/// The frames that a CAN-ID of an SDO carries.
+enum class SdoFrames : std::uint8_t { none, requests, responses };
+
 /// A CAN-ID that a node transmits or receives.
 struct CobIdUse {
   const NetworkNode* node = nullptr;
   FrameService service = FrameService::pdo;
+  SdoFrames sdo = SdoFrames::none;
   bool transmits = false;
   std::uint32_t can_id = 0;
   bool extended = false;

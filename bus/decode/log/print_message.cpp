@@ -11,6 +11,7 @@
 #include "text/printable.hpp"
 #include "text/utf8.hpp"
 #include "values/append.hpp"
+#include "values/nmt_text.hpp"
 
 namespace edsc {
 namespace {
@@ -197,8 +198,8 @@ void append_json(std::string& out, const LogLine& line, const Message& message, 
   if (message.service == Service::sdo || message.service == Service::lss) {
     append_member(out, "direction", message.from_client ? "request" : "response");
   }
-  if (!message.command.empty()) append_member(out, "command", message.command);
-  if (!message.state.empty()) append_member(out, "state", message.state);
+  if (message.command) append_member(out, "command", nmt_command_text(*message.command));
+  if (message.state) append_member(out, "state", canopen::to_text(*message.state));
   if (message.counter >= 0) append_member(out, "counter", static_cast<std::uint64_t>(message.counter));
   if (message.service == Service::emcy) {
     append_member(out, "error_code", message.error_code);

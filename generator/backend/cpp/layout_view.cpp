@@ -81,8 +81,8 @@ ordered_json record_type_view(const Struct& s) { return struct_view(s, plain_mem
 /// A part of Values.
 ordered_json section_view(const Struct& s) {
   ordered_json view = struct_view(s, member_view);
-  view["preset"] = s.name.ends_with("preset");
-  view["communication"] = s.name.starts_with("communication");
+  view["preset"] = s.preset;
+  view["communication"] = s.communication;
   return view;
 }
 

@@ -27,13 +27,15 @@ constexpr const char* elements_member = "elements";
 
 /// A part of Values.
 struct Section {
-  std::string_view name, type, comment;
+  std::string_view name, type;
+  bool communication, preset;
+  std::string_view comment;
 };
 constexpr std::array sections = {
-    Section{"communication_preset", "CommunicationPreset", "1000h..1FFFh with a default other than zero."},
-    Section{"communication_cleared", "CommunicationCleared", "1000h..1FFFh that start from zero."},
-    Section{"application_preset", "ApplicationPreset", "2000h..FFFFh with a default other than zero."},
-    Section{"application_cleared", "ApplicationCleared", "2000h..FFFFh that start from zero."},
+    Section{"communication_preset", "CommunicationPreset", true, true, "1000h..1FFFh with a default other than zero."},
+    Section{"communication_cleared", "CommunicationCleared", true, false, "1000h..1FFFh that start from zero."},
+    Section{"application_preset", "ApplicationPreset", false, true, "2000h..FFFFh with a default other than zero."},
+    Section{"application_cleared", "ApplicationCleared", false, false, "2000h..FFFFh that start from zero."},
 };
 
 /// Other generated types except those of records.
@@ -355,8 +357,8 @@ class Builder {
       const auto at = values_.find(section.name);
       if (at == values_.end()) continue;
       sort_by_alignment(at->second);
-      layout_.values.push_back(
-          {section.comment, std::string{section.type}, std::string{section.name}, std::move(at->second)});
+      layout_.values.push_back({section.comment, std::string{section.type}, std::string{section.name},
+                                std::move(at->second), section.communication, section.preset});
     }
     sort_by_alignment(layout_.constants.members);
     const auto key = [](const LimitRow& row) { return EntryKey{row.entry->index, row.entry->sub_index}; };

@@ -34,6 +34,8 @@ struct Struct {
   std::string type;             ///< name of the struct
   std::string name;             ///< of the member or variable that has this type
   std::vector<Member> members;  ///< widest alignment first: no padding between them
+  bool communication = false;   ///< a part of Values for 1000h..1FFFh
+  bool preset = false;          ///< a part of Values with default values other than zero
 };
 
 /// A member of a struct, whose offset is the location of a value.

@@ -118,8 +118,8 @@ bool is_checked(const Pdo& pdo) {
          pdo.communication->find(1) != nullptr;
 }
 
-/// `canopen::PdoParameters{.cob_id = 0x180, .plus_node_id = true}`, without members that have their default.
-std::string parameters_text(const PdoParameters& parameters) {
+/// `.cob_id = 0x180`; without members that have their default.
+std::vector<std::string> member_initializers(const PdoParameters& parameters) {
   std::vector<std::string> members;
   constexpr PdoParameters unknown;
   if (parameters.cob_id != unknown.cob_id) members.push_back(fmt::format(".cob_id = 0x{:X}", parameters.cob_id));
@@ -130,13 +130,18 @@ std::string parameters_text(const PdoParameters& parameters) {
   if (parameters.inhibit_time != 0) members.push_back(fmt::format(".inhibit_time = {}", parameters.inhibit_time));
   if (parameters.event_timer != 0) members.push_back(fmt::format(".event_timer = {}", parameters.event_timer));
   if (parameters.compatibility_entry) members.emplace_back(".compatibility_entry = true");
-  return fmt::format("canopen::PdoParameters{{{}}}", fmt::join(members, ", "));
+  return members;
 }
 
-/// The template arguments after dictionary, number and layout.
-std::string check_arguments(const Provable& provable, const std::string& parameters) {
-  if (provable.granularity != 1) return fmt::format(", {}, {}", parameters, provable.granularity);
-  return parameters == "canopen::PdoParameters{}" ? "" : ", " + parameters;
+/// The value of the parameters, and the template arguments after dictionary, number and layout.
+void add_parameters(const Provable& provable, ordered_json& row) {
+  const std::vector<std::string> members = member_initializers(provable.parameters);
+  const std::string parameters = fmt::format("canopen::PdoParameters{{{}}}", fmt::join(members, ", "));
+  const bool is_regular = provable.granularity == 1;
+  row["parameters"] = parameters;
+  row["granularity"] = provable.granularity;
+  row["check_arguments"] = (is_regular && members.empty() ? "" : ", " + parameters) +
+                           (is_regular ? "" : fmt::format(", {}", provable.granularity));
 }
 
 }  // namespace
@@ -171,9 +176,7 @@ ordered_json pdo_rows(const NamedDevice& named) {
     if (is_checked(pdo)) {
       const Provable provable = provable_of(device, pdo);
       row["check"] = receive ? "canopen::CheckedRpdo" : "canopen::CheckedTpdo";
-      row["parameters"] = parameters_text(provable.parameters);
-      row["granularity"] = provable.granularity;
-      row["check_arguments"] = check_arguments(provable, row["parameters"]);
+      add_parameters(provable, row);
       row["any_left_out"] = !provable.left_out.empty();
       row["left_out"] = fmt::format("{}", fmt::join(provable.left_out, ", "));
     }

@@ -6,7 +6,10 @@
 #include <canopen/can/cob_id.hpp>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "backend/dbc/dbc_name.hpp"
@@ -112,11 +115,11 @@ class DbcWriter {
   [[nodiscard]] Dbc write() {
     for_each_pdo([&](const NodePdo& one) { assign(one); });
     for_each_pdo([&](const NodePdo& one) {
-      if (const std::string reason = why_left_out(one); !reason.empty()) {
-        add_note(one, reason);
+      if (const auto reason = why_left_out(one)) {
+        add_note(one, *reason);
       } else if (messages_.at(message_id(*one.pdo)).pdo == one.pdo) {
         add_message(one);
-        last_reason_.clear();
+        last_reason_.reset();
       }
     });
     return {text(), std::move(notes_)};
@@ -139,16 +142,35 @@ class DbcWriter {
     if (!added && one.transmits() && !at->second.transmits()) at->second = one;
   }
 
-  /// Empty if the PDO is a message or receives one.
-  [[nodiscard]] std::string why_left_out(const NodePdo& one) const {
+  enum class LeftOut : std::uint8_t { invalid_mapping, multiplexed, disabled, of_another_pdo };
+
+  /// Why a PDO is not in the file.
+  struct Reason {
+    LeftOut kind;
+    std::uint32_t can_id = 0;  ///< that of another PDO
+    friend bool operator==(const Reason&, const Reason&) = default;
+
+    [[nodiscard]] std::string text() const {
+      switch (kind) {
+        case LeftOut::invalid_mapping: return "its mapping is invalid";
+        case LeftOut::multiplexed: return "a multiplex PDO";
+        case LeftOut::disabled: return "disabled by default";
+        case LeftOut::of_another_pdo: break;
+      }
+      return fmt::format("CAN-ID {:03X}h is that of another PDO", can_id);
+    }
+  };
+
+  /// Nothing if the PDO is a message or receives one.
+  [[nodiscard]] std::optional<Reason> why_left_out(const NodePdo& one) const {
     const Pdo& pdo = *one.pdo;
-    if (pdo.broken) return "its mapping is invalid";
-    if (pdo.multiplexed) return "a multiplex PDO";
-    if (!on_by_default(pdo)) return "disabled by default";
+    if (pdo.broken) return Reason{LeftOut::invalid_mapping};
+    if (pdo.multiplexed) return Reason{LeftOut::multiplexed};
+    if (!on_by_default(pdo)) return Reason{LeftOut::disabled};
     const NodePdo& message = messages_.at(message_id(pdo));
     const bool receives = !one.transmits() && message.node != one.node;
-    if (message.pdo == one.pdo || receives) return {};
-    return fmt::format("CAN-ID {:03X}h is that of another PDO", message_id(pdo).first);
+    if (message.pdo == one.pdo || receives) return std::nullopt;
+    return Reason{LeftOut::of_another_pdo, message_id(pdo).first};
   }
 
   /// `TPDO 1`, of several nodes `axis1 TPDO 1`.
@@ -157,7 +179,7 @@ class DbcWriter {
   }
 
   /// Consecutive PDOs of a node with the same reason are one note: `TPDO 3 to TPDO 8: disabled by default`.
-  void add_note(const NodePdo& one, const std::string& reason) {
+  void add_note(const NodePdo& one, const Reason& reason) {
     if (reason != last_reason_ || one.node != last_node_ || notes_.empty()) {
       notes_.emplace_back();
       first_left_out_ = label(one);
@@ -165,7 +187,7 @@ class DbcWriter {
       last_node_ = one.node;
     }
     const std::string last = pdo_label(*one.pdo);
-    notes_.back() = first_left_out_ + (label(one) == first_left_out_ ? "" : " to " + last) + ": " + reason;
+    notes_.back() = first_left_out_ + (label(one) == first_left_out_ ? "" : " to " + last) + ": " + reason.text();
   }
 
   void add_message(const NodePdo& one) {
@@ -265,7 +287,8 @@ BA_DEF_DEF_ "SystemSignalLongSymbol" "";
   std::map<MessageId, NodePdo> messages_;
   Sections sections_;
   std::vector<std::string> notes_;
-  std::string first_left_out_, last_reason_;
+  std::string first_left_out_;
+  std::optional<Reason> last_reason_;
   const DbcNode* last_node_ = nullptr;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "device/complete_device.hpp"
@@ -38,8 +39,8 @@ class MessageCollector {
     for (const CobIdUse& use : uses_) {
       if (use.transmits && use.service != FrameService::sdo) add(use);
     }
-    add_sdo(true);
-    add_sdo(false);
+    add_sdo(SdoFrames::requests, "SDO requests");
+    add_sdo(SdoFrames::responses, "SDO responses");
     std::ranges::stable_sort(messages_, {}, [](const TimedMessage& one) { return one.message.can_id; });
     return std::move(messages_);
   }
@@ -167,16 +168,15 @@ class MessageCollector {
   }
 
   /// The request or response of highest priority, for all SDOs of the network.
-  void add_sdo(bool is_request) {
+  void add_sdo(SdoFrames frames, std::string_view name) {
     const CobIdUse* first = nullptr;
     for (const CobIdUse& use : uses_) {
-      const bool is_kind = use.service == FrameService::sdo && use.transmits && !use.extended &&
-                           use.what.ends_with(is_request ? "request" : "response");
+      const bool is_kind = use.sdo == frames && use.transmits && !use.extended;
       if (is_kind && (first == nullptr || use.can_id < first->can_id)) first = &use;
     }
     if (first == nullptr) return;
     add_assumed(*first, 8, interval(assume_.sdo_ms, 10));
-    messages_.back().name = is_request ? "SDO requests" : "SDO responses";
+    messages_.back().name = name;
   }
 
   const Network& network_;

@@ -1,7 +1,9 @@
 /// The output of the commands for a live bus: identities, tables, the state of a monitored bus.
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "monitor/monitor_view.hpp"
@@ -72,7 +74,9 @@ TEST(CutToWidth, CountsCodePointsAndNoColours) {
 
 TEST(CutToWidth, LeavesNoControlCharacterOfADevice) { EXPECT_EQ(cut_to_width("a\tb\x7F", 9), "a.b."); }
 
-Message message_of(Service service, std::uint8_t node_id, std::string_view state = {}) {
+using canopen::NmtState;
+
+Message message_of(Service service, std::uint8_t node_id, std::optional<NmtState> state = {}) {
   Message message;
   message.service = service;
   message.node_id = node_id;
@@ -87,7 +91,8 @@ TEST(MonitorState, AssumesWhereNmtCommandsAndTpdosLead) {
   MonitorState state;
   const auto shown = [&](std::uint8_t node_id) {
     const MonitoredNode& node = state.nodes().at(node_id);
-    return node.state + "/" + node.assumed;
+    const auto text = [](std::optional<NmtState> one) { return std::string{one ? to_text(*one) : ""}; };
+    return text(node.state) + "/" + text(node.assumed);
   };
   state.set_name(5, "drive");
   state.add(nmt(0x01, 5), message_of(Service::nmt, 5), 0);
@@ -96,7 +101,7 @@ TEST(MonitorState, AssumesWhereNmtCommandsAndTpdosLead) {
   EXPECT_EQ(shown(5), "/pre-operational");
   state.add({0x185, 1, false, false, {}}, message_of(Service::tpdo, 5), 2);
   EXPECT_EQ(shown(5), "/operational");
-  state.add({0x705, 1, false, false, {}}, message_of(Service::heartbeat, 5, "operational"), 3);
+  state.add({0x705, 1, false, false, {}}, message_of(Service::heartbeat, 5, NmtState::operational), 3);
   EXPECT_EQ(shown(5), "operational/");
   state.add(nmt(0x02, 5), message_of(Service::nmt, 5), 4);
   EXPECT_EQ(shown(5), "operational/stopped");
@@ -128,7 +133,7 @@ TEST(Rate, IsThatOfTheLastSpan) {
   EXPECT_EQ(rate.total(), 10U);
 }
 
-Message heartbeat(std::string_view state, Service service = Service::heartbeat) {
+Message heartbeat(NmtState state, Service service = Service::heartbeat) {
   Message message;
   message.service = service;
   message.node_id = 5;
@@ -140,28 +145,28 @@ constexpr canopen::Frame frame{0x705, 1, false, false, {5}};
 
 TEST(MonitorState, TellsAChangeOfStateAndNoOtherHeartbeat) {
   MonitorState state;
-  EXPECT_TRUE(state.add(frame, heartbeat("operational"), 0));
-  EXPECT_FALSE(state.add(frame, heartbeat("operational"), 100'000));
-  EXPECT_TRUE(state.add(frame, heartbeat("stopped"), 200'000));
+  EXPECT_TRUE(state.add(frame, heartbeat(NmtState::operational), 0));
+  EXPECT_FALSE(state.add(frame, heartbeat(NmtState::operational), 100'000));
+  EXPECT_TRUE(state.add(frame, heartbeat(NmtState::stopped), 200'000));
   EXPECT_EQ(state.nodes().at(5).heartbeats, 3U);
 }
 
 TEST(MonitorState, KnowsALateHeartbeatByTheOnesBefore) {
   MonitorState state;
-  state.add(frame, heartbeat("operational"), 0);
+  state.add(frame, heartbeat(NmtState::operational), 0);
   EXPECT_FALSE(state.nodes().at(5).is_late(60'000'000));  // the period is unknown after a single heartbeat
-  state.add(frame, heartbeat("operational"), 500'000);
+  state.add(frame, heartbeat(NmtState::operational), 500'000);
   EXPECT_FALSE(state.nodes().at(5).is_late(1'600'000));
   EXPECT_TRUE(state.nodes().at(5).is_late(1'600'001));
-  EXPECT_TRUE(state.add(frame, heartbeat("operational"), 3'000'000));  // back again
+  EXPECT_TRUE(state.add(frame, heartbeat(NmtState::operational), 3'000'000));  // back again
   EXPECT_FALSE(state.nodes().at(5).is_late(9'000'000));
 }
 
 TEST(MonitorState, StartsAnewWithABootUpMessage) {
   MonitorState state;
-  state.add(frame, heartbeat("operational"), 0);
-  EXPECT_TRUE(state.add(frame, heartbeat("boot-up", Service::boot_up), 10'000));
-  EXPECT_TRUE(state.add(frame, heartbeat("boot-up", Service::boot_up), 20'000));
+  state.add(frame, heartbeat(NmtState::operational), 0);
+  EXPECT_TRUE(state.add(frame, heartbeat(NmtState::initialisation, Service::boot_up), 10'000));
+  EXPECT_TRUE(state.add(frame, heartbeat(NmtState::initialisation, Service::boot_up), 20'000));
   EXPECT_EQ(state.nodes().at(5).heartbeats, 1U);
 }
 
@@ -174,19 +179,43 @@ Message tpdo(std::string text) {
   return message;
 }
 
-TEST(MonitorState, TellsAPdoWhenItsValuesChange) {
+canopen::Frame pdo_frame(std::uint8_t size, std::uint8_t last) {
+  canopen::Frame one{0x185, size, false, false, {}};
+  one.data[size - 1U] = last;
+  return one;
+}
+
+TEST(MonitorState, TellsAPdoWhenItsOctetsChange) {
   MonitorState state;
-  EXPECT_TRUE(state.add(frame, tpdo("Speed = 1"), 0));
-  EXPECT_FALSE(state.add(frame, tpdo("Speed = 1"), 1));
-  EXPECT_TRUE(state.add(frame, tpdo("Speed = 2"), 2));
-  EXPECT_EQ(state.pdos().begin()->second.frames.total(), 3U);
+  EXPECT_TRUE(state.add(pdo_frame(1, 1), tpdo("Speed = 1"), 0));
+  EXPECT_FALSE(state.add(pdo_frame(1, 1), tpdo("Speed = 1"), 1));
+  EXPECT_TRUE(state.add(pdo_frame(1, 2), tpdo("Speed = 2"), 2));
+  EXPECT_TRUE(state.add(pdo_frame(2, 2), tpdo("Speed = 2, 1 byte more than mapped"), 3));
+  EXPECT_TRUE(state.add(pdo_frame(2, 3), tpdo("Speed = 2, 1 byte more than mapped"), 4)) << "the text is the same";
+  EXPECT_FALSE(state.add(pdo_frame(2, 3), tpdo("in other words"), 5));
+  EXPECT_EQ(state.pdos().begin()->second.text, "in other words");
+  EXPECT_EQ(state.pdos().begin()->second.frames.total(), 6U);
+}
+
+TEST(MonitorState, TellsAPdoWhenItsMappingChanges) {
+  MonitorState state;
+  Message message = tpdo("A = 0");
+  message.values.push_back({0x2000, 0, "A", nullptr, {}, 0, 8, {}, 4, 5});
+  EXPECT_TRUE(state.add(pdo_frame(1, 0), message, 0));
+  EXPECT_FALSE(state.add(pdo_frame(1, 0), message, 1));
+  message.values.front().index = 0x2001;
+  EXPECT_TRUE(state.add(pdo_frame(1, 0), message, 2));
+  EXPECT_EQ(state.pdos().begin()->second.values.front().index, 0x2001);
+  message.text = "A = x";
+  EXPECT_FALSE(state.add(pdo_frame(1, 0), message, 3));
+  EXPECT_EQ(state.pdos().begin()->second.values.front().text, "x");
 }
 
 TEST(MonitorView, ShowsNodesPdosAndLoad) {
   MonitorState state;
   state.start(0);
   state.set_name(5, "Drive");
-  state.add(frame, heartbeat("operational"), 500'000);
+  state.add(frame, heartbeat(NmtState::operational), 500'000);
   state.add(frame, tpdo("Speed = 1 rpm"), 600'000);
   state.end(1'000'000);
   const MonitorView view{"socketcan:can0", 125, false};
