@@ -1,5 +1,6 @@
 #include "text/gzip.hpp"
 
+#define ZLIB_CONST  // the input of zlib is const
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -18,8 +19,7 @@ constexpr std::size_t max_at_once = std::size_t{1} << 16;
 constexpr std::size_t max_ratio = 200;
 constexpr std::size_t any_ratio_bytes = std::size_t{1} << 20;  ///< up to this size
 
-/// The library has a non-const pointer to the input, but does not write to it.
-Bytef* input_of(std::string_view bytes) { return reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data())); }
+const Bytef* input_of(std::string_view bytes) { return reinterpret_cast<const Bytef*>(bytes.data()); }
 Bytef* output_of(std::string& bytes, std::size_t at) { return reinterpret_cast<Bytef*>(&bytes[at]); }
 
 }  // namespace
