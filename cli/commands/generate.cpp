@@ -64,10 +64,10 @@ struct ChosenTemplate {
 void check_template_names(const std::string& folder) {
   std::vector<std::string> known;
   for (const Template& built_in : built_in_templates()) known.push_back(std::string{built_in.file_name} + ".mustache");
-  for (const fs::directory_entry& file : fs::directory_iterator{folder}) {
-    const std::string name = file.path().filename().string();
+  for (const fs::directory_entry& file : fs::directory_iterator{to_native(folder)}) {
+    const std::string name = from_native(file.path().filename());
     if (name.starts_with('.') || !file.is_regular_file() || std::ranges::find(known, name) != known.end()) continue;
-    throw std::runtime_error{fmt::format("{}: there is no built-in template with this name{}", file.path().string(),
+    throw std::runtime_error{fmt::format("{}: there is no built-in template with this name{}", join_path(folder, name),
                                          did_you_mean(name, known))};
   }
 }
