@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 
@@ -24,14 +24,6 @@
 namespace edsc {
 namespace {
 
-constexpr std::string_view dummy_prefix = "Dummy";
-constexpr std::size_t dummy_digits = 4;
-constexpr std::uint16_t last_dummy = 0xFF;
-
-constexpr bool is_module_kind(SectionKind kind) {
-  return kind >= SectionKind::module_info && kind <= SectionKind::module_sub_extension;
-}
-
 class DataSheetReader {
  public:
   DataSheetReader(const IniFile& ini, Diagnostics& diagnostics)
@@ -41,11 +33,7 @@ class DataSheetReader {
     sheet_.source = &source_;
     if (!ini_.sections.empty()) {  // otherwise the INI reader has reported why
       sort_sections();
-      const auto none = [](std::string_view) -> Field* { return nullptr; };
-      read_single(SectionKind::file_info, file_info_keys, sheet_.file_info, none);
-      read_single(SectionKind::device_info, device_info_keys, sheet_.device_info,
-                  [&](std::string_view key) { return find_baud_rate(key); });
-      read_single(SectionKind::device_commissioning, commissioning_keys, sheet_.commissioning, none);
+      std::apply([&](const auto&... sections) { (read_plain(sections), ...); }, plain_sections);
       read_dummy_usage();
       read_others();
       read_objects();
@@ -61,11 +49,11 @@ class DataSheetReader {
       report_name(section, name);
       if (is_object_section(name.kind)) {
         object_sections_.push_back({name, &section});
-      } else if (is_module_kind(name.kind)) {
+      } else if (is_module_section(name.kind)) {
         module_sections_.push_back({name, &section});
       } else if (name.kind == SectionKind::tool) {
         tool_sections_.push_back({name, &section});
-      } else if (name.kind < SectionKind::malformed) {
+      } else if (is_single(name.kind)) {
         place_single(section, name.kind);
       }
     }
@@ -104,33 +92,35 @@ class DataSheetReader {
   /// The section of a kind that occurs once, or null.
   [[nodiscard]] const IniSection* single(SectionKind kind) const { return single_[static_cast<std::size_t>(kind)]; }
 
-  /// Reads a section that occurs once into its struct; `find_other` finds the fields of keys that are not in the table.
-  template <typename Struct, std::size_t n, typename FindOther>
-  void read_single(SectionKind kind, const KeyRow<Struct> (&keys)[n], Struct& target, FindOther find_other) {
-    const IniSection* const section = single(kind);
+  template <typename Struct, std::size_t n>
+  void read_plain(const PlainSection<Struct, n>& plain) {
+    const IniSection* const section = single(plain.kind);
+    Struct& target = sheet_.*plain.member;
     target.present = section != nullptr;
     target.position = section == nullptr ? Position{&source_} : section_position(source_, *section);
-    place_fields(keys, target.position, target);
+    place_fields(plain.keys, target.position, target);
     if (section == nullptr) return;
     read_keys(
         source_, *section, diagnostics_,
         [&](std::string_view key) {
-          Field* const field = find_key(keys, key, target);
-          return field != nullptr ? field : find_other(key);
+          Field* const field = find_key(plain.keys, key, target);
+          return field != nullptr ? field : find_numbered(key, target);
         },
-        keys);
+        plain.keys);
   }
 
-  /// `BaudRate_125` etc., including rates for which CiA 306 does not define a key.
-  Field* find_baud_rate(std::string_view key) {
-    if (!starts_with_ignoring_case(key, baud_rate_prefix)) return nullptr;
-    const std::optional<std::uint64_t> rate = parse_unsigned(key.substr(baud_rate_prefix.size()));
-    if (!rate || *rate > std::numeric_limits<std::uint16_t>::max()) return nullptr;
-    std::vector<DeviceInfo::BaudRate>& rates = sheet_.device_info.baud_rates;
+  template <typename Struct>
+  static Field* find_numbered(std::string_view /*key*/, const Struct& /*target*/) {
+    return nullptr;
+  }
+
+  Field* find_numbered(std::string_view key, DeviceInfo& info) {
+    const auto rate = match_key(baud_rate_key, key);
+    if (!rate) return nullptr;
     const auto kbit_per_second = static_cast<std::uint16_t>(*rate);
-    const auto [place, is_new] = baud_rate_places_.try_emplace(kbit_per_second, rates.size());
-    if (is_new) rates.push_back({kbit_per_second, {}});
-    return &rates[place->second].field;
+    const auto [place, is_new] = baud_rate_places_.try_emplace(kbit_per_second, info.baud_rates.size());
+    if (is_new) info.baud_rates.push_back({kbit_per_second, {}});
+    return &info.baud_rates[place->second].field;
   }
 
   void read_dummy_usage() {
@@ -139,13 +129,10 @@ class DataSheetReader {
     }
   }
 
-  /// `Dummy0005`: the index of a data type, in hexadecimal.
+  /// `Dummy0005`: the index of a data type.
   Field* find_dummy(std::string_view key) {
-    if (!starts_with_ignoring_case(key, dummy_prefix) || key.size() != dummy_prefix.size() + dummy_digits) {
-      return nullptr;
-    }
-    const std::optional<std::uint16_t> index = parse_hex(key.substr(dummy_prefix.size()), dummy_digits);
-    if (!index || *index == 0 || *index > last_dummy) return nullptr;
+    const auto index = match_key(dummy_key, key);
+    if (!index) return nullptr;
     std::vector<NumberedField>& dummies = sheet_.dummy_usage;
     const auto found = std::ranges::find(dummies, *index, &NumberedField::number);
     return found != dummies.end() ? &found->field : &dummies.emplace_back(NumberedField{*index, {}}).field;
@@ -181,7 +168,7 @@ class DataSheetReader {
   const SourceFile& source_;
   Diagnostics& diagnostics_;
   DataSheet sheet_;
-  std::array<const IniSection*, static_cast<std::size_t>(SectionKind::malformed)> single_{};
+  std::array<const IniSection*, static_cast<std::size_t>(SectionKind::unknown)> single_{};
   std::unordered_map<std::uint16_t, std::size_t> baud_rate_places_;  ///< index in the list of rates with a key
   std::vector<ObjectSection> object_sections_;
   std::vector<NamedSection> tool_sections_;

@@ -16,6 +16,37 @@
 
 namespace edsc {
 
+/// The sections of CiA 306-1. Their names, keys and order are the rows of `section_rows`.
+enum class SectionKind : std::uint8_t {
+  file_info,
+  device_info,
+  dummy_usage,
+  comments,
+  device_commissioning,
+  mandatory_objects,
+  optional_objects,
+  manufacturer_objects,
+  object,               ///< [1018]
+  sub_object,           ///< [1018sub1]
+  compact_names,        ///< [1003Name]
+  compact_values,       ///< [1003Value]
+  compact_denotations,  ///< [1003Denotation]
+  object_links,         ///< [1003ObjectLinks]
+  tools,
+  tool,  ///< [Tool1]
+  dynamic_channels,
+  supported_modules,
+  connected_modules,
+  module_info,           ///< [M1ModuleInfo]
+  module_comments,       ///< [M1Comments]
+  module_fixed_objects,  ///< [M1FixedObjects]
+  module_fixed_object,   ///< [M1Fixed6000], [M1Fixed6000sub1] and the other sections of objects
+  module_sub_extends,    ///< [M1SubExtends]
+  module_sub_extension,  ///< [M1SubExt6000]
+  malformed,             ///< meant for an object, but without a valid index or sub-index
+  unknown,               ///< the last one
+};
+
 /// The value of a key as written, with its position. `present` is false if the section does not have the key;
 /// `position` is then that of the section.
 struct Field {

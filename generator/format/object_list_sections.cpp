@@ -11,6 +11,7 @@
 #include "eds/sections/object_lists.hpp"
 #include "format/section_order.hpp"
 #include "format/spelling/key_table.hpp"
+#include "format/spelling/number_spelling.hpp"
 
 namespace edsc {
 namespace {
@@ -42,9 +43,9 @@ class ListWriter {
   OldList take_apart(DocumentSection& section) {
     OldList old;
     for (DocumentEntry& entry : section.entries) {
-      const KeySpelling key = spell_key(section.kind.kind, entry.key);
+      const KeySpelling key = spell_key(section.kind, entry.key);
       if (key.value == ValueKind::count || equal_ignoring_case(entry.key, supported_objects.misspelling)) {
-        append(old.remarks, entry.remarks);
+        append(old.remarks, remarks_of(entry));
       } else if (key.is_known) {
         keep_remarks(entry, old);
       } else {
@@ -55,10 +56,18 @@ class ListWriter {
     return old;
   }
 
+  /// The comments before the entry and after its value.
+  static Remarks remarks_of(const DocumentEntry& entry) {
+    Remarks remarks = entry.remarks;
+    const std::string_view comment = inline_comment(entry.value);
+    if (!comment.empty()) remarks.push_back(remark_line(comment));
+    return remarks;
+  }
+
   void keep_remarks(const DocumentEntry& entry, OldList& old) {
     const auto index = parse_unsigned(strip_inline_comment(entry.value));
     const bool stays = index && sheet_.find(*index) != nullptr && list_for(static_cast<std::uint16_t>(*index), sheet_);
-    append(stays ? remarks_[static_cast<std::uint16_t>(*index)] : old.remarks, entry.remarks);
+    append(stays ? remarks_[static_cast<std::uint16_t>(*index)] : old.remarks, remarks_of(entry));
   }
 
   void write_list(ObjectListKind list, OldList& old) {

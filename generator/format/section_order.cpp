@@ -10,16 +10,10 @@
 
 #include "eds/allow_comments.hpp"
 #include "eds/sections/object_lists.hpp"
+#include "eds/sections/section_keys.hpp"
 
 namespace edsc {
 namespace {
-
-/// Sections that occur once; names with the same number are the same section.
-std::uint32_t identity(const SectionName& name) {
-  return (std::uint32_t{name.index} << 16U) | (static_cast<std::uint32_t>(name.kind) << 8U) | name.sub_index;
-}
-
-bool stands_once(SectionKind kind) { return kind <= SectionKind::object_links; }
 
 /// On the first section of the file, comments for edsc must not be before it, where they would apply to the file.
 void merge_remarks(DocumentSection& first, bool is_first_of_file, const DocumentSection& second) {
@@ -30,41 +24,46 @@ void merge_remarks(DocumentSection& first, bool is_first_of_file, const Document
   }
 }
 
-/// Groups of sections: single sections, each list with its objects, objects in no list, the rest.
-constexpr std::uint32_t list_groups = 8;
-constexpr std::uint32_t unlisted_objects = 16;
-constexpr std::uint32_t other_sections = 17;
-
-std::uint32_t group_of_list(ObjectListKind list) { return list_groups + 2 * static_cast<std::uint32_t>(list); }
-
+/// A list is followed by its objects; the objects in no list follow all lists.
 struct Place {
-  std::uint32_t group = other_sections;
-  std::uint32_t in_group = 0;
+  std::uint32_t section = 0;  ///< place in the table, or of the list of an object, or of the first section of a module
+  bool after_list = false;
+  std::uint16_t number = 0;  ///< of a tool or module
+  std::uint32_t section_of_module = 0;
+  std::uint64_t object = 0;  ///< index, kind and sub-index
 
   friend auto operator<=>(const Place&, const Place&) = default;
 };
 
+std::uint64_t object_order(std::uint16_t index, SectionKind kind, std::uint8_t sub_index) {
+  return (std::uint64_t{index} << 16U) | (place_of_section(kind) << 8U) | sub_index;
+}
+
 Place place_of(const SectionName& name, const DataSheet& sheet) {
-  if (is_object_list(name.kind)) {
-    const auto list =
-        static_cast<std::uint32_t>(name.kind) - static_cast<std::uint32_t>(SectionKind::mandatory_objects);
-    return {group_of_list(static_cast<ObjectListKind>(list)), 0};
+  if (!is_known(name.kind)) return {.section = place_of_section(name.kind)};
+  if (is_object_section(name.kind)) {
+    const auto list = list_for(name.index, sheet);
+    return {.section = place_of_section(list ? section_of(*list) : SectionKind::object),
+            .after_list = true,
+            .object = object_order(name.index, name.kind, name.sub_index)};
   }
-  if (name.kind < SectionKind::object) return {static_cast<std::uint32_t>(name.kind), 0};
-  const bool has_object = name.kind != SectionKind::object_links || sheet.find(name.index) != nullptr;
-  if (!stands_once(name.kind) || !has_object) return {};
-  const auto list = list_for(name.index, sheet);
-  return {list ? group_of_list(*list) + 1 : unlisted_objects, identity(name)};
+  if (is_module_section(name.kind)) {
+    return {.section = place_of_section(SectionKind::module_info),
+            .number = name.number,
+            .section_of_module = place_of_section(name.kind),
+            .object = object_order(name.index, name.part, name.sub_index)};
+  }
+  return {.section = place_of_section(name.kind), .number = name.number};
 }
 
 }  // namespace
 
 void drop_second_sections(Document& document) {
-  std::unordered_map<std::uint32_t, std::size_t> first;
+  std::unordered_map<std::uint64_t, std::size_t> first;
   std::vector<DocumentSection> kept;
   kept.reserve(document.sections.size());
   for (DocumentSection& section : document.sections) {
-    if (stands_once(section.kind.kind)) {
+    if (is_known(section.kind.kind)) {
       const auto [at, is_new] = first.try_emplace(identity(section.kind), kept.size());
       if (!is_new) {
         merge_remarks(kept[at->second], at->second == 0, section);

@@ -9,8 +9,8 @@ namespace edsc {
 /// Of duplicate sections, the first remains, with the comments of both.
 void drop_second_sections(Document& document);
 
-/// FileInfo, DeviceInfo, DummyUsage, Comments, DeviceComissioning; then each object list and its objects, ascending;
-/// then the rest in its order.
+/// The order of `section_rows`: each object list is followed by its objects, ascending; the sections of a module are
+/// together. Unknown sections follow in their order.
 void order_sections(Document& document, const DataSheet& sheet);
 
 /// The list of an object: the list to which it belongs; for a data type, the list that contains it. Nothing if there is

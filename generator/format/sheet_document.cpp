@@ -100,15 +100,15 @@ class SheetWriter {
     add_section("DeviceInfo");
     put(device_info_keys, sheet_.device_info);
     for (const DeviceInfo::BaudRate& rate : sheet_.device_info.baud_rates) {
-      put(fmt::format("{}{}", baud_rate_prefix, rate.kbit_per_second), rate.field.text);
+      put(spell_numbered_key(baud_rate_key, rate.kbit_per_second), rate.field.text);
     }
   }
 
   void write_dummies() {
     if (sheet_.dummy_usage.empty()) return;
     add_section("DummyUsage");
-    for (const NumberedField& dummy : sheet_.dummy_usage) {
-      put(fmt::format("Dummy{:04X}", dummy.number), dummy.field.text);
+    for (const NumberedField& used : sheet_.dummy_usage) {
+      put(spell_numbered_key(dummy_key, used.number), used.field.text);
     }
   }
 

@@ -31,7 +31,9 @@ NODE_ID = "5"
 ERROR = re.compile(r": error: ")
 KNOWN_SECTION = re.compile(
     r"fileinfo|deviceinfo|dummyusage|comments|devicecomm?issioning|(mandatory|optional|manufacturer)objects"
-    r"|[0-9a-f]{1,4}(sub[0-9a-f]{1,2}|name|value|denotation|objectlinks)?", re.IGNORECASE)
+    r"|(m[0-9]+fixed)?[0-9a-f]{1,4}(sub[0-9a-f]{1,2}|name|value|denotation|objectlinks)?"
+    r"|tools|tool[0-9]+|dynamicchannels|(supported|connected)modules"
+    r"|m[0-9]+(moduleinfo|comments|fixedobjects|subextends|subext[0-9a-f]{1,4})", re.IGNORECASE)
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@
 namespace edsc {
 namespace {
 
-constexpr std::string_view count_key = comments_keys[0].name;
+constexpr std::string_view count_key = comment_line_count.name;
 
 void check_count(const SourceFile& source, const IniSection& section, const Comments& comments,
                  Diagnostics& diagnostics) {
@@ -38,7 +38,7 @@ Comments read_comments(const SourceFile& source, const IniSection& section, Diag
       source, section, diagnostics,
       [&](std::string_view key) {
         if (equal_ignoring_case(key, count_key)) return &comments.lines;
-        const std::optional<std::uint32_t> number = number_in(comments_keys[1], key);
+        const std::optional<std::uint32_t> number = match_key(comment_line, key);
         return number ? &numbered_field(comments.text, *number) : nullptr;
       },
       count_key);

@@ -6,19 +6,10 @@
 #include <optional>
 
 #include "eds/number.hpp"
-#include "eds/sections/keys.hpp"
+#include "eds/sections/section_keys.hpp"
 
 namespace edsc {
 namespace {
-
-constexpr std::string_view segment_count_key = "NrOfSeg";
-
-constexpr KeyRow<DynamicSegment> segment_rows[] = {
-    {{"Type#"}, &DynamicSegment::type},
-    {{"Dir#"}, &DynamicSegment::direction},
-    {{"Range#"}, &DynamicSegment::range},
-    {{"PPOffset#"}, &DynamicSegment::process_picture_offset},
-};
 
 DynamicSegment& segment_of(DynamicChannels& channels, std::uint32_t number) {
   std::vector<DynamicSegment>& segments = channels.segments;
@@ -30,8 +21,8 @@ DynamicSegment& segment_of(DynamicChannels& channels, std::uint32_t number) {
 }
 
 Field* find_segment_key(std::string_view key, DynamicChannels& channels) {
-  for (const KeyRow<DynamicSegment>& row : segment_rows) {
-    if (const auto number = number_in(row.key, key)) return &(segment_of(channels, *number).*row.field);
+  for (const KeyRow<DynamicSegment>& row : segment_keys) {
+    if (const auto number = match_key(row.key, key)) return &(segment_of(channels, *number).*row.field);
   }
   return nullptr;
 }
@@ -45,15 +36,16 @@ DynamicChannels read_dynamic_channels(const SourceFile& source, const IniSection
   read_keys(
       source, section, diagnostics,
       [&](std::string_view key) {
-        return equal_ignoring_case(key, segment_count_key) ? &channels.nr_of_segments : find_segment_key(key, channels);
+        return equal_ignoring_case(key, segment_count_key.name) ? &channels.nr_of_segments
+                                                                : find_segment_key(key, channels);
       },
-      segment_count_key);
+      segment_count_key.name);
   const std::string_view text = strip_inline_comment(channels.nr_of_segments.text);
   const std::optional<std::uint64_t> count = text.empty() ? std::optional<std::uint64_t>{0} : parse_unsigned(text);
   if (!count || *count != channels.segments.size()) {
     diagnostics.warning(
         "dynamic-segment", channels.nr_of_segments.position,
-        fmt::format("{} must be the number of segments, {}", segment_count_key, channels.segments.size()));
+        fmt::format("{} must be the number of segments, {}", segment_count_key.name, channels.segments.size()));
   }
   return channels;
 }

@@ -7,10 +7,35 @@
 #include <system_error>
 
 #include "diagnostics/quote.hpp"
+#include "eds/number.hpp"
 #include "text/ascii.hpp"
 #include "text/suggestion.hpp"
 
 namespace edsc {
+namespace {
+
+constexpr std::size_t index_digits_of_key = 4;
+
+std::optional<std::uint64_t> read_decimal(std::string_view digits) {
+  if (digits.empty() || !std::ranges::all_of(digits, is_digit)) return std::nullopt;
+  std::uint64_t number = 0;
+  const char* const end = digits.data() + digits.size();
+  return std::from_chars(digits.data(), end, number).ec == std::errc() ? std::optional{number} : std::nullopt;
+}
+
+std::optional<std::uint64_t> read_number_of_key(Numbering numbering, std::string_view digits) {
+  switch (numbering) {
+    case Numbering::none: break;
+    case Numbering::decimal: return read_decimal(digits);
+    case Numbering::c: return parse_unsigned(digits);
+    case Numbering::hex4:
+      if (digits.size() == index_digits_of_key) return parse_hex(digits, index_digits_of_key);
+      break;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
 
 Field make_field(const SourceFile& source, const IniEntry& entry) {
   return {entry.value, value_position(source, entry), true};
@@ -21,15 +46,22 @@ Field& numbered_field(std::vector<NumberedField>& fields, std::uint32_t number) 
   return at != fields.end() && at->number == number ? at->field : fields.insert(at, {number, {}})->field;
 }
 
-std::optional<std::uint32_t> number_in(const SectionKey& row, std::string_view key) {
-  const std::string_view prefix = row.name.substr(0, row.name.size() - 1);
-  if (!starts_with_ignoring_case(key, prefix) || key.size() == prefix.size() || !is_digit(key[prefix.size()])) {
-    return std::nullopt;
+std::optional<std::uint32_t> match_key(const SectionKey& row, std::string_view key) {
+  if (!row.is_numbered()) return equal_ignoring_case(row.name, key) ? std::optional{0U} : std::nullopt;
+  if (!starts_with_ignoring_case(key, row.name)) return std::nullopt;
+  const auto number = read_number_of_key(row.numbering, key.substr(row.name.size()));
+  if (!number || *number < row.first_number || *number > row.last_number) return std::nullopt;
+  return static_cast<std::uint32_t>(*number);
+}
+
+std::string spell_numbered_key(const SectionKey& row, std::uint32_t number) {
+  switch (row.numbering) {
+    case Numbering::none: break;
+    case Numbering::decimal:
+    case Numbering::c: return fmt::format("{}{}", row.name, number);
+    case Numbering::hex4: return fmt::format("{}{:04X}", row.name, number);
   }
-  std::uint32_t number = 0;
-  const char* const end = key.data() + key.size();
-  const std::from_chars_result result = std::from_chars(key.data() + prefix.size(), end, number);
-  return result.ec == std::errc() && result.ptr == end ? std::optional{number} : std::nullopt;
+  return std::string{row.name};
 }
 
 void report_unknown_key(const SourceFile& source, const IniSection& section, const IniEntry& entry,

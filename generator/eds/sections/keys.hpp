@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,18 +21,31 @@ enum class ValueKind : std::uint8_t {
   text,
   number,
   access,
-  typed,  ///< a value of the entry's data type
-  count,  ///< of the entries of this section
+  typed,         ///< a value of the entry's data type
+  index_range,   ///< `0xA080-0xA0BF`, or one index
+  module_count,  ///< `n`, or `0;m`: m bits of a sub-index that several modules share
+  count,         ///< of the numbered entries of this section
+  parts,         ///< the number of tools, modules or segments that the file describes
 };
 
-/// A key as CiA 306 spells it. A name that ends in `#` or `%` stands for keys that end in a number, or in four
-/// hexadecimal digits.
+/// The number at the end of a key.
+enum class Numbering : std::uint8_t {
+  none,
+  decimal,  ///< `Line3`
+  c,        ///< a number of the C language: `3`, `0x3`
+  hex4,     ///< four hexadecimal digits: `Dummy0003`
+};
+
+/// A key as CiA 306 spells it, without its number.
 struct SectionKey {
   std::string_view name;
   ValueKind value = ValueKind::text;
-  std::uint8_t hex_digits = 1;  ///< of a number
+  std::uint8_t hex_digits = 1;  ///< of a number or of indices
+  Numbering numbering = Numbering::none;
+  std::uint32_t first_number = 0;
+  std::uint32_t last_number = 0xFFFF'FFFF;
 
-  [[nodiscard]] constexpr bool is_numbered() const { return name.ends_with('#') || name.ends_with('%'); }
+  [[nodiscard]] constexpr bool is_numbered() const { return numbering != Numbering::none; }
 };
 
 /// A key and its destination; null for numbered keys.
@@ -63,8 +77,12 @@ void place_fields(const KeyRow<Struct> (&table)[n], const Position& position, St
 /// Returns the field of `number`; adds one if necessary.
 [[nodiscard]] Field& numbered_field(std::vector<NumberedField>& fields, std::uint32_t number);
 
-/// Returns the number of a numbered key: 3 in `Line3` for `Line#`. Nothing for any other key.
-[[nodiscard]] std::optional<std::uint32_t> number_in(const SectionKey& row, std::string_view key);
+/// Whether `key` is a key of this row, ignoring letter case: its number, 3 in `Line3`, or 0 without a number. Nothing
+/// for any other key.
+[[nodiscard]] std::optional<std::uint32_t> match_key(const SectionKey& row, std::string_view key);
+
+/// The key with this number, as CiA 306 spells it.
+[[nodiscard]] std::string spell_numbered_key(const SectionKey& row, std::uint32_t number);
 
 /// `known` are the keys of the section, for a suggestion in the message.
 void report_unknown_key(const SourceFile& source, const IniSection& section, const IniEntry& entry,

@@ -16,21 +16,6 @@
 namespace edsc {
 namespace {
 
-constexpr KeyRow<ModuleDescription> info_keys[] = {
-    {{"ProductName"}, &ModuleDescription::product_name},
-    {{"ProductVersion"}, &ModuleDescription::product_version},
-    {{"ProductRevision"}, &ModuleDescription::product_revision},
-    {{"OrderCode"}, &ModuleDescription::order_code},
-};
-
-constexpr KeyRow<SubExtension> extension_keys[] = {
-    {{"Count"}, &SubExtension::count},
-    {{"ObjExtend"}, &SubExtension::object_extend},
-};
-
-constexpr CountKey nr_of_extensions{nr_of_entries.name, {}, "entry-count", true};
-constexpr std::string_view module_count_key = nr_of_entries.name;
-
 /// Reads the sections of one module, in file order.
 class ModuleReader {
  public:
@@ -73,16 +58,16 @@ class ModuleReader {
     const IniSection& keys = *section.section;
     if (section.name.kind == SectionKind::module_info) {
       has_info_ = true;
-      place_fields(info_keys, section_position(source_, keys), module_);
+      place_fields(module_info_keys, section_position(source_, keys), module_);
       read_keys(
-          source_, keys, diagnostics_, [&](std::string_view key) { return find_key(info_keys, key, module_); },
-          info_keys);
+          source_, keys, diagnostics_, [&](std::string_view key) { return find_key(module_info_keys, key, module_); },
+          module_info_keys);
     } else if (section.name.kind == SectionKind::module_comments) {
       module_.comments = read_comments(source_, keys, diagnostics_);
     } else if (section.name.kind == SectionKind::module_fixed_objects) {
-      module_.fixed_objects = read_numbered_section(source_, keys, nr_of_extensions, diagnostics_);
+      module_.fixed_objects = read_numbered_section(source_, keys, nr_of_list_entries, diagnostics_);
     } else if (section.name.kind == SectionKind::module_sub_extends) {
-      module_.sub_extends = read_numbered_section(source_, keys, nr_of_extensions, diagnostics_);
+      module_.sub_extends = read_numbered_section(source_, keys, nr_of_list_entries, diagnostics_);
     } else if (section.name.kind == SectionKind::module_sub_extension) {
       read_extension(section.name.index, keys);
     }
@@ -92,14 +77,14 @@ class ModuleReader {
     SubExtension& extension = module_.sub_extensions.emplace_back();
     extension.index = index;
     place_entry(section_position(source_, section), extension);
-    place_fields(extension_keys, section_position(source_, section), extension);
+    place_fields(sub_extension_keys, section_position(source_, section), extension);
     read_keys(
         source_, section, diagnostics_,
         [&](std::string_view key) {
           Field* const field = find_key<EntryDescription>(entry_keys, key, extension);
-          return field != nullptr ? field : find_key(extension_keys, key, extension);
+          return field != nullptr ? field : find_key(sub_extension_keys, key, extension);
         },
-        entry_keys, extension_keys);
+        entry_keys, sub_extension_keys);
   }
 
   const SourceFile& source_;
@@ -147,13 +132,13 @@ Modules read_modules(const SourceFile& source, const ModuleSections& sections, D
     read_keys(
         source, *sections.supported, diagnostics,
         [&](std::string_view key) {
-          return equal_ignoring_case(key, module_count_key) ? &modules.nr_of_entries : nullptr;
+          return equal_ignoring_case(key, module_count_key.name) ? &modules.nr_of_entries : nullptr;
         },
-        module_count_key);
+        module_count_key.name);
   }
   check_count(source, sections.supported, modules, diagnostics);
   if (sections.connected != nullptr) {
-    modules.connected = read_numbered_section(source, *sections.connected, nr_of_extensions, diagnostics);
+    modules.connected = read_numbered_section(source, *sections.connected, nr_of_list_entries, diagnostics);
   }
   return modules;
 }

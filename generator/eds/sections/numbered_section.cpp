@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -11,7 +10,7 @@
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 #include "eds/sections/duplicates.hpp"
-#include "eds/sections/keys.hpp"
+#include "eds/sections/section_keys.hpp"
 #include "text/counted.hpp"
 
 namespace edsc {
@@ -33,9 +32,8 @@ class NumberedSectionReader {
 
  private:
   void read_entry(const IniEntry& entry) {
-    const std::optional<std::uint64_t> number = parse_unsigned(entry.key);
-    if (number && *number <= std::numeric_limits<std::uint32_t>::max()) {
-      add(static_cast<std::uint32_t>(*number), entry);
+    if (const auto number = match_key(text_entry, entry.key)) {
+      add(*number, entry);
     } else if (equal_ignoring_case(entry.key, count_key_.name)) {
       read_count(entry);
     } else if (!count_key_.misspelling.empty() && equal_ignoring_case(entry.key, count_key_.misspelling)) {

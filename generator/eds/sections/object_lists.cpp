@@ -100,6 +100,15 @@ void report_not_listed(const DataSheet& sheet, Diagnostics& diagnostics) {
 
 }  // namespace
 
+SectionKind section_of(ObjectListKind list) {
+  switch (list) {
+    case ObjectListKind::mandatory: break;
+    case ObjectListKind::optional: return SectionKind::optional_objects;
+    case ObjectListKind::manufacturer: return SectionKind::manufacturer_objects;
+  }
+  return SectionKind::mandatory_objects;
+}
+
 std::optional<ObjectListKind> list_of(std::uint16_t index) {
   for (const ListRange& range : list_ranges) {
     if (index >= range.first && index <= range.last) return range.list;

@@ -15,9 +15,7 @@
 namespace edsc {
 
 /// The section of a list.
-[[nodiscard]] constexpr SectionKind section_of(ObjectListKind list) {
-  return static_cast<SectionKind>(static_cast<unsigned>(SectionKind::mandatory_objects) + static_cast<unsigned>(list));
-}
+[[nodiscard]] SectionKind section_of(ObjectListKind list);
 
 /// The list to which an object belongs. Nothing for the data types below 1000h, for which CiA 306 does not define a
 /// list.

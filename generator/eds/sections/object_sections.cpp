@@ -122,6 +122,10 @@ class ObjectReader {
 
 }  // namespace
 
+std::uint32_t ObjectSection::order() const {
+  return (std::uint32_t{name.index} << 16U) | (place_of_section(name.kind) << 8U) | name.sub_index;
+}
+
 void place_entry(const Position& position, EntryDescription& entry) {
   entry.position = position;
   place_fields(entry_keys, position, entry);

@@ -17,9 +17,7 @@ struct ObjectSection {
   const IniSection* section = nullptr;
 
   /// Sort key: groups the sections of one index, the object before its sub-objects before the lists of a compact form.
-  [[nodiscard]] std::uint32_t order() const {
-    return (std::uint32_t{name.index} << 16U) | (static_cast<std::uint32_t>(name.kind) << 8U) | name.sub_index;
-  }
+  [[nodiscard]] std::uint32_t order() const;
 };
 
 /// Reads objects from their sections, which may be in any order. Returns them ascending by index, each index once.

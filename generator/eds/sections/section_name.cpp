@@ -1,64 +1,34 @@
 #include "eds/sections/section_name.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstddef>
 #include <optional>
-#include <span>
 
 #include "eds/ini.hpp"
 #include "eds/number.hpp"
+#include "eds/sections/section_keys.hpp"
 #include "text/ascii.hpp"
 
 namespace edsc {
 namespace {
 
-struct FixedName {
-  std::string_view name;
-  SectionKind kind;
-};
-
-constexpr FixedName fixed_names[] = {
-    {"FileInfo", SectionKind::file_info},
-    {"DeviceInfo", SectionKind::device_info},
-    {"DummyUsage", SectionKind::dummy_usage},
-    {"Comments", SectionKind::comments},
-    {"DeviceComissioning", SectionKind::device_commissioning},
-    {"DeviceCommissioning", SectionKind::device_commissioning},
-    {"MandatoryObjects", SectionKind::mandatory_objects},
-    {"OptionalObjects", SectionKind::optional_objects},
-    {"ManufacturerObjects", SectionKind::manufacturer_objects},
-    {"Tools", SectionKind::tools},
-    {"DynamicChannels", SectionKind::dynamic_channels},
-    {"SupportedModules", SectionKind::supported_modules},
-    {"ConnectedModules", SectionKind::connected_modules},
-};
-
-/// What may follow the index of an object, other than `sub` and the sub-index.
-constexpr FixedName index_suffixes[] = {
-    {"Name", SectionKind::compact_names},
-    {"Value", SectionKind::compact_values},
-    {"Denotation", SectionKind::compact_denotations},
-    {"ObjectLinks", SectionKind::object_links},
-};
-
-/// What follows `M` and the number of a module.
-constexpr FixedName module_parts[] = {
-    {"ModuleInfo", SectionKind::module_info},
-    {"Comments", SectionKind::module_comments},
-    {"FixedObjects", SectionKind::module_fixed_objects},
-    {"SubExtends", SectionKind::module_sub_extends},
-};
-
-constexpr std::string_view tool_prefix = "Tool";
-constexpr std::string_view module_prefix = "M";
-constexpr std::string_view fixed_prefix = "Fixed";
-constexpr std::string_view extension_prefix = "SubExt";
 constexpr std::size_t number_digits = 4;
 
 constexpr std::size_t index_digits = 4;
 constexpr std::size_t sub_index_digits = 2;
-constexpr std::string_view sub = "sub";
+constexpr std::string_view module_prefix = "M";
+
+constexpr std::string_view title_of(SectionKind kind) { return find_section(kind)->title; }
+
+constexpr std::string_view sub = title_of(SectionKind::sub_object);
+
+constexpr bool has_form(SectionKind kind, NameForm form) {
+  const SectionRow* const row = find_section(kind);
+  return row != nullptr && row->form == form;
+}
 
 /// Removes the decimal number at the start of `text`.
 std::optional<std::uint16_t> take_number(std::string_view& text) {
@@ -80,11 +50,13 @@ bool take_prefix(std::string_view& text, std::string_view prefix) {
   return true;
 }
 
-std::optional<SectionKind> find_fixed(std::span<const FixedName> table, std::string_view name) {
-  for (const FixedName& row : table) {
-    if (equal_ignoring_case(name, row.name)) {
-      return row.kind;
-    }
+/// The section whose name, or its part without the number of the module, is a title of this form.
+std::optional<SectionKind> find_title(NameForm form, std::string_view name) {
+  for (const SectionRow& row : section_rows) {
+    if (row.form == form && equal_ignoring_case(name, row.title)) return row.kind;
+  }
+  for (const OtherTitle& other : other_titles) {
+    if (has_form(other.kind, form) && equal_ignoring_case(name, other.title)) return other.kind;
   }
   return std::nullopt;
 }
@@ -120,31 +92,31 @@ std::optional<SectionName> read_object(std::string_view name) {
     return index ? read_sub_object(index_text, *index, rest.substr(sub.size()))
                  : malformed("an index has four hexadecimal digits");
   }
-  for (const FixedName& row : index_suffixes) {
-    const std::string_view index_text = name.substr(0, name.size() - std::min(name.size(), row.name.size()));
+  for (const SectionRow& row : section_rows) {
+    if (row.form != NameForm::object || !ends_with_ignoring_case(name, row.title)) continue;
+    const std::string_view index_text = name.substr(0, name.size() - row.title.size());
     const std::optional<std::uint16_t> index = parse_hex(index_text, index_digits);
-    if (index && ends_with_ignoring_case(name, row.name)) {
-      return with_index(row.kind, index_text, *index);
-    }
+    if (index) return with_index(row.kind, index_text, *index);
   }
   return std::nullopt;
 }
 
 /// The part after the module number.
 std::optional<SectionName> read_module_part(std::string_view rest) {
-  if (const std::optional<SectionKind> kind = find_fixed(module_parts, rest)) return SectionName{.kind = *kind};
-  if (take_prefix(rest, extension_prefix)) {
-    const std::optional<std::uint16_t> index = parse_hex(rest, index_digits);
-    return index ? with_index(SectionKind::module_sub_extension, rest, *index)
-                 : malformed("an index has four hexadecimal digits");
-  }
-  if (take_prefix(rest, fixed_prefix)) {
-    std::optional<SectionName> object = read_object(rest);
-    if (object && object->kind != SectionKind::malformed) {
-      object->part = object->kind;
-      object->kind = SectionKind::module_fixed_object;
+  if (const std::optional<SectionKind> kind = find_title(NameForm::module, rest)) return SectionName{.kind = *kind};
+  for (const SectionRow& row : section_rows) {
+    if (row.form == NameForm::module_index && take_prefix(rest, row.title)) {
+      const std::optional<std::uint16_t> index = parse_hex(rest, index_digits);
+      return index ? with_index(row.kind, rest, *index) : malformed("an index has four hexadecimal digits");
     }
-    return object;
+    if (row.form == NameForm::module_object && take_prefix(rest, row.title)) {
+      std::optional<SectionName> object = read_object(rest);
+      if (object && object->kind != SectionKind::malformed) {
+        object->part = object->kind;
+        object->kind = row.kind;
+      }
+      return object;
+    }
   }
   return std::nullopt;
 }
@@ -152,7 +124,7 @@ std::optional<SectionName> read_module_part(std::string_view rest) {
 /// `ToolX`, and names that begin with `MX`.
 std::optional<SectionName> read_numbered(std::string_view name) {
   std::string_view rest = name;
-  if (take_prefix(rest, tool_prefix)) {
+  if (take_prefix(rest, title_of(SectionKind::tool))) {
     const std::optional<std::uint16_t> number = take_number(rest);
     if (!number || !rest.empty()) return std::nullopt;
     return SectionName{.kind = SectionKind::tool, .number = *number};
@@ -170,31 +142,72 @@ std::optional<SectionName> read_numbered(std::string_view name) {
 
 }  // namespace
 
+bool is_object_section(SectionKind kind) { return has_form(kind, NameForm::object); }
+
+bool is_module_section(SectionKind kind) {
+  return has_form(kind, NameForm::module) || has_form(kind, NameForm::module_index) ||
+         has_form(kind, NameForm::module_object);
+}
+
+bool is_object_list(SectionKind kind) {
+  return kind == SectionKind::mandatory_objects || kind == SectionKind::optional_objects ||
+         kind == SectionKind::manufacturer_objects;
+}
+
+bool is_known(SectionKind kind) { return find_section(kind) != nullptr; }
+
+bool is_single(SectionKind kind) { return has_form(kind, NameForm::title); }
+
 SectionName read_section_name(std::string_view name) {
   if (const std::optional<SectionName> object = read_object(name)) {
     return *object;
   }
-  if (const std::optional<SectionKind> kind = find_fixed(fixed_names, name)) return {.kind = *kind};
+  if (const std::optional<SectionKind> kind = find_title(NameForm::title, name)) return {.kind = *kind};
   return read_numbered(name).value_or(SectionName{});
 }
 
-std::string_view section_title(SectionKind kind) {
-  if (kind == SectionKind::sub_object) return sub;
-  for (const std::span<const FixedName> table :
-       {std::span<const FixedName>{fixed_names}, std::span<const FixedName>{index_suffixes}}) {
-    const auto row = std::ranges::find(table, kind, &FixedName::kind);
-    if (row != table.end()) return row->name;
+std::string spell_section_name(const SectionName& name) {
+  const SectionRow* const row = find_section(name.kind);
+  if (row == nullptr) return {};
+  const auto spell_object = [&](SectionKind kind) {
+    const std::string sub_index = kind == SectionKind::sub_object ? fmt::format("{:X}", name.sub_index) : "";
+    return fmt::format("{:04X}{}{}", name.index, title_of(kind), sub_index);
+  };
+  switch (row->form) {
+    case NameForm::title: break;
+    case NameForm::tool: return fmt::format("{}{}", row->title, name.number);
+    case NameForm::object: return spell_object(name.kind);
+    case NameForm::module: return fmt::format("{}{}{}", module_prefix, name.number, row->title);
+    case NameForm::module_index: return fmt::format("{}{}{}{:04X}", module_prefix, name.number, row->title, name.index);
+    case NameForm::module_object:
+      return fmt::format("{}{}{}{}", module_prefix, name.number, row->title, spell_object(name.part));
   }
-  return "";
+  return std::string{row->title};
+}
+
+std::uint64_t identity(const SectionName& name) {
+  std::uint64_t bits = name.number;
+  bits = (bits << 8U) | place_of_section(name.kind);
+  bits = (bits << 16U) | name.index;
+  bits = (bits << 8U) | place_of_section(name.part);
+  return (bits << 8U) | name.sub_index;
+}
+
+std::string_view section_title(SectionKind kind) {
+  const SectionRow* const row = find_section(kind);
+  return row != nullptr ? row->title : std::string_view{};
 }
 
 std::vector<std::string> known_section_names(std::string_view like) {
   std::vector<std::string> names;
-  for (const FixedName& row : fixed_names) names.emplace_back(row.name);
   const std::string_view digits = like.substr(0, std::min(like.size(), index_digits));
-  if (parse_hex(digits, index_digits)) {
-    for (const FixedName& row : index_suffixes) names.push_back(std::string{digits}.append(row.name));
+  const bool has_index = parse_hex(digits, index_digits).has_value();
+  for (const SectionRow& row : section_rows) {
+    if (row.form == NameForm::title) names.emplace_back(row.title);
+    const bool is_entry = row.kind == SectionKind::object || row.kind == SectionKind::sub_object;
+    if (has_index && row.form == NameForm::object && !is_entry) names.push_back(std::string{digits}.append(row.title));
   }
+  for (const OtherTitle& other : other_titles) names.emplace_back(other.title);
   return names;
 }
 

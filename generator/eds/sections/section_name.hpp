@@ -6,39 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "eds/data_sheet.hpp"
+#include "eds/ini.hpp"
+
 namespace edsc {
-
-struct IniSection;
-
-enum class SectionKind : std::uint8_t {
-  file_info,
-  device_info,
-  dummy_usage,
-  comments,
-  device_commissioning,
-  mandatory_objects,
-  optional_objects,
-  manufacturer_objects,
-  object,               ///< [1018]
-  sub_object,           ///< [1018sub1]
-  compact_names,        ///< [1003Name]
-  compact_values,       ///< [1003Value]
-  compact_denotations,  ///< [1003Denotation]
-  object_links,         ///< [1003ObjectLinks]
-  tools,
-  tool,  ///< [Tool1]
-  dynamic_channels,
-  supported_modules,
-  connected_modules,
-  module_info,           ///< [M1ModuleInfo]
-  module_comments,       ///< [M1Comments]
-  module_fixed_objects,  ///< [M1FixedObjects]
-  module_fixed_object,   ///< [M1Fixed6000], [M1Fixed6000sub1] and the other sections of objects
-  module_sub_extends,    ///< [M1SubExtends]
-  module_sub_extension,  ///< [M1SubExt6000]
-  malformed,             ///< meant for an object, but without a valid index or sub-index
-  unknown
-};
 
 struct SectionName {
   SectionKind kind = SectionKind::unknown;
@@ -56,20 +27,31 @@ struct NamedSection {
 };
 
 /// The sections of an object, which have its index in their name.
-[[nodiscard]] constexpr bool is_object_section(SectionKind kind) {
-  return kind >= SectionKind::object && kind <= SectionKind::object_links;
-}
+[[nodiscard]] bool is_object_section(SectionKind kind);
+
+/// Sections whose name has the number of a module.
+[[nodiscard]] bool is_module_section(SectionKind kind);
 
 /// [MandatoryObjects], [OptionalObjects] and [ManufacturerObjects].
-[[nodiscard]] constexpr bool is_object_list(SectionKind kind) {
-  return kind >= SectionKind::mandatory_objects && kind <= SectionKind::manufacturer_objects;
-}
+[[nodiscard]] bool is_object_list(SectionKind kind);
 
-/// The name of a section as CiA 306 spells it; of an object section, what follows the index. Empty if there is none.
-[[nodiscard]] std::string_view section_title(SectionKind kind);
+/// Whether the section is one of CiA 306 and its name is valid.
+[[nodiscard]] bool is_known(SectionKind kind);
+
+/// Whether the name of the section is its title alone, so that a file has one of it.
+[[nodiscard]] bool is_single(SectionKind kind);
 
 /// Ignores letter case.
 [[nodiscard]] SectionName read_section_name(std::string_view name);
+
+/// The name as CiA 306 spells it: `M1Fixed6000sub1`. Empty for unknown and malformed names.
+[[nodiscard]] std::string spell_section_name(const SectionName& name);
+
+/// The title of a section as CiA 306 spells it; of an object section, what follows the index. Empty if there is none.
+[[nodiscard]] std::string_view section_title(SectionKind kind);
+
+/// Names with the same number are the same section, of which the first in the file is used.
+[[nodiscard]] std::uint64_t identity(const SectionName& name);
 
 /// Names of sections that are candidates for a suggestion for `like`, including those of compact forms for an index.
 [[nodiscard]] std::vector<std::string> known_section_names(std::string_view like);

@@ -8,24 +8,21 @@
 
 #include "eds/number.hpp"
 #include "eds/sections/duplicates.hpp"
-#include "eds/sections/keys.hpp"
+#include "eds/sections/section_keys.hpp"
 
 namespace edsc {
 namespace {
-
-constexpr KeyRow<Tool> tool_keys[] = {{{"Name"}, &Tool::name}, {{"Command"}, &Tool::command}};
-constexpr std::string_view tool_count_key = "Items";
 
 void check_count(const SourceFile& source, const IniSection& list, std::size_t tools, Diagnostics& diagnostics) {
   Field items;
   read_keys(
       source, list, diagnostics,
-      [&](std::string_view key) { return equal_ignoring_case(key, tool_count_key) ? &items : nullptr; },
-      tool_count_key);
+      [&](std::string_view key) { return equal_ignoring_case(key, tool_count_key.name) ? &items : nullptr; },
+      tool_count_key.name);
   const std::optional<std::uint64_t> count = number_of(items);
   if (!count || *count != tools) {
     diagnostics.warning("tools", items.present ? items.position : section_position(source, list),
-                        fmt::format("{} must be the number of sections [ToolX], {}", tool_count_key, tools));
+                        fmt::format("{} must be the number of sections [ToolX], {}", tool_count_key.name, tools));
   }
 }
 

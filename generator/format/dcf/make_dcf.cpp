@@ -13,6 +13,7 @@
 #include "device/types/value.hpp"
 #include "device/types/value_bytes.hpp"
 #include "eds/number.hpp"
+#include "eds/sections/section_keys.hpp"
 #include "format/dcf/configured_values.hpp"
 #include "format/spelling/key_table.hpp"
 #include "format/spelling/number_spelling.hpp"
@@ -31,10 +32,9 @@ void set(DocumentSection& section, std::string_view key, std::string value) {
     entry->value = std::move(value);
     return;
   }
-  const std::uint32_t order = spell_key(section.kind.kind, key).order;
-  const auto place = std::ranges::find_if(section.entries, [&](const DocumentEntry& entry) {
-    return spell_key(section.kind.kind, entry.key).order > order;
-  });
+  const std::uint64_t order = spell_key(section.kind, key).order;
+  const auto place = std::ranges::find_if(
+      section.entries, [&](const DocumentEntry& entry) { return spell_key(section.kind, entry.key).order > order; });
   section.entries.insert(place, {{}, std::string{key}, std::move(value)});
 }
 
@@ -109,12 +109,13 @@ class DcfMaker {
     for (DocumentSection& section : document_.sections) {
       if (section.kind.kind == kind) return section;
     }
-    const auto place = std::ranges::find_if(document_.sections,
-                                            [](const DocumentSection& section) { return section.kind.kind > kind; });
+    const auto place = std::ranges::find_if(document_.sections, [](const DocumentSection& section) {
+      return place_of_section(section.kind.kind) > place_of_section(kind);
+    });
     if (place == document_.sections.begin()) give_up_first_place(document_);
     DocumentSection added;
     added.kind.kind = kind;
-    added.title = spell_title(added.kind, {});
+    added.title = spell_section_name(added.kind);
     return *document_.sections.insert(place, std::move(added));
   }
 
@@ -199,7 +200,7 @@ class DcfMaker {
     DocumentSection added;
     added.kind.kind = SectionKind::compact_values;
     added.kind.index = index;
-    added.title = spell_title(added.kind, {});
+    added.title = spell_section_name(added.kind);
     return *document_.sections.insert(place, std::move(added));
   }
 
@@ -235,7 +236,7 @@ class DcfMaker {
   void configure_compact_values(DocumentSection& section) {
     if (given_ != nullptr) return;
     for (DocumentEntry& value : section.entries) {
-      const KeySpelling key = spell_key(section.kind.kind, value.key);
+      const KeySpelling key = spell_key(section.kind, value.key);
       if (!key.is_known || key.value != ValueKind::typed || key.number > 0xFF) continue;
       const Entry* const entry = device_.find(section.kind.index, static_cast<std::uint8_t>(key.number));
       if (entry != nullptr && canopen::writable(entry->access)) value.value = resolved(value.value, *entry);

@@ -35,7 +35,7 @@ class ValueMover {
     if (object == nullptr) return;
     for (DocumentEntry& entry : section.entries) {
       if (section.kind.kind == SectionKind::compact_values) {
-        const KeySpelling key = spell_key(section.kind.kind, entry.key);
+        const KeySpelling key = spell_key(section.kind, entry.key);
         if (key.value != ValueKind::typed || key.number > 0xFF) continue;
         move(entry, object->index, static_cast<std::uint8_t>(key.number), *object);
       } else if (entry.key == "ParameterValue") {

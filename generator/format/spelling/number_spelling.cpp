@@ -21,13 +21,6 @@ bool is_decimal(std::string_view text) { return !text.empty() && std::ranges::al
 
 Spelling unchanged(std::string_view text) { return {std::string{text}, {}}; }
 
-/// The inline comment after the value, from its `;` or `#`.
-std::string_view inline_comment(std::string_view text) {
-  const std::size_t start = text.find_first_of(";#");
-  if (start == std::string_view::npos || trim(text.substr(start + 1)).empty()) return {};
-  return trim(text.substr(start));
-}
-
 std::optional<std::string> spell_magnitude(std::string_view digits, unsigned hex_digits) {
   const auto number = parse_unsigned(digits);
   if (!number) return std::nullopt;
@@ -88,7 +81,23 @@ std::optional<std::string> spell_by_type(std::string_view text, const canopen::D
   return std::nullopt;
 }
 
+/// Two numbers with a separator between them, or one number without it.
+std::optional<std::string> spell_pair(std::string_view text, char separator, unsigned hex_digits) {
+  const std::size_t middle = text.find(separator);
+  const auto first = spell_magnitude(trim(text.substr(0, middle)), hex_digits);
+  if (!first || middle == std::string_view::npos) return first;
+  const auto second = spell_magnitude(trim(text.substr(middle + 1)), hex_digits);
+  if (!second) return std::nullopt;
+  return fmt::format("{}{}{}", *first, separator, *second);
+}
+
 }  // namespace
+
+std::string_view inline_comment(std::string_view text) {
+  const std::size_t start = text.find_first_of(";#");
+  if (start == std::string_view::npos || trim(text.substr(start + 1)).empty()) return {};
+  return trim(text.substr(start));
+}
 
 unsigned hex_digits_of(const canopen::DataTypeRow& type) { return (type.bits + 3U) / 4U; }
 
@@ -100,6 +109,16 @@ Spelling spell_number(std::string_view text, unsigned hex_digits) {
 Spelling spell_value(std::string_view text, const canopen::DataTypeRow& type) {
   const auto value = spell_by_type(strip_inline_comment(text), type);
   return value ? Spelling{*value, inline_comment(text)} : unchanged(text);
+}
+
+Spelling spell_index_range(std::string_view text, unsigned hex_digits) {
+  const auto range = spell_pair(strip_inline_comment(text), '-', hex_digits);
+  return range ? Spelling{*range, inline_comment(text)} : unchanged(text);
+}
+
+Spelling spell_module_count(std::string_view text) {
+  const auto count = spell_pair(text, ';', 1);
+  return count ? Spelling{*count, {}} : unchanged(text);
 }
 
 Spelling spell_access(std::string_view text) {

@@ -21,6 +21,15 @@ struct Spelling {
 /// the type, and formulas as `$NODEID+0x180`; strings and invalid values are unchanged.
 [[nodiscard]] Spelling spell_value(std::string_view text, const canopen::DataTypeRow& type);
 
+/// An index, or a range of indices: `0xA080-0xA0BF`. Other text is unchanged.
+[[nodiscard]] Spelling spell_index_range(std::string_view text, unsigned hex_digits);
+
+/// A Count of a module: `n` or `0;m`. Other text is unchanged.
+[[nodiscard]] Spelling spell_module_count(std::string_view text);
+
+/// The inline comment after a number, from its `;` or `#`; may be empty.
+[[nodiscard]] std::string_view inline_comment(std::string_view text);
+
 /// An AccessType in lower case; other text is unchanged.
 [[nodiscard]] Spelling spell_access(std::string_view text);
 

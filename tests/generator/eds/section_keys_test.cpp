@@ -7,6 +7,7 @@
 #include <cctype>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include "eds/data_sheet.hpp"
 #include "eds/ini.hpp"
@@ -25,11 +26,11 @@ std::string lower_case(std::string_view text) {
 /// Reads `KEY=7` of each row in a section, into the struct that `find` returns.
 template <typename Struct, std::size_t n, typename Find>
 void expect_rows_suffice(const KeyRow<Struct> (&rows)[n], std::string_view section, SectionKind kind, Find find) {
-  std::set<std::uint32_t> orders;
-  std::uint32_t before = 0;
+  std::set<std::uint64_t> orders;
+  std::uint64_t before = 0;
   for (const KeyRow<Struct>& row : rows) {
     const std::string_view name = row.key.name;
-    const KeySpelling spelling = spell_key(kind, lower_case(name));
+    const KeySpelling spelling = spell_key({.kind = kind}, lower_case(name));
     if (row.key.is_numbered()) continue;
     const SourceFile source("a.eds", fmt::format("[1000]\nDataType=7\n[{}]\n{}=7\n", section, lower_case(name)));
     Diagnostics diagnostics;
@@ -57,6 +58,24 @@ TEST(SectionKeys, AreReadAndSpelledByTheirRow) {
       [](const DataSheet& sheet) -> const EntryDescription& { return sheet.find(0x2000)->sub_objects.at(0); });
   expect_rows_suffice(object_keys, "2000", SectionKind::object,
                       [](const DataSheet& sheet) -> const ObjectDescription& { return *sheet.find(0x2000); });
+  expect_rows_suffice(tool_keys, "Tool1", SectionKind::tool,
+                      [](const DataSheet& sheet) -> const Tool& { return sheet.tools.at(0); });
+  expect_rows_suffice(module_info_keys, "M1ModuleInfo", SectionKind::module_info,
+                      [](const DataSheet& sheet) -> const ModuleDescription& { return sheet.modules.supported.at(0); });
+  expect_rows_suffice(
+      sub_extension_keys, "M1SubExt6000", SectionKind::module_sub_extension,
+      [](const DataSheet& sheet) -> const SubExtension& { return sheet.modules.supported.at(0).sub_extensions.at(0); });
+}
+
+TEST(SectionKeys, OfPlainSectionsAreReadByTheRowOfTheSection) {
+  std::apply(
+      [](const auto&... sections) {
+        (expect_rows_suffice(
+             sections.keys, section_title(sections.kind),
+             sections.kind, [&](const DataSheet& sheet) -> const auto& { return sheet.*sections.member; }),
+         ...);
+      },
+      plain_sections);
 }
 
 TEST(SectionKeys, OfObjectsFollowTheTypeOfTheObject) {

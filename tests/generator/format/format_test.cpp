@@ -154,7 +154,7 @@ TEST(CanonicalForm, KeepsTheCommentOfAListedObject) {
   const std::string text = formatted(
       "[ManufacturerObjects]\nSupportedObjects=2\n; two\n1=0x2001\n2=0x2000 ; one\n"
       "[2001]\nDataType=5\n[2000]\nDataType=5\n");
-  EXPECT_NE(text.find("SupportedObjects=2\n1=0x2000\n; two\n2=0x2001\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("SupportedObjects=2\n; one\n1=0x2000\n; two\n2=0x2001\n"), std::string::npos) << text;
 }
 
 TEST(CanonicalForm, KeepsTheCommentBeforeTheNumberOfListedObjects) {

@@ -23,7 +23,11 @@ struct KnownSection {
   std::vector<KnownKey> keys;  ///< in the order of CiA 306-1
 };
 
-constexpr ValueKind number_kind = ValueKind::number, typed_kind = ValueKind::typed, count_kind = ValueKind::count;
+constexpr ValueKind number_kind = ValueKind::number, typed_kind = ValueKind::typed, count_kind = ValueKind::count,
+                    parts_kind = ValueKind::parts;
+
+/// The spelling of a key in a section of this kind.
+KeySpelling spelling_in(SectionKind kind, std::string_view key) { return spell_key({.kind = kind}, key); }
 
 const KnownSection sections_of_cia306[] = {
     {SectionKind::file_info,
@@ -70,7 +74,7 @@ const KnownSection sections_of_cia306[] = {
       {"CANopenSafetySupported"}}},
     {SectionKind::dummy_usage,
      {{"Dummy0001", number_kind}, {"Dummy0002", number_kind}, {"Dummy0007", number_kind}, {"Dummy001B", number_kind}}},
-    {SectionKind::comments, {{"Lines"}, {"Line1"}, {"Line2"}, {"Line10"}}},
+    {SectionKind::comments, {{"Lines", count_kind}, {"Line1"}, {"Line2"}, {"Line10"}}},
     {SectionKind::device_commissioning,
      {{"NodeID", number_kind, 2},
       {"NodeName"},
@@ -126,7 +130,35 @@ const KnownSection sections_of_cia306[] = {
     {SectionKind::compact_names, {{"NrOfEntries", count_kind}, {"1"}, {"254"}}},
     {SectionKind::compact_values, {{"NrOfEntries", count_kind}, {"1", typed_kind}, {"254", typed_kind}}},
     {SectionKind::compact_denotations, {{"NrOfEntries", count_kind}, {"1"}, {"254"}}},
-    {SectionKind::object_links, {{"ObjectLinks", count_kind}, {"1", number_kind, 4}, {"2", number_kind, 4}}},
+    {SectionKind::object_links, {{"ObjectLinks", count_kind}, {"1", number_kind, 4}}},
+    {SectionKind::dynamic_channels,  // the keys of a segment are together
+     {{"NrOfSeg", parts_kind},
+      {"Type1", number_kind, 4},
+      {"Dir1"},
+      {"Range1", ValueKind::index_range, 4},
+      {"PPOffset1", number_kind},
+      {"Type2", number_kind, 4},
+      {"PPOffset12", number_kind}}},
+    {SectionKind::tools, {{"Items", parts_kind}}},
+    {SectionKind::tool, {{"Name"}, {"Command"}}},
+    {SectionKind::supported_modules, {{"NrOfEntries", parts_kind}}},
+    {SectionKind::module_info,
+     {{"ProductName"}, {"ProductVersion", number_kind}, {"ProductRevision", number_kind}, {"OrderCode"}}},
+    {SectionKind::module_fixed_objects, {{"NrOfEntries", count_kind}, {"1", number_kind, 4}, {"12", number_kind, 4}}},
+    {SectionKind::module_sub_extends, {{"NrOfEntries", count_kind}, {"1", number_kind, 4}, {"12", number_kind, 4}}},
+    {SectionKind::module_sub_extension,
+     {{"ParameterName"},
+      {"ObjectType", number_kind},
+      {"DataType", number_kind, 4},
+      {"AccessType", ValueKind::access},
+      {"LowLimit", typed_kind},
+      {"HighLimit", typed_kind},
+      {"DefaultValue", typed_kind},
+      {"PDOMapping", number_kind},
+      {"Count", ValueKind::module_count},
+      {"ObjExtend", number_kind}}},
+    {SectionKind::module_comments, {{"Lines", count_kind}, {"Line1"}, {"Line2"}}},
+    {SectionKind::connected_modules, {{"NrOfEntries", count_kind}, {"1", number_kind}}},
 };
 
 std::string in_lower_case(std::string_view text) {
@@ -137,9 +169,9 @@ std::string in_lower_case(std::string_view text) {
 
 TEST(KeyTable, HasEachKeyOfCia306InItsPlaceAndWithItsKindOfValue) {
   for (const KnownSection& section : sections_of_cia306) {
-    std::uint32_t before = 0;
+    std::uint64_t before = 0;
     for (const KnownKey& key : section.keys) {
-      const KeySpelling spelled = spell_key(section.kind, in_lower_case(key.name));
+      const KeySpelling spelled = spelling_in(section.kind, in_lower_case(key.name));
       EXPECT_TRUE(spelled.is_known) << key.name;
       EXPECT_EQ(spelled.name, key.name);
       EXPECT_EQ(spelled.value, key.value) << key.name;
@@ -152,18 +184,18 @@ TEST(KeyTable, HasEachKeyOfCia306InItsPlaceAndWithItsKindOfValue) {
 
 TEST(KeyTable, HasNoKeyOfAWholeObjectInASubObject) {
   for (const char* key : {"SubNumber", "CompactSubObj"}) {
-    EXPECT_FALSE(spell_key(SectionKind::sub_object, key).is_known) << key;
-    EXPECT_TRUE(spell_key(SectionKind::object, key).is_known) << key;
+    EXPECT_FALSE(spelling_in(SectionKind::sub_object, key).is_known) << key;
+    EXPECT_TRUE(spelling_in(SectionKind::object, key).is_known) << key;
   }
 }
 
 TEST(KeyTable, PutsAnUnknownKeyAfterTheOthers) {
   for (const KnownSection& section : sections_of_cia306) {
-    const KeySpelling unknown = spell_key(section.kind, "MyOwnKey");
+    const KeySpelling unknown = spelling_in(section.kind, "MyOwnKey");
     EXPECT_FALSE(unknown.is_known);
     EXPECT_EQ(unknown.name, "MyOwnKey");
     EXPECT_EQ(unknown.value, ValueKind::text);
-    EXPECT_GT(unknown.order, spell_key(section.kind, section.keys.back().name).order);
+    EXPECT_GT(unknown.order, spelling_in(section.kind, section.keys.back().name).order);
   }
 }
 
@@ -187,21 +219,42 @@ TEST(KeyTable, SpellsTheTitlesOfCia306) {
                            {SectionKind::compact_values, "1A00Value"},
                            {SectionKind::compact_denotations, "1A00Denotation"},
                            {SectionKind::object_links, "1A00ObjectLinks"},
-                           {SectionKind::unknown, "Tool"}}) {
-    SectionName name;
-    name.kind = row.kind;
-    name.index = 0x1A00;
-    name.sub_index = 0xA;
-    EXPECT_EQ(spell_title(name, "Tool"), row.title);
+                           {SectionKind::dynamic_channels, "DynamicChannels"},
+                           {SectionKind::tools, "Tools"},
+                           {SectionKind::tool, "Tool3"},
+                           {SectionKind::supported_modules, "SupportedModules"},
+                           {SectionKind::module_info, "M3ModuleInfo"},
+                           {SectionKind::module_fixed_objects, "M3FixedObjects"},
+                           {SectionKind::module_fixed_object, "M3Fixed1A00subA"},
+                           {SectionKind::module_sub_extends, "M3SubExtends"},
+                           {SectionKind::module_sub_extension, "M3SubExt1A00"},
+                           {SectionKind::module_comments, "M3Comments"},
+                           {SectionKind::connected_modules, "ConnectedModules"},
+                           {SectionKind::malformed, ""},
+                           {SectionKind::unknown, ""}}) {
+    const SectionName name{
+        .kind = row.kind,
+        .index = 0x1A00,
+        .sub_index = 0xA,
+        .number = 3,
+        .part = row.kind == SectionKind::module_fixed_object ? SectionKind::sub_object : SectionKind::unknown};
+    EXPECT_EQ(spell_section_name(name), row.title);
+    EXPECT_EQ(read_section_name(row.title).kind, row.title.empty() ? SectionKind::unknown : row.kind) << row.title;
+  }
+}
+
+TEST(KeyTable, HasARowForEachSection) {
+  for (unsigned kind = 0; kind < static_cast<unsigned>(SectionKind::malformed); ++kind) {
+    EXPECT_TRUE(is_known(static_cast<SectionKind>(kind))) << kind;
   }
 }
 
 TEST(KeyTable, SpellsEveryKeyThatItKnows) {
-  EXPECT_EQ(spell_key(SectionKind::device_info, "baudrate_500").name, "BaudRate_500");
-  EXPECT_EQ(spell_key(SectionKind::dummy_usage, "dummy001a").name, "Dummy001A");
-  EXPECT_EQ(spell_key(SectionKind::device_commissioning, "nodeid").name, "NodeID");
-  EXPECT_FALSE(spell_key(SectionKind::sub_object, "SubNumber").is_known);
-  EXPECT_FALSE(spell_key(SectionKind::unknown, "ParameterName").is_known);
+  EXPECT_EQ(spelling_in(SectionKind::device_info, "baudrate_500").name, "BaudRate_500");
+  EXPECT_EQ(spelling_in(SectionKind::dummy_usage, "dummy001a").name, "Dummy001A");
+  EXPECT_EQ(spelling_in(SectionKind::device_commissioning, "nodeid").name, "NodeID");
+  EXPECT_FALSE(spelling_in(SectionKind::sub_object, "SubNumber").is_known);
+  EXPECT_FALSE(spelling_in(SectionKind::unknown, "ParameterName").is_known);
 }
 
 }  // namespace
