@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 namespace edsc {
@@ -49,6 +51,18 @@ struct ModuleInformation {
   std::vector<std::string> comments;
 };
 
+/// A value of a section, by its key as CiA 306 spells it.
+struct SectionValue {
+  std::string_view key;
+  std::variant<std::string, std::uint32_t> value;
+};
+
+/// The values of a section that does not have its own members.
+struct SectionValues {
+  std::string_view title;
+  std::vector<SectionValue> values;
+};
+
 struct Information {
   FileInformation file;
   Capabilities capabilities;
@@ -58,6 +72,7 @@ struct Information {
   std::vector<DynamicChannel> dynamic_channels;
   std::vector<ModuleInformation> supported_modules;
   std::vector<std::uint16_t> connected_modules;  ///< by place, from the DCF or the options
+  std::vector<SectionValues> sections;           ///< other sections with independent keys
 };
 
 }  // namespace edsc

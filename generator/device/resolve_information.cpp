@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "device/information_rows.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
+#include "eds/sections/section_keys.hpp"
+#include "eds/sections/section_name.hpp"
 
 namespace edsc {
 namespace {
@@ -27,6 +30,7 @@ class InformationReader {
     read_commissioning();
     read_dynamic_channels();
     read_modules();
+    std::apply([&](const auto&... sections) { (read_plain(sections), ...); }, plain_sections);
     return std::move(information_);
   }
 
@@ -102,6 +106,13 @@ class InformationReader {
     }
     channel.first_index = static_cast<std::uint32_t>(*first);
     channel.last_index = static_cast<std::uint32_t>(*last);
+  }
+
+  template <typename Struct, std::size_t n>
+  void read_plain(const PlainSection<Struct, n>& plain) {
+    if (plain.dumped == Dumped::by_member || !(sheet_.*plain.member).present) return;
+    information_.sections.push_back(
+        {section_title(plain.kind), section_values(plain.keys, sheet_.*plain.member, plain.rule, diagnostics_)});
   }
 
   void read_modules() {

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <variant>
 
 #include "device/information_rows.hpp"
 
@@ -95,6 +97,14 @@ ordered_json modules_view(const Information& information) {
   return {{"supported", std::move(supported)}, {"connected", information.connected_modules}};
 }
 
+ordered_json section_view(const SectionValues& section) {
+  ordered_json view = ordered_json::object();
+  for (const SectionValue& one : section.values) {
+    std::visit([&](const auto& value) { view[std::string{one.key}] = value; }, one.value);
+  }
+  return view;
+}
+
 }  // namespace
 
 void add_information(const Information& information, ordered_json& view) {
@@ -107,6 +117,9 @@ void add_information(const Information& information, ordered_json& view) {
   view["tools"] = tools_view(information.tools);
   view["dynamic_channels"] = channels_view(information.dynamic_channels);
   view["modules"] = modules_view(information);
+  for (const SectionValues& section : information.sections) {
+    view["sections"][std::string{section.title}] = section_view(section);
+  }
 }
 
 }  // namespace edsc

@@ -7,7 +7,8 @@
 
 namespace edsc {
 
-/// Adds `file_info`, `device_info`, `commissioning`, `comments`, `tools`, `dynamic_channels` and `modules` to a view.
+/// Adds `file_info`, `device_info`, `commissioning`, `comments`, `tools`, `dynamic_channels` and `modules` to a view,
+/// and `sections` if there are any.
 void add_information(const Information& information, nlohmann::ordered_json& view);
 
 }  // namespace edsc

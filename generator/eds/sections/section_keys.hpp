@@ -1,5 +1,5 @@
 /// The sections of CiA 306-1 and their keys, one row each: spelling, kind of value and destination, in canonical order.
-/// Reader and formatter use the same tables.
+/// Reader, formatter and `edsc dump` use the same tables.
 #pragma once
 
 #include <algorithm>
@@ -290,21 +290,33 @@ inline constexpr OtherTitle other_titles[] = {{"DeviceCommissioning", SectionKin
   return places[static_cast<std::size_t>(kind)];
 }
 
+/// The values of a section in `edsc dump`.
+enum class Dumped : std::uint8_t {
+  by_member,  ///< from members of `Information`, see `information_rows`
+  by_key,     ///< as a member of `sections`, from the rows of its keys
+};
+
 /// A section that occurs once and whose keys do not depend on each other. It is read from its row and its keys alone.
 template <typename Struct, std::size_t n>
 struct PlainSection {
   SectionKind kind;
   Struct DataSheet::*member;
   const KeyRow<Struct> (&keys)[n];
+  WarningRule rule;  ///< for a value that is not a number
+  Dumped dumped;
 };
 
 template <typename Struct, std::size_t n>
-PlainSection(SectionKind, Struct DataSheet::*, const KeyRow<Struct> (&)[n]) -> PlainSection<Struct, n>;
+PlainSection(SectionKind, Struct DataSheet::*, const KeyRow<Struct> (&)[n], WarningRule, Dumped)
+    -> PlainSection<Struct, n>;
 
 inline constexpr std::tuple plain_sections{
-    PlainSection{SectionKind::file_info, &DataSheet::file_info, section_keys::file_info_keys},
-    PlainSection{SectionKind::device_info, &DataSheet::device_info, section_keys::device_info_keys},
-    PlainSection{SectionKind::device_commissioning, &DataSheet::commissioning, section_keys::commissioning_keys},
+    PlainSection{SectionKind::file_info, &DataSheet::file_info, section_keys::file_info_keys, "device-info",
+                 Dumped::by_member},
+    PlainSection{SectionKind::device_info, &DataSheet::device_info, section_keys::device_info_keys, "device-info",
+                 Dumped::by_member},
+    PlainSection{SectionKind::device_commissioning, &DataSheet::commissioning, section_keys::commissioning_keys,
+                 "commissioning", Dumped::by_member},
 };
 
 using section_keys::all_object_keys, section_keys::baud_rate_key, section_keys::commissioning_keys,
