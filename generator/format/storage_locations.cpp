@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "compare/stored_values.hpp"
+#include "eds/sections/section_name.hpp"
 
 namespace edsc {
 namespace {
@@ -23,23 +24,9 @@ constexpr std::string_view never_stored[] = {"RAM", "ROM"};
 
 /// The entry of a section: `2100` or `2100sub1`.
 std::optional<EntryKey> entry_of(std::string_view section) {
-  const auto number = [](std::string_view digits) -> std::optional<unsigned> {
-    unsigned value = 0;
-    if (digits.empty() || digits.size() > 4) return std::nullopt;
-    for (const char digit : digits) {
-      if (std::isxdigit(static_cast<unsigned char>(digit)) == 0) return std::nullopt;
-      const int letter = std::toupper(static_cast<unsigned char>(digit));
-      value = value * 16 + static_cast<unsigned>(letter <= '9' ? letter - '0' : letter - 'A' + 10);
-    }
-    return value;
-  };
-  const auto index = number(section.substr(0, 4));
-  if (section.size() < 4 || !index) return std::nullopt;
-  if (section.size() == 4) return EntryKey{static_cast<std::uint16_t>(*index), std::uint8_t{0}};
-  if (!starts_with_ignoring_case(section.substr(4), "sub")) return std::nullopt;
-  const auto sub_index = number(section.substr(7));
-  if (!sub_index || *sub_index > 0xFF) return std::nullopt;
-  return EntryKey{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*sub_index)};
+  const SectionName name = read_section_name(section);
+  if (name.kind != SectionKind::object && name.kind != SectionKind::sub_object) return std::nullopt;
+  return EntryKey{name.index, name.sub_index};
 }
 
 /// The groups by entry.
