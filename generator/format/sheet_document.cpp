@@ -1,7 +1,5 @@
 #include "format/sheet_document.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <string_view>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "eds/sections/section_keys.hpp"
+#include "eds/sections/section_name.hpp"
 #include "format/object_list_sections.hpp"
 #include "text/ascii.hpp"
 
@@ -60,7 +59,7 @@ class SheetWriter {
     write_device_info();
     write_dummies();
     if (sheet_.commissioning.present) {
-      add_section("DeviceComissioning");
+      add_section({.kind = SectionKind::device_commissioning});
       put(commissioning_keys, sheet_.commissioning);
     }
     for (const ObjectDescription& object : sheet_.objects) write_object(object);
@@ -69,10 +68,10 @@ class SheetWriter {
   }
 
  private:
-  void add_section(std::string title) {
+  void add_section(const SectionName& name) {
     DocumentSection& section = document_.sections.emplace_back();
-    section.kind = read_section_name(title);
-    section.title = std::move(title);
+    section.kind = name;
+    section.title = spell_section_name(name);
   }
 
   void put(std::string_view key, std::string_view value) {
@@ -91,13 +90,13 @@ class SheetWriter {
     info.file_name.text = file_name_;
     info.eds_version.text = eds_version;
     info.file_name.present = info.eds_version.present = true;
-    add_section("FileInfo");
+    add_section({.kind = SectionKind::file_info});
     put(file_info_keys, info);
   }
 
   void write_device_info() {
     if (!sheet_.device_info.present && sheet_.device_info.baud_rates.empty()) return;
-    add_section("DeviceInfo");
+    add_section({.kind = SectionKind::device_info});
     put(device_info_keys, sheet_.device_info);
     for (const DeviceInfo::BaudRate& rate : sheet_.device_info.baud_rates) {
       put(spell_numbered_key(baud_rate_key, rate.kbit_per_second), rate.field.text);
@@ -106,19 +105,19 @@ class SheetWriter {
 
   void write_dummies() {
     if (sheet_.dummy_usage.empty()) return;
-    add_section("DummyUsage");
+    add_section({.kind = SectionKind::dummy_usage});
     for (const NumberedField& used : sheet_.dummy_usage) {
       put(spell_numbered_key(dummy_key, used.number), used.field.text);
     }
   }
 
   void write_object(const ObjectDescription& object) {
-    add_section(fmt::format("{:04X}", object.index));
+    add_section({.kind = SectionKind::object, .index = object.index});
     const EntryDescription& entry = object;
     put_entry(object.sub_objects.empty() ? entry : without_value(entry, object.sub_objects));
     put(object_keys, object);
     for (const SubObjectDescription& sub_object : object.sub_objects) {
-      add_section(fmt::format("{:04X}sub{:X}", object.index, sub_object.sub_index));
+      add_section({.kind = SectionKind::sub_object, .index = object.index, .sub_index = sub_object.sub_index});
       put_entry(sub_object);
     }
   }

@@ -11,6 +11,7 @@
 #include "diagnostics/quote.hpp"
 #include "eds/ini.hpp"
 #include "eds/number.hpp"
+#include "eds/sections/section_keys.hpp"
 #include "xdd/attributes.hpp"
 
 namespace edsc {
@@ -93,9 +94,7 @@ constexpr std::span<const AttributeRow<DeviceCommissioning>> commissioning_attri
 
 constexpr std::string_view automatic_rate = "auto-baudRate";
 
-constexpr std::string_view dummy_prefix = "Dummy";
 constexpr std::size_t dummy_digits = 4;
-constexpr std::uint16_t last_dummy = 0xFF;
 
 void read_identity(XmlDocument& xml, pugi::xml_node identity, DeviceInfo& info) {
   for_each_element(identity, [&](pugi::xml_node child) {
@@ -132,9 +131,9 @@ void read_baud_rates(XmlDocument& xml, pugi::xml_node baud_rate, std::vector<Dev
 std::optional<NumberedField> read_dummy(const Field& entry) {
   const std::size_t equals = entry.text.find('=');
   const std::string_view key = entry.text.substr(0, equals);
-  if (equals == std::string_view::npos || !starts_with_ignoring_case(key, dummy_prefix)) return std::nullopt;
-  const auto index = parse_hex(key.substr(dummy_prefix.size()), dummy_digits);
-  if (!index || *index == 0 || *index > last_dummy) return std::nullopt;
+  if (equals == std::string_view::npos || !starts_with_ignoring_case(key, dummy_key.name)) return std::nullopt;
+  const auto index = parse_hex(key.substr(dummy_key.name.size()), dummy_digits);
+  if (!index || *index < dummy_key.first_number || *index > dummy_key.last_number) return std::nullopt;
   Field field = entry;
   field.text.remove_prefix(equals + 1);
   return NumberedField{*index, field};
