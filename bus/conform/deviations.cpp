@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
-#include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string_view>
+#include <utility>
 
 #include "device/device.hpp"
+#include "diagnostics/json_file.hpp"
 #include "diagnostics/place.hpp"
 #include "text/ascii.hpp"
 #include "text/suggestion.hpp"
@@ -18,120 +17,60 @@
 namespace edsc::conform {
 namespace {
 
-using json = nlohmann::ordered_json;  // errors in the order of the file
+using json = JsonFile::Json;
 
 constexpr std::array<std::string_view, 2> file_members = {"$schema", "deviations"};
 constexpr std::array<std::string_view, 4> deviation_members = {"case", "object", "reason", "source"};
 
-/// Iterates over the characters of a text and records how far the parser has read.
-class CountedText {
- public:
-  using iterator_category = std::input_iterator_tag;
-  using value_type = char;
-  using difference_type = std::ptrdiff_t;
-  using pointer = const char*;
-  using reference = const char&;
-
-  CountedText(const char* at, const char** taken) : at_{at}, taken_{taken} {}
-
-  reference operator*() const { return *at_; }
-  CountedText& operator++() {
-    ++at_;
-    if (taken_ != nullptr) *taken_ = at_;
-    return *this;
-  }
-  friend bool operator==(const CountedText& a, const CountedText& b) { return a.at_ == b.at_; }
-
- private:
-  const char* at_;
-  const char** taken_;
-};
-
 class DeviationsReader {
  public:
-  DeviationsReader(const SourceFile& source, Diagnostics& diagnostics) : source_{source}, diagnostics_{diagnostics} {
+  DeviationsReader(const SourceFile& source, Diagnostics& diagnostics) : file_{source}, diagnostics_{diagnostics} {
     for (const CaseRow* row : all_cases()) case_ids_.push_back(row->id);
   }
 
   std::vector<Deviation> read() {
-    const std::optional<json> document = parse();
-    if (!document) return {};
-    if (!document->is_object()) {
-      error(Position{&source_, 1, 1}, "expected one JSON object");
+    for (const JsonFault& fault : file_.faults()) error(fault.position, fault.message, fault.notes);
+    if (!file_.is_valid()) return {};
+    const json& root = file_.root();
+    if (!root.is_object()) {
+      error(file_.value_position(root), "expected one JSON object");
       return {};
     }
-    bool has_deviations = false;
-    for (const auto& [name, value] : document->items()) {
+    for (const auto& [name, value] : file_.members(root)) {
       if (name == "deviations") {
-        has_deviations = true;
-        deviations(value);
+        deviations(*value);
       } else if (name != "$schema") {
-        error(position_of(name), fmt::format("unknown member {}{}", name, did_you_mean(name, file_members)));
+        error(file_.name_position(*value), fmt::format("unknown member {}{}", name, did_you_mean(name, file_members)));
       }
     }
-    if (!has_deviations) error(Position{&source_, 1, 1}, "missing member deviations");
+    if (!root.contains("deviations")) error(file_.value_position(root), "missing member deviations");
     return std::move(deviations_);
   }
 
  private:
-  /// Positions of an object of the file and of the names of its members.
-  struct Places {
-    Position begin;
-    std::map<std::string, Position, std::less<>> members;
-  };
-
-  std::optional<json> parse() {
-    const std::string_view text = source_.text();
-    const char* taken = text.data();
-    const char* token = text.data();  // at the next token, or before it
-    const auto note_place = [&](int depth, json::parse_event_t event, json& parsed) {
-      while (token < taken && std::string_view{" \t\r\n,:"}.find(*token) != std::string_view::npos) ++token;
-      const Position position = position_at(static_cast<std::size_t>(token - text.data()));
-      token = taken;
-      if (event == json::parse_event_t::object_start && depth == 2 && in_deviations_) rows_.push_back({position, {}});
-      if (event == json::parse_event_t::key) note_member(depth, parsed.get<std::string>(), position);
-      return true;
-    };
-    try {
-      return json::parse(CountedText{text.data(), &taken}, CountedText{text.data() + text.size(), nullptr}, note_place);
-    } catch (const json::parse_error& problem) {
-      error(position_at(std::max<std::size_t>(problem.byte, 1) - 1), fmt::format("not JSON: {}", what_of(problem)));
-    } catch (const json::out_of_range& problem) {
-      error(Position{&source_, 1, 1}, fmt::format("not JSON: {}", what_of(problem)));
-    }
-    return std::nullopt;
-  }
-
-  void note_member(int depth, const std::string& name, const Position& position) {
-    if (depth == 1) in_deviations_ = name == "deviations";
-    if (depth != 1 && (depth != 3 || !in_deviations_ || rows_.empty())) return;
-    auto& members = depth == 1 ? file_.members : rows_.back().members;
-    if (!members.emplace(name, position).second) error(position, fmt::format("duplicate member {}", name));
-  }
-
   void deviations(const json& value) {
     const bool valid =
         value.is_array() && std::ranges::all_of(value, [](const json& item) { return item.is_object(); });
-    if (!valid || value.size() != rows_.size()) {
-      return error(position_of("deviations"),
+    if (!valid) {
+      return error(file_.name_position(value),
                    R"(expected an array of objects: [{"case": "3.7", "object": "1800h:02", "reason": "..."}])");
     }
-    for (std::size_t i = 0; i < value.size(); ++i) deviation(value[i], rows_[i]);
+    for (const json& item : value) deviation(item);
   }
 
-  void deviation(const json& item, const Places& places) {
+  void deviation(const json& item) {
     Deviation row;
-    row.position = places.begin;
+    row.position = file_.value_position(item);
     bool valid = true;
-    for (const auto& [name, value] : item.items()) {
-      const std::string problem = set_member(row, name, value);
+    for (const auto& [name, value] : file_.members(item)) {
+      const std::string problem = set_member(row, name, *value);
       valid = valid && problem.empty();
-      if (!problem.empty()) error(places.members.find(name)->second, problem);
+      if (!problem.empty()) error(file_.name_position(*value), problem);
     }
     for (const std::string_view name : {std::string_view{"case"}, std::string_view{"reason"}}) {
       if (item.contains(name)) continue;
       valid = false;
-      error(places.begin, fmt::format("missing member {}", name));
+      error(row.position, fmt::format("missing member {}", name));
     }
     if (valid) deviations_.push_back(std::move(row));
   }
@@ -157,39 +96,17 @@ class DeviationsReader {
     return {};
   }
 
-  [[nodiscard]] Position position_of(std::string_view member) const {
-    const auto found = file_.members.find(member);
-    return found != file_.members.end() ? found->second : Position{&source_, 1, 1};
-  }
-
-  [[nodiscard]] Position position_at(std::size_t offset) const {
-    const std::string_view before = source_.text().substr(0, offset);
-    const std::size_t line_end = before.rfind('\n');
-    const std::size_t column = line_end == std::string_view::npos ? before.size() : before.size() - line_end - 1;
-    return {&source_, static_cast<std::uint32_t>(1 + std::ranges::count(before, '\n')),
-            static_cast<std::uint32_t>(1 + column)};
-  }
-
-  /// The parser's message without its exception name and id.
-  static std::string what_of(const json::exception& problem) {
-    const std::string_view what = problem.what();
-    const std::size_t colon = what.find(": ");
-    return std::string{colon == std::string_view::npos ? what : what.substr(colon + 2)};
-  }
-
-  void error(const Position& position, std::string message) {
+  void error(const Position& position, std::string message, std::vector<Note> notes = {}) {
     Diagnostic diagnostic;
     diagnostic.position = position;
     diagnostic.message = std::move(message);
+    diagnostic.notes = std::move(notes);
     diagnostics_.report(std::move(diagnostic));
   }
 
-  const SourceFile& source_;
+  JsonFile file_;
   Diagnostics& diagnostics_;
   std::vector<std::string_view> case_ids_;
-  Places file_;
-  bool in_deviations_ = false;
-  std::vector<Places> rows_;  ///< of the deviations
   std::vector<Deviation> deviations_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "commands/commands.hpp"
 #include "device/resolve.hpp"
+#include "diagnostics/place.hpp"
 #include "eds/ini.hpp"
 #include "format/canonical_form.hpp"
 #include "format/dcf/concise_dcf.hpp"
@@ -127,7 +128,7 @@ int check(const SourceFile& source, const std::string& text) {
     return exit_input_has_errors;
   }
   const auto [in_file, in_text] = std::ranges::mismatch(source.text(), text);
-  const auto line = std::count(source.text().begin(), in_file, '\n') + 1;
+  const std::uint32_t line = position_at(source, static_cast<std::size_t>(in_file - source.text().begin())).line;
   print_visibly(stderr, "{}:{}: the canonical form differs from here on\n", source.name(), line);
   return exit_input_has_errors;
 }

@@ -5,37 +5,15 @@
 #include <algorithm>
 #include <string_view>
 #include <utility>
-#include <vector>
 
+#include "diagnostics/place.hpp"
 #include "diagnostics/quote.hpp"
 
 namespace edsc {
 namespace {
 
 using Json = JsonFile::Json;
-using Pointer = JsonFile::Pointer;
-
-/// The place of a byte, for ascending bytes.
-class PlaceCounter {
- public:
-  explicit PlaceCounter(const SourceFile& source) : source_{source} {}
-
-  [[nodiscard]] Position at(std::size_t byte, std::size_t length) {
-    const std::string_view text = source_.text();
-    for (; byte_ < std::min(byte, text.size()); ++byte_) {
-      if (text[byte_] != '\n') continue;
-      ++line_;
-      line_start_ = byte_ + 1;
-    }
-    return {&source_, line_, static_cast<std::uint32_t>(byte - line_start_) + 1, static_cast<std::uint32_t>(length)};
-  }
-
- private:
-  const SourceFile& source_;
-  std::size_t byte_ = 0;
-  std::size_t line_start_ = 0;
-  std::uint32_t line_ = 1;
-};
+using JsonPlaces = std::unordered_map<const Json*, JsonPlace>;
 
 /// The message of the parser without its position and number, which precede a colon.
 std::string_view reason(std::string_view message) {
@@ -49,20 +27,15 @@ std::string_view without_number(std::string_view message) {
   return bracket == std::string_view::npos ? message : message.substr(bracket + 2);
 }
 
-struct DuplicateMember {
-  std::string name;
-  Position position;
-  Position first;
-};
-
 /// Finds the places of all values in a valid JSON text.
 class JsonPlaceScanner {
  public:
-  JsonPlaceScanner(const SourceFile& source, JsonPlaces& places)
-      : places_{places}, text_{source.text()}, counter_{source} {}
+  /// `root` is the value of the text.
+  JsonPlaceScanner(const SourceFile& source, const Json& root, JsonPlaces& places, std::vector<JsonFault>& faults)
+      : source_{source}, text_{source.text()}, root_{root}, places_{places}, faults_{faults} {}
 
-  /// Returns the members whose name occurred before in their object; the parser uses the last one.
-  std::vector<DuplicateMember> scan() {
+  /// Reports the members whose name occurred before in their object.
+  void scan() {
     while (skip_blanks()) {
       switch (text_[at_]) {
         case '{':
@@ -74,14 +47,16 @@ class JsonPlaceScanner {
         default: word(); break;
       }
     }
-    return std::move(duplicates_);
   }
 
  private:
+  /// An object or array around the position.
   struct Level {
+    const Json* json = nullptr;  ///< null for a value that a member of the same name replaces
     bool is_array = false;
     bool is_duplicate = false;  ///< below a member that is a duplicate
     std::size_t element = 0;
+    const Json* member = nullptr;
     std::string name;  ///< of the member
     Position name_position;
   };
@@ -91,7 +66,7 @@ class JsonPlaceScanner {
     while (at_ < text_.size()) {
       const std::string_view rest = text_.substr(at_);
       if (rest.starts_with("//")) {
-        at_ += std::min(rest.find('\n'), rest.size());
+        at_ += std::min(rest.find_first_of("\r\n"), rest.size());
       } else if (rest.starts_with("/*")) {
         const std::size_t end = rest.find("*/", 2);
         at_ += end == std::string_view::npos ? rest.size() : end + 2;
@@ -105,8 +80,12 @@ class JsonPlaceScanner {
   }
 
   void open() {
-    const bool is_duplicate = record(at_, 1);
-    levels_.push_back({text_[at_] == '[', is_duplicate, 0, {}, {}});
+    Level level;
+    level.is_array = text_[at_] == '[';
+    const Json* const json = current();
+    if (json != nullptr && (level.is_array ? json->is_array() : json->is_object())) level.json = json;
+    level.is_duplicate = record(at_, 1);
+    levels_.push_back(std::move(level));
     ++at_;
   }
 
@@ -129,12 +108,20 @@ class JsonPlaceScanner {
     const std::size_t length = at_ - start;
     if (skip_blanks() && text_[at_] == ':' && !levels_.empty()) {
       ++at_;
-      Level& level = levels_.back();
-      level.name = Json::parse(text_.substr(start, length)).get<std::string>();
-      level.name_position = counter_.at(start, length);
+      name_member(start, length);
     } else {
       record(start, length);
     }
+  }
+
+  void name_member(std::size_t start, std::size_t length) {
+    Level& level = levels_.back();
+    level.member = nullptr;
+    if (level.json == nullptr) return;
+    level.name = Json::parse(text_.substr(start, length)).get<std::string>();
+    level.name_position = position_at(source_, start, length);
+    const auto member = level.json->find(level.name);
+    if (member != level.json->end()) level.member = &*member;
   }
 
   void word() {
@@ -143,65 +130,78 @@ class JsonPlaceScanner {
     record(start, at_ - start);
   }
 
+  /// The value at the position, or null.
+  [[nodiscard]] const Json* current() const {
+    if (levels_.empty()) return &root_;
+    const Level& level = levels_.back();
+    if (!level.is_array) return level.member;
+    return level.json != nullptr && level.element < level.json->size() ? &(*level.json)[level.element] : nullptr;
+  }
+
   /// Whether the value belongs to a member that is a duplicate. The parser uses the last one, and so do the places.
   bool record(std::size_t start, std::size_t length) {
-    if (levels_.size() > JsonFile::max_depth) return true;
-    Pointer pointer;
-    for (const Level& level : levels_) {
-      if (level.is_array) {
-        pointer.push_back(std::to_string(level.element));
-      } else {
-        pointer.push_back(level.name);
-      }
-    }
-    const Position value = counter_.at(start, length);
+    const Json* const json = current();
+    if (json == nullptr) return false;
+    const Position value = position_at(source_, start, length);
     const bool is_member = !levels_.empty() && !levels_.back().is_array;
-    const Position name = is_member ? levels_.back().name_position : value;
-    const auto [at, is_new] = places_.try_emplace(pointer.to_string(), JsonPlace{name, value});
-    if (is_new) return !levels_.empty() && levels_.back().is_duplicate;
-    if (!levels_.back().is_duplicate) duplicates_.push_back({levels_.back().name, name, at->second.name});
-    at->second = {name, value};
+    const bool is_in_duplicate = !levels_.empty() && levels_.back().is_duplicate;
+    const JsonPlace place{is_member ? levels_.back().name_position : value, value};
+    const auto [at, is_new] = places_.try_emplace(json, place);
+    if (is_new) return is_in_duplicate;
+    if (!is_in_duplicate) {
+      faults_.push_back({place.name,
+                         fmt::format("duplicate member {}", quote(levels_.back().name)),
+                         {{at->second.name, "the first one"}}});
+    }
+    at->second = place;
     return true;
   }
 
-  JsonPlaces& places_;
+  const SourceFile& source_;
   std::string_view text_;
-  PlaceCounter counter_;
+  const Json& root_;
+  JsonPlaces& places_;
+  std::vector<JsonFault>& faults_;
   std::size_t at_ = 0;
   std::vector<Level> levels_;
-  std::vector<DuplicateMember> duplicates_;
 };
 
 }  // namespace
 
-JsonFile::JsonFile(const SourceFile& source, ErrorRule syntax_rule, Diagnostics& diagnostics) : source_{source} {
+JsonFile::JsonFile(const SourceFile& source) : source_{source} {
   constexpr bool with_comments = true;
   try {
     root_ = Json::parse(source.text(), nullptr, true, with_comments);
   } catch (const Json::parse_error& problem) {
-    Position position{&source};
-    if (problem.byte > 0) position = PlaceCounter{source}.at(problem.byte - 1, 1);
-    diagnostics.error(syntax_rule, position, fmt::format("not JSON: {}", reason(problem.what())));
+    const Position position = problem.byte > 0 ? position_at(source, problem.byte - 1) : Position{&source};
+    faults_.push_back({position, fmt::format("not JSON: {}", reason(problem.what())), {}});
     return;
   } catch (const Json::out_of_range& problem) {  // a number that does not fit into a double
-    diagnostics.error(syntax_rule, Position{&source}, fmt::format("not JSON: {}", without_number(problem.what())));
+    faults_.push_back({Position{&source}, fmt::format("not JSON: {}", without_number(problem.what())), {}});
     return;
   }
   is_valid_ = true;
-  for (const DuplicateMember& one : JsonPlaceScanner{source, places_}.scan()) {
-    diagnostics.error(syntax_rule, one.position, fmt::format("duplicate member {}", quote(one.name)),
-                      {{one.first, "the first one"}});
-  }
+  JsonPlaceScanner{source, root_, places_, faults_}.scan();
 }
 
-Position JsonFile::value_position(const Pointer& pointer) const {
-  const auto at = places_.find(pointer.to_string());
-  return at == places_.end() ? Position{&source_} : at->second.value;
+void JsonFile::report_faults(ErrorRule rule, Diagnostics& diagnostics) const {
+  for (const JsonFault& fault : faults_) diagnostics.error(rule, fault.position, fault.message, fault.notes);
 }
 
-Position JsonFile::name_position(const Pointer& pointer) const {
-  const auto at = places_.find(pointer.to_string());
-  return at == places_.end() ? Position{&source_} : at->second.name;
+std::vector<JsonFile::Member> JsonFile::members(const Json& object) const {
+  std::vector<Member> members;
+  members.reserve(object.size());
+  for (const auto& [name, value] : object.items()) members.push_back({name, &value});
+  std::ranges::sort(members, {}, [&](const Member& member) {
+    const Position position = name_position(*member.value);
+    return std::pair{position.line, position.column};
+  });
+  return members;
+}
+
+JsonPlace JsonFile::place_of(const Json& value) const {
+  const auto at = places_.find(&value);
+  return at == places_.end() ? JsonPlace{{&source_}, {&source_}} : at->second;
 }
 
 }  // namespace edsc

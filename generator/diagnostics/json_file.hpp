@@ -1,9 +1,11 @@
 /// A JSON file with the position of each member and element.
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "diagnostics/diagnostics.hpp"
 #include "text/source_file.hpp"
@@ -16,35 +18,51 @@ struct JsonPlace {
   Position value;
 };
 
-/// By JSON pointer.
-using JsonPlaces = std::unordered_map<std::string, JsonPlace>;
+/// A text that is not JSON, or a member whose name occurs twice in its object.
+struct JsonFault {
+  Position position;
+  std::string message;
+  std::vector<Note> notes;
+};
 
-/// Members keep the order of the file. Comments as in C++ are allowed.
+/// Comments as in C++ are allowed. Copies of a value do not have a position: functions take values of `root()`.
 class JsonFile {
  public:
-  using Json = nlohmann::ordered_json;
-  using Pointer = Json::json_pointer;
+  using Json = nlohmann::json;
 
-  /// Parses the text. A text that is not JSON is reported as a finding of `syntax_rule`; the root is then null.
-  JsonFile(const SourceFile& source, ErrorRule syntax_rule, Diagnostics& diagnostics);
+  struct Member {
+    std::string name;
+    const Json* value;
+  };
 
-  /// Whether the text is JSON; a text that is not was reported.
+  /// Parses the text. The root of a text that is not JSON is null. Of several members with one name, the last is used.
+  explicit JsonFile(const SourceFile& source);
+
+  JsonFile(const JsonFile&) = delete;
+  JsonFile& operator=(const JsonFile&) = delete;
+
+  /// Whether the text is JSON. It may still have members with one name.
   [[nodiscard]] bool is_valid() const { return is_valid_; }
+  [[nodiscard]] const std::vector<JsonFault>& faults() const { return faults_; }
+  void report_faults(ErrorRule rule, Diagnostics& diagnostics) const;
+
   [[nodiscard]] const Json& root() const { return root_; }
   [[nodiscard]] const SourceFile& source() const { return source_; }
 
-  /// The position of the value at `pointer`; the whole file if it does not exist, or below `max_depth` levels.
-  [[nodiscard]] Position value_position(const Pointer& pointer) const;
-  /// The position of the name of the member at `pointer`; of an element of an array, that of its value.
-  [[nodiscard]] Position name_position(const Pointer& pointer) const;
-
-  static constexpr std::size_t max_depth = 8;
+  /// The members of an object in the order of the file.
+  [[nodiscard]] std::vector<Member> members(const Json& object) const;
+  [[nodiscard]] Position value_position(const Json& value) const { return place_of(value).value; }
+  /// The position of the name of the member that has the value; of an element of an array, that of the value.
+  [[nodiscard]] Position name_position(const Json& value) const { return place_of(value).name; }
 
  private:
+  [[nodiscard]] JsonPlace place_of(const Json& value) const;
+
   const SourceFile& source_;
   Json root_;
   bool is_valid_ = false;
-  JsonPlaces places_;
+  std::vector<JsonFault> faults_;
+  std::unordered_map<const Json*, JsonPlace> places_;
 };
 
 }  // namespace edsc

@@ -21,4 +21,20 @@ Place place_of(const Position& position) {
           std::max<std::size_t>(count_code_points(line.substr(start, position.length)), 1)};
 }
 
+Position position_at(const SourceFile& source, std::size_t offset, std::size_t length) {
+  const auto start_of = [&](std::uint32_t line) {
+    return static_cast<std::size_t>(source.line(line).data() - source.text().data());
+  };
+  std::uint32_t line = 1;
+  for (std::uint32_t count = source.lines(); count > 1;) {  // it is among the `count` lines from `line` on
+    const std::uint32_t half = count / 2;
+    const bool is_after = start_of(line + half) <= offset;
+    line += is_after ? half : 0;
+    count = is_after ? count - half : half;
+  }
+  const std::size_t column = line == 1 ? offset : offset - start_of(line);
+  return {&source, line, static_cast<std::uint32_t>(column) + 1,
+          static_cast<std::uint32_t>(std::max<std::size_t>(length, 1))};
+}
+
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// A position in the units of an editor.
+/// A position in the units of an editor, and of an offset.
 #pragma once
 
 #include <cstddef>
@@ -18,5 +18,8 @@ struct Place {
 };
 
 [[nodiscard]] Place place_of(const Position& position);
+
+/// The position of `length` bytes at `offset` in the text of a file; at its end, the position after the last line.
+[[nodiscard]] Position position_at(const SourceFile& source, std::size_t offset, std::size_t length = 1);
 
 }  // namespace edsc

@@ -16,7 +16,6 @@ namespace edsc {
 namespace {
 
 using Json = JsonFile::Json;
-using Pointer = JsonFile::Pointer;
 
 /// A number or text of `set` in the notation of an EDS.
 std::optional<std::string> eds_text(const Json& value) {
@@ -48,34 +47,34 @@ class NetworkReader {
     network.source = &file_.source();
     const Json& root = file_.root();
     if (!root.is_object()) {
-      error(Pointer{}, "a network file is a JSON object");
+      error(root, "a network file is a JSON object");
       return network;
     }
-    read_members(root, Pointer{}, network, network_members, {"$schema", "sync", "assume", "nodes", "signals"});
+    read_members(root, network, network_members, {"$schema", "sync", "assume", "nodes", "signals"});
     if (const Json* const sync = object_at(root, "sync")) {
-      read_members(*sync, Pointer{"/sync"}, network.sync, sync_members, {});
+      read_members(*sync, network.sync, sync_members, {});
     }
     if (const WrittenNumber& overflow = network.sync.overflow; overflow && overflow->value == 1) {
-      value_error(Pointer{"/sync/overflow"}, "\"overflow\" must be 0 or a number from 2 to 240: 1 is reserved");
+      value_error(root["sync"]["overflow"], "\"overflow\" must be 0 or a number from 2 to 240: 1 is reserved");
       network.sync.overflow.reset();
     }
     if (const Json* const assume = object_at(root, "assume")) {
-      read_members(*assume, Pointer{"/assume"}, network.assume, assume_members, {});
+      read_members(*assume, network.assume, assume_members, {});
     }
     read_nodes(root, network);
     read_signals(root, network);
-    if (!root.contains("bit_rate")) error(Pointer{}, "missing \"bit_rate\", the bit rate in kbit/s");
+    if (!root.contains("bit_rate")) error(root, "missing \"bit_rate\", the bit rate in kbit/s");
     return network;
   }
 
  private:
   using Names = std::initializer_list<std::string_view>;
 
-  void error(const Pointer& pointer, std::string message) {
-    diagnostics_.error("network-file", file_.name_position(pointer), std::move(message));
+  void error(const Json& json, std::string message) {
+    diagnostics_.error("network-file", file_.name_position(json), std::move(message));
   }
-  void value_error(const Pointer& pointer, std::string message) {
-    diagnostics_.error("network-file", file_.value_position(pointer), std::move(message));
+  void value_error(const Json& json, std::string message) {
+    diagnostics_.error("network-file", file_.value_position(json), std::move(message));
   }
 
   /// The member if it is an object; any other value is an error.
@@ -83,30 +82,29 @@ class NetworkReader {
     const auto at = owner.find(name);
     if (at == owner.end()) return nullptr;
     if (at->is_object()) return &*at;
-    error(Pointer{"/" + name}, fmt::format("{} must be an object", quote(name)));
+    error(*at, fmt::format("{} must be an object", quote(name)));
     return nullptr;
   }
 
   template <class Owner, std::size_t N>
-  void read_members(const Json& json, const Pointer& pointer, Owner& owner, const MemberRow<Owner> (&rows)[N],
-                    Names others) {
-    for (const auto& [name, value] : json.items()) {
+  void read_members(const Json& json, Owner& owner, const MemberRow<Owner> (&rows)[N], Names others) {
+    for (const auto& [name, value] : file_.members(json)) {
       const auto row = std::ranges::find(rows, std::string_view{name}, &MemberRow<Owner>::name);
       if (row != std::end(rows)) {
-        read_member(value, pointer / name, owner, *row);
+        read_member(*value, owner, *row);
       } else if (std::ranges::find(others, name) == others.end()) {
         std::vector<std::string_view> names{others};
         for (const MemberRow<Owner>& one : rows) names.push_back(one.name);
-        error(pointer / name, fmt::format("unknown member {}{}", quote(name), did_you_mean(name, names)));
+        error(*value, fmt::format("unknown member {}{}", quote(name), did_you_mean(name, names)));
       }
     }
   }
 
   template <class Owner>
-  void read_member(const Json& value, const Pointer& pointer, Owner& owner, const MemberRow<Owner>& row) {
-    const Position position = file_.value_position(pointer);
+  void read_member(const Json& value, Owner& owner, const MemberRow<Owner>& row) {
+    const Position position = file_.value_position(value);
     const auto expect = [&](bool is_valid, std::string_view what) {
-      if (!is_valid) value_error(pointer, fmt::format("{} must be {}", quote(row.name), what));
+      if (!is_valid) value_error(value, fmt::format("{} must be {}", quote(row.name), what));
       return is_valid;
     };
     switch (row.form()) {
@@ -128,37 +126,35 @@ class NetworkReader {
             Written<bool>{value.template get<bool>(), position};
         return;
       case MemberForm::texts:
-        owner.*std::get<typename MemberRow<Owner>::Texts>(row.member) = read_texts(value, pointer, row.name);
+        owner.*std::get<typename MemberRow<Owner>::Texts>(row.member) = read_texts(value, row.name);
         return;
       case MemberForm::values:
         if (!expect(value.is_object(), "an object with a value for each entry")) return;
-        owner.*std::get<typename MemberRow<Owner>::Values>(row.member) = read_values(value, pointer);
+        owner.*std::get<typename MemberRow<Owner>::Values>(row.member) = read_values(value);
         return;
     }
   }
 
   /// A text, or an array of texts.
-  std::vector<Written<std::string>> read_texts(const Json& value, const Pointer& pointer, std::string_view name) {
-    if (value.is_string()) return {{value.get<std::string>(), file_.value_position(pointer)}};
+  std::vector<Written<std::string>> read_texts(const Json& value, std::string_view name) {
+    if (value.is_string()) return {{value.get<std::string>(), file_.value_position(value)}};
     std::vector<Written<std::string>> texts;
     bool is_valid = value.is_array();
     for (std::size_t i = 0; is_valid && i < value.size(); ++i) {
       is_valid = value[i].is_string();
-      if (is_valid) texts.push_back({value[i].get<std::string>(), file_.value_position(pointer / i)});
+      if (is_valid) texts.push_back({value[i].get<std::string>(), file_.value_position(value[i])});
     }
-    if (!is_valid) value_error(pointer, fmt::format("{} must be a text or an array of texts", quote(name)));
+    if (!is_valid) value_error(value, fmt::format("{} must be a text or an array of texts", quote(name)));
     return texts;
   }
 
-  std::vector<WrittenValue> read_values(const Json& json, const Pointer& pointer) {
+  std::vector<WrittenValue> read_values(const Json& json) {
     std::vector<WrittenValue> values;
-    for (const auto& [entry, value] : json.items()) {
-      const Pointer at = pointer / entry;
-      const auto text = eds_text(value);
-      if (text) {
-        values.push_back({{entry, file_.name_position(at)}, {*text, file_.value_position(at)}});
+    for (const auto& [entry, value] : file_.members(json)) {
+      if (const auto text = eds_text(*value)) {
+        values.push_back({{entry, file_.name_position(*value)}, {*text, file_.value_position(*value)}});
       } else {
-        value_error(at, fmt::format("the value of {} must be a number, a text, true or false", quote(entry)));
+        value_error(*value, fmt::format("the value of {} must be a number, a text, true or false", quote(entry)));
       }
     }
     return values;
@@ -167,69 +163,66 @@ class NetworkReader {
   void read_nodes(const Json& root, NetworkDescription& network) {
     const Json* const nodes = object_at(root, "nodes");
     if (nodes == nullptr) {
-      if (!root.contains("nodes")) error(Pointer{}, "missing \"nodes\", an object with a member for each node");
+      if (!root.contains("nodes")) error(root, "missing \"nodes\", an object with a member for each node");
       return;
     }
-    for (const auto& [name, json] : nodes->items()) {
-      const Pointer pointer = Pointer{"/nodes"} / name;
-      if (!json.is_object()) {
-        error(pointer, fmt::format("node {} must be an object", quote(name)));
+    for (const auto& [name, json] : file_.members(*nodes)) {
+      if (!json->is_object()) {
+        error(*json, fmt::format("node {} must be an object", quote(name)));
         continue;
       }
       NodeDescription node;
-      node.name = {name, file_.name_position(pointer)};
-      read_members(json, pointer, node, node_members, {});
-      check_node(pointer, json, node);
+      node.name = {name, file_.name_position(*json)};
+      read_members(*json, node, node_members, {});
+      check_node(*json, node);
       network.nodes.push_back(std::move(node));
     }
-    if (nodes->empty()) error(Pointer{"/nodes"}, "the network does not have a node");
+    if (nodes->empty()) error(*nodes, "the network does not have a node");
   }
 
-  void check_node(const Pointer& pointer, const Json& json, const NodeDescription& node) {
-    if (node.eds && node.dcf) error(pointer / "dcf", "a node has either \"eds\" or \"dcf\"");
+  void check_node(const Json& json, const NodeDescription& node) {
+    if (node.eds && node.dcf) error(json["dcf"], "a node has either \"eds\" or \"dcf\"");
     const bool has_file = json.contains("eds") || json.contains("dcf");
     const bool is_master = node.master && node.master->value;
     if (!has_file && !is_master) {
-      error(pointer, fmt::format("node {} needs \"eds\" or \"dcf\"", quote(node.name.value)));
+      error(json, fmt::format("node {} needs \"eds\" or \"dcf\"", quote(node.name.value)));
     }
     if (!json.contains("node_id") && !json.contains("dcf")) {
-      error(pointer, fmt::format("node {} needs \"node_id\"", quote(node.name.value)));
+      error(json, fmt::format("node {} needs \"node_id\"", quote(node.name.value)));
     }
     if (!is_node_name(node.name.value)) {
-      error(pointer, fmt::format("{} is not a name for a node: 1 to {} letters, digits, blanks, _ and -",
-                                 quote(node.name.value), max_name_length));
+      error(json, fmt::format("{} is not a name for a node: 1 to {} letters, digits, blanks, _ and -",
+                              quote(node.name.value), max_name_length));
     }
   }
 
   void read_signals(const Json& root, NetworkDescription& network) {
     const auto signals = root.find("signals");
     if (signals == root.end()) return;
-    if (!signals->is_array()) return error(Pointer{"/signals"}, "\"signals\" must be an array of objects");
-    for (std::size_t i = 0; i < signals->size(); ++i) {
-      const Pointer pointer = Pointer{"/signals"} / i;
-      const Json& json = (*signals)[i];
+    if (!signals->is_array()) return error(*signals, "\"signals\" must be an array of objects");
+    for (const Json& json : *signals) {
       if (!json.is_object()) {
-        value_error(pointer, "a signal must be an object");
+        value_error(json, "a signal must be an object");
         continue;
       }
       SignalDescription signal;
-      signal.position = file_.value_position(pointer);
-      read_members(json, pointer, signal, signal_members, {});
-      check_signal(pointer, json, signal);
+      signal.position = file_.value_position(json);
+      read_members(json, signal, signal_members, {});
+      check_signal(json, signal);
       network.signals.push_back(std::move(signal));
     }
   }
 
-  void check_signal(const Pointer& pointer, const Json& json, const SignalDescription& signal) {
-    if (!json.contains("from")) value_error(pointer, "a signal needs \"from\", the name of a node");
-    if (!json.contains("object")) value_error(pointer, "a signal needs \"object\", the entry that is sent");
+  void check_signal(const Json& json, const SignalDescription& signal) {
+    if (!json.contains("from")) value_error(json, "a signal needs \"from\", the name of a node");
+    if (!json.contains("object")) value_error(json, "a signal needs \"object\", the entry that is sent");
     const bool has_interval = json.contains("every_ms") || json.contains("every_sync");
     const bool is_event = signal.event && signal.event->value;
     if (signal.every_ms && signal.every_sync) {
-      value_error(pointer, "a signal has either \"every_ms\" or \"every_sync\"");
+      value_error(json, "a signal has either \"every_ms\" or \"every_sync\"");
     }
-    if (signal.every_sync && is_event) value_error(pointer, "a signal has either \"every_sync\" or \"event\"");
-    if (!has_interval && !is_event) value_error(pointer, "a signal needs \"every_ms\", \"every_sync\" or \"event\"");
+    if (signal.every_sync && is_event) value_error(json, "a signal has either \"every_sync\" or \"event\"");
+    if (!has_interval && !is_event) value_error(json, "a signal needs \"every_ms\", \"every_sync\" or \"event\"");
   }
 
   const JsonFile& file_;
@@ -244,7 +237,8 @@ std::optional<std::uint32_t> sdo_timeout_ms(const NetworkDescription& network, c
 }
 
 NetworkDescription read_network_file(const SourceFile& source, Diagnostics& diagnostics) {
-  const JsonFile file{source, "network-syntax", diagnostics};
+  const JsonFile file{source};
+  file.report_faults("network-syntax", diagnostics);
   if (!file.is_valid()) return {&source, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   return NetworkReader{file, diagnostics}.read();
 }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <utility>
 
+#include "diagnostics/place.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/ini.hpp"
 #include "text/ascii.hpp"
@@ -73,7 +74,7 @@ bool XmlDocument::report_unreadable_text() {
   const std::string_view text = source_.text();
   const auto control = std::find_if(text.begin(), text.end(), is_forbidden);
   if (control != text.end()) {
-    diagnostics_.error("xml-syntax", position_of(static_cast<std::size_t>(control - text.begin()), 1),
+    diagnostics_.error("xml-syntax", position_at(source_, static_cast<std::size_t>(control - text.begin())),
                        "control character, which XML does not allow; nothing of this file is read");
     return true;
   }
@@ -95,7 +96,8 @@ void XmlDocument::parse() {
   }
   std::string why = result.description();
   why[0] = to_lower(why[0]);
-  diagnostics_.error("xml-syntax", position_of(static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0)), 1),
+  diagnostics_.error("xml-syntax",
+                     position_at(source_, static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0))),
                      fmt::format("this is not well-formed XML: {}; nothing of this file is read", why));
 }
 
@@ -126,32 +128,12 @@ void XmlDocument::report_doctype(pugi::xml_node doctype) {
   }
 }
 
-Position XmlDocument::position_of(std::size_t offset, std::size_t length) const {
-  const auto starts_at = [&](std::uint32_t line) {
-    return static_cast<std::size_t>(source_.line(line).data() - source_.text().data());
-  };
-  std::uint32_t first = 1;
-  std::uint32_t count = source_.lines();
-  while (count > 1) {  // the line is among the `count` ones from `first` on
-    const std::uint32_t half = count / 2;
-    if (starts_at(first + half) <= offset) {
-      first += half;
-      count -= half;
-    } else {
-      count = half;
-    }
-  }
-  const std::size_t column = offset - starts_at(first) + 1;
-  return {&source_, first, static_cast<std::uint32_t>(column),
-          static_cast<std::uint32_t>(std::max<std::size_t>(length, 1))};
-}
-
 /// `part` comes from pugixml and points into the buffer, except for a missing name or value.
 Position XmlDocument::position_of(std::string_view part) const {
   const std::less<> before;
   const char* const begin = buffer_.data();
   if (before(part.data(), begin) || before(begin + buffer_.size(), part.data())) return {&source_};
-  return position_of(static_cast<std::size_t>(part.data() - begin), part.size());
+  return position_at(source_, static_cast<std::size_t>(part.data() - begin), part.size());
 }
 
 Position XmlDocument::position(pugi::xml_node element) const { return position_of(std::string_view{element.name()}); }

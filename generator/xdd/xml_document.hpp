@@ -72,7 +72,6 @@ class XmlDocument {
   void find_root();
   void report_doctype(pugi::xml_node doctype);
   [[nodiscard]] bool report_unreadable_text();
-  [[nodiscard]] Position position_of(std::size_t offset, std::size_t length) const;
   [[nodiscard]] Position position_of(std::string_view part) const;
   [[nodiscard]] std::string_view stored(std::string_view part);
 

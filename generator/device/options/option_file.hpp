@@ -1,13 +1,13 @@
 /// The text of an options file: positions of its members, and texts that name entries.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "device/options/options.hpp"
+#include "diagnostics/json_file.hpp"
 
 namespace edsc {
 
@@ -22,24 +22,17 @@ namespace edsc {
 
 class OptionFile {
  public:
-  OptionFile(const SourceFile& source, Diagnostics& diagnostics) : source_{source}, diagnostics_{diagnostics} {}
+  OptionFile(const JsonFile& file, Diagnostics& diagnostics) : file_{file}, diagnostics_{diagnostics} {}
 
-  [[nodiscard]] const SourceFile& source() const { return source_; }
+  [[nodiscard]] const JsonFile& json() const { return file_; }
 
-  /// Reports a fault in a member, given by its path: `lss.fastscan`.
-  void error(std::string_view member, const std::string& message);
-  /// Reports that the file is not JSON, at a byte that counts from 1, or the whole file.
-  void syntax_error(std::optional<std::size_t> byte, std::string_view what);
-
-  /// The position of the name of the first member with this path; objects in an array have the path of the array.
-  [[nodiscard]] Position position_of(std::string_view member) const;
-  /// The position of the first occurrence of a text.
-  [[nodiscard]] Position position_of_text(std::string_view text) const;
+  /// Reports a fault at the name of the member with this value, or at the element of an array. `path` names the member
+  /// in the message: `lss.fastscan`; it may be empty.
+  void error(const JsonFile::Json& value, std::string_view path, std::string_view message,
+             std::vector<Note> notes = {});
 
  private:
-  [[nodiscard]] Position position_at(std::size_t byte) const;
-
-  const SourceFile& source_;
+  const JsonFile& file_;
   Diagnostics& diagnostics_;
 };
 

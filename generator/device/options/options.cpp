@@ -130,7 +130,7 @@ class OptionsReader {
       } else if (const OptionRow* const flat = find_flat_option(name)) {
         read_flat(*flat, value, document);
       } else {
-        file_.error(name, unknown_option("", name));
+        file_.error(value, name, unknown_option("", name));
       }
     }
     std::ranges::sort(options_.runtime, {}, [](const RuntimeOption& option) { return option.row->flat_name; });
@@ -139,14 +139,16 @@ class OptionsReader {
  private:
   void read_group(const OptionGroup& group, const json& members) {
     const std::string name{group.name};
-    if (!members.is_object()) return file_.error(name, fmt::format("expected an object with {} options", group.title));
+    if (!members.is_object()) {
+      return file_.error(members, name, fmt::format("expected an object with {} options", group.title));
+    }
     if (group.name == lss_group) options_.lss.emplace();
     for (const auto& [member, value] : members.items()) {
       const std::string path = fmt::format("{}.{}", name, member);
       if (const OptionRow* const row = find_option(group.name, member)) {
         read_option(*row, path, value);
       } else {
-        file_.error(path, unknown_option(group.name, member));
+        file_.error(value, path, unknown_option(group.name, member));
       }
     }
   }
@@ -156,10 +158,10 @@ class OptionsReader {
     const std::string flat_name{row.flat_name};
     const auto group = document.find(row.group.name);
     if (group != document.end() && group->contains(row.name)) {
-      return file_.error(flat_name, fmt::format("already set by {}", in_its_group(row)));
+      return file_.error(value, flat_name, fmt::format("already set by {}", in_its_group(row)));
     }
     options_.deprecated.push_back(
-        {file_.position_of(flat_name), fmt::format("\"{}\" is deprecated; use {}", flat_name, in_its_group(row))});
+        {file_.json().name_position(value), fmt::format("\"{}\" is deprecated; use {}", flat_name, in_its_group(row))});
     read_option(row, flat_name, value);
   }
 
@@ -167,7 +169,7 @@ class OptionsReader {
   void read_option(const OptionRow& row, const std::string& path, const json& value) {
     if (row.form == OptionForm::structured) return read_structured_option(row, path, value, is_name_, file_, options_);
     const auto option = parse_option(row, value);
-    if (!option) return file_.error(path, expected(row));
+    if (!option) return file_.error(value, path, expected(row));
     if (row.group.name == lss_group) {
       options_.lss->flags[std::string{row.name}] = option->value != 0;
     } else {
@@ -206,20 +208,14 @@ void Options::set(const RuntimeOption& option) {
 }
 
 Options read_options(const SourceFile& source, NameCheck is_name, Diagnostics& diagnostics) {
-  OptionFile file{source, diagnostics};
+  const JsonFile json_file{source};
+  json_file.report_faults("options-syntax", diagnostics);
   Options options;
-  json document;
-  try {
-    document = json::parse(source.text());
-  } catch (const json::parse_error& problem) {
-    file.syntax_error(problem.byte, problem.what());
-    return options;
-  } catch (const json::out_of_range& problem) {
-    file.syntax_error({}, problem.what());
-    return options;
-  }
+  if (!json_file.is_valid()) return options;
+  const json& document = json_file.root();
+  OptionFile file{json_file, diagnostics};
   if (!document.is_object()) {
-    file.error("", "the options file must be one JSON object");
+    file.error(document, "", "the options file must be one JSON object");
     return options;
   }
   OptionsReader{is_name, file, options}.read(document);

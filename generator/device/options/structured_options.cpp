@@ -7,9 +7,11 @@
 #include <canopen/lss/lss_options.hpp>
 #include <canopen/storage/parameter_ranges.hpp>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "device/index_range.hpp"
 #include "device/options/option_table.hpp"
@@ -48,10 +50,10 @@ auto parsed(const json& value, Parse parse) {
 
 class StructuredOptions {
  public:
-  StructuredOptions(const std::string& path, NameCheck is_name, OptionFile& file, Options& options)
-      : path_{path}, is_name_{is_name}, file_{file}, options_{options} {}
+  StructuredOptions(const std::string& path, const json& value, NameCheck is_name, OptionFile& file, Options& options)
+      : path_{path}, value_{value}, is_name_{is_name}, file_{file}, options_{options} {}
 
-  void read(const OptionRow& row, const json& value) {
+  void read(const OptionRow& row) {
     struct Reader {
       std::string_view group;
       std::string_view name;
@@ -83,7 +85,7 @@ class StructuredOptions {
       return (one.form == OptionForm::structured) == is_read;
     }));
     for (const Reader& reader : readers) {
-      if (reader.reads(row)) (this->*reader.read)(value);
+      if (reader.reads(row)) (this->*reader.read)(value_);
     }
   }
 
@@ -93,7 +95,7 @@ class StructuredOptions {
   void each_item(const json& value, const char* meaning, Take take, const char* item_meaning = nullptr) {
     if (!value.is_array()) return error(meaning);
     for (const json& item : value) {
-      if (!take(item)) error(item_meaning != nullptr ? item_meaning : meaning);
+      if (!take(item)) error_at(item, item_meaning != nullptr ? item_meaning : meaning);
     }
   }
 
@@ -101,14 +103,26 @@ class StructuredOptions {
   template <class Take>
   void each_entry(const json& value, Take take) {
     if (!value.is_object()) return error("expected an object with one member per entry, such as \"1018h:04\"");
-    for (const auto& [entry, v] : value.items()) {
+    std::map<EntryKey, const json*> first_of;
+    for (const auto& [entry, v] : file_.json().members(value)) {
       const auto key = parse_entry_key(entry);
       if (!key) {
-        error_in(entry, "not an entry such as \"1018h:04\"");
-      } else if (!take(*key, v)) {
-        error_in(entry, "invalid value for this option");
+        error_in(entry, *v, "not an entry such as \"1018h:04\"");
+      } else if (is_first(first_of, *key, entry, *v) && !take(*key, *v)) {
+        error_in(entry, *v, "invalid value for this option");
       }
     }
+  }
+
+  /// Whether no member before has the same key in another spelling. Reports the member otherwise.
+  template <class Key>
+  bool is_first(std::map<Key, const json*>& first_of, const Key& key, const std::string& name, const json& value) {
+    const auto [first, is_new] = first_of.try_emplace(key, &value);
+    if (!is_new) {
+      file_.error(value, fmt::format("{}.{}", path_, name), "duplicate member in another spelling",
+                  {{file_.json().name_position(*first->second), "the first one"}});
+    }
+    return is_new;
   }
 
   /// Appends what `parse` reads from each text of an array.
@@ -145,8 +159,9 @@ class StructuredOptions {
   }
 
   void silence(const json& value) {
-    append_each(value, "expected an array of rule ids", options_.silence, [&](const std::string& rule) {
-      return std::optional{SilencedRule{rule, file_.position_of_text(json(rule).dump())}};
+    each_item(value, "expected an array of rule ids", [&](const json& item) {
+      if (item.is_string()) options_.silence.push_back({item.get<std::string>(), file_.json().value_position(item)});
+      return item.is_string();
     });
   }
 
@@ -156,7 +171,7 @@ class StructuredOptions {
   }
 
   void allow_one(const json& item) {
-    if (!item.is_object()) return error(allow_form);
+    if (!item.is_object()) return error_at(item, allow_form);
     AllowedFindings allowed;
     for (const auto& [name, v] : item.items()) {
       const std::string text = v.is_string() ? v.get<std::string>() : std::string{};
@@ -165,19 +180,20 @@ class StructuredOptions {
         allowed.rule = text;
       } else if (name == "reason" && text.find_first_not_of(" \t\r\n") != std::string::npos) {
         allowed.reason = text;
+        allowed.position = file_.json().value_position(v);
       } else if (name == "object" && object) {
         allowed.object = object;
       } else if (std::ranges::find(allow_members, name) == allow_members.end()) {
-        return error_in(name, "unknown member" + did_you_mean(name, allow_members));
+        return error_in(name, v, "unknown member" + did_you_mean(name, allow_members));
       } else {
-        return error_in(name, name == "object" ? "not an object or entry such as \"6040h\" or \"6401h:03\""
-                                               : "expected a non-empty string");
+        return error_in(name, v,
+                        name == "object" ? "not an object or entry such as \"6040h\" or \"6401h:03\""
+                                         : "expected a non-empty string");
       }
     }
     if (allowed.rule.empty() || allowed.reason.empty()) {
-      return error(allowed.rule.empty() ? "missing member rule" : "missing member reason");
+      return error_at(item, allowed.rule.empty() ? "missing member rule" : "missing member reason");
     }
-    allowed.position = file_.position_of_text(json(allowed.reason).dump());
     options_.allow.push_back(std::move(allowed));
   }
 
@@ -210,13 +226,16 @@ class StructuredOptions {
     if (!value.is_object()) {
       return error("expected an object with one member for each error code: {\"8210h\": \"0900000000\"}");
     }
-    for (const auto& [code, bytes] : value.items()) {
+    std::map<std::uint16_t, const json*> first_of;
+    for (const auto& [code, bytes] : file_.json().members(value)) {
       const auto number = parse_index(code);
-      const auto info = parsed(bytes, parse_emergency_info);
+      const auto info = parsed(*bytes, parse_emergency_info);
+      if (number && !is_first(first_of, *number, code, *bytes)) continue;
       if (number && info) {
         options_.emergency_info[*number] = *info;
       } else {
-        error_in(code, number ? "expected five bytes as ten hexadecimal digits" : "not a code such as \"8210h\"");
+        error_in(code, *bytes,
+                 number ? "expected five bytes as ten hexadecimal digits" : "not a code such as \"8210h\"");
       }
     }
   }
@@ -225,18 +244,27 @@ class StructuredOptions {
     if (!value.is_object()) {
       return error("expected an object with one member for each object or entry: {\"6010h:01\": \"never\"}");
     }
+    report_same_selectors(value);
     for (const auto& [text, how] : value.items()) {
       const auto entry = parse_entry_selector(text);
       const bool known =
           std::ranges::any_of(storing_names, [&spelling = how](const char* name) { return spelling == name; });
       if (entry && how == "with_node_id" && (entry->index < 0x1000 || entry->index > 0x1FFF)) {
-        error_in(text, "with_node_id is for objects 1000h..1FFFh");
+        error_in(text, how, "with_node_id is for objects 1000h..1FFFh");
       } else if (entry && known) {
         options_.storing.emplace_back(*entry, how.get<std::string>());
       } else {
-        error_in(text,
+        error_in(text, how,
                  entry ? "expected always, never or with_node_id" : "not an object or entry such as \"6010h:01\"");
       }
+    }
+  }
+
+  void report_same_selectors(const json& object) {
+    std::map<std::pair<std::uint16_t, std::optional<std::uint8_t>>, const json*> first_of;
+    for (const auto& [text, value] : file_.json().members(object)) {
+      if (const auto entry = parse_entry_selector(text))
+        is_first(first_of, {entry->index, entry->sub_index}, text, *value);
     }
   }
 
@@ -247,18 +275,23 @@ class StructuredOptions {
     for (const auto& [text, entries] : value.items()) {
       const auto sub_index = parse_sub_index(text);
       if (!sub_index || *sub_index < canopen::first_group_sub_index || *sub_index > canopen::last_group_sub_index) {
-        error_in(text, "not a sub-index from \"05h\" to \"0Eh\"");
+        error_in(text, entries, "not a sub-index from \"05h\" to \"0Eh\"");
         continue;
       }
-      for (const json& item : entries.is_array() ? entries : json::array({entries})) {
+      const auto take = [&, &key = text](const json& item) {
         const auto entry = parsed(item, parse_entry_selector);
         if (!entry) {
-          error_in(text, "expected an array of objects or entries such as \"2111h\" or \"2111h:01\"");
+          error_in(key, item, "expected an array of objects or entries such as \"2111h\" or \"2111h:01\"");
         } else if (entry->index < 0x2000) {
-          error_in(text, "1010h:02 stores the parameters of 1000h..1FFFh");
+          error_in(key, item, "1010h:02 stores the parameters of 1000h..1FFFh");
         } else {
           options_.stored_by.emplace_back(*entry, *sub_index);
         }
+      };
+      if (entries.is_array()) {
+        std::ranges::for_each(entries, take);
+      } else {
+        take(entries);
       }
     }
   }
@@ -284,9 +317,9 @@ class StructuredOptions {
   void lss_bit_rates(const json& value) {
     unsigned mask = 0;
     bool valid = value == "fixed" || (value.is_array() && !value.empty());
-    for (const json& item : value.is_array() ? value : json::array()) {
-      const auto bit = lss_bit_rate(item);
-      valid = valid && bit.has_value();
+    for (std::size_t i = 0; valid && value.is_array() && i < value.size(); ++i) {
+      const auto bit = lss_bit_rate(value[i]);
+      valid = bit.has_value();
       mask |= 1U << bit.value_or(0);
     }
     if (!valid) {
@@ -315,11 +348,15 @@ class StructuredOptions {
     }
   }
 
-  /// Reports a fault in the option, or in a member of its value.
-  void error(const std::string& message) { file_.error(path_, message); }
-  void error_in(const std::string& member, const std::string& message) { file_.error(path_ + "." + member, message); }
+  /// Reports a fault in the option, in an element of its array, or in a member of its value.
+  void error(std::string_view message) { file_.error(value_, path_, message); }
+  void error_at(const json& item, std::string_view message) { file_.error(item, path_, message); }
+  void error_in(const std::string& member, const json& value, std::string_view message) {
+    file_.error(value, path_ + "." + member, message);
+  }
 
   const std::string& path_;  ///< of the option, as in the file
+  const json& value_;
   NameCheck is_name_;
   OptionFile& file_;
   Options& options_;
@@ -329,7 +366,7 @@ class StructuredOptions {
 
 void read_structured_option(const OptionRow& row, const std::string& path, const nlohmann::json& value,
                             NameCheck is_name, OptionFile& file, Options& options) {
-  StructuredOptions{path, is_name, file, options}.read(row, value);
+  StructuredOptions{path, value, is_name, file, options}.read(row);
 }
 
 }  // namespace edsc

@@ -60,7 +60,9 @@ TEST(ConformDeviations, AreReadStrictly) {
        "1:48: object: expected an object or entry such as \"1800h\" or \"1800h:02\""},
       {R"({"deviations": [{"case": "3.7", "reason": "x", "resaon": "y"}]})",
        "1:48: unknown member resaon; did you mean \"reason\"?"},
-      {R"({"deviations": [{"case": "3.7", "reason": "x", "case": "3.6"}]})", "1:48: duplicate member case"},
+      {R"({"deviations": [{"case": "3.7", "reason": "x", "case": "3.6"}]})", "1:48: duplicate member \"case\""},
+      {R"({"deviations": [], "deviations": []})", "1:20: duplicate member \"deviations\""},
+      {"{\"deviations\": [],\r\r \"more\": 1}", "3:2: unknown member more"},
   };
   for (const auto& [text, problem] : wrong) EXPECT_EQ(ReadDeviations{text}.problem(), problem) << text;
   const std::string syntax = ReadDeviations{"{\"deviations\": [\n  {\"case\": \"3.7\" \"reason\": 1}]}"}.problem();

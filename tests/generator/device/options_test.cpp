@@ -196,7 +196,7 @@ TEST(OptionsFile, MakesTheMappingOfSomePdosStatic) {
 TEST(OptionsFile, RefusesAStaticMappingOfWhatIsNoMappingParameter) {
   for (const char* index : {"15FFh", "1800h", "19FFh", "1C00h", "1600h:01", "", "11600h"}) {
     const ReadOptions read("{\"pdo\": {\n  \"static_mapping\": [\"" + std::string{index} + "\"] }}");
-    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 3, "options")})) << index;
+    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(2, 22, "options")})) << index;
     EXPECT_TRUE(read.options.static_mapping.parameters.empty()) << index;
   }
 }
@@ -295,6 +295,78 @@ TEST(OptionsFile, RefusesEntriesThatAreNone) {
     const ReadOptions read("{ \"settable\": [\"" + std::string{entry} + "\"] }");
     EXPECT_EQ(read.diagnostics.errors(), 1U) << entry;
     EXPECT_TRUE(read.options.settable.empty()) << entry;
+  }
+}
+
+TEST(OptionsFile, ReportsTheSecondOfTwoMembersWithOneName) {
+  const std::pair<const char*, Finding> rows[] = {
+      {"{ \"sdo\": {\"timeout\": 5},\n  \"sdo\": {\"zero_terminated_strings\": true} }",
+       error_at(2, 3, "options-syntax")},
+      {"{ \"sdo\": {\"timeout\": 5,\n\"timeout\": 6} }", error_at(2, 1, "options-syntax")},
+      {"{ \"sdo\": {\"timeout\": 5,\n\"time\\u006fut\": 5} }", error_at(2, 1, "options-syntax")},
+      {"{ \"allow\": [{\"rule\": \"pdo-empty\", \"reason\": \"a\", \"rule\": \"sub-number\"}] }",
+       error_at(1, 50, "options-syntax")},
+      {"{ \"names\": {\"2000h\": \"a\"}, \"names\": {\"2000h\": \"b\"} }", error_at(1, 28, "options-syntax")},
+      {"{ \"names\": {\"2000h\": \"a\", \"2000h:00\": \"b\"} }", error_at(1, 27, "options")},
+      {"{ \"string_capacity\": {\"2000h\": 1, \"2000:0\": 2} }", error_at(1, 35, "options")},
+      {"{ \"emcy\": {\"info\": {\"8210h\": \"0900000000\", \"8210\": \"0900000001\"}} }", error_at(1, 44, "options")},
+      {"{ \"storage\": {\"entries\": {\"6010:01\": \"never\", \"6010h:01\": \"always\"}} }",
+       error_at(1, 47, "options")},
+  };
+  for (const auto& [text, finding] : rows) {
+    const ReadOptions read(text);
+    EXPECT_EQ(findings(read.diagnostics), Findings{finding}) << text;
+    ASSERT_EQ(read.diagnostics.all().front().notes.size(), 1U) << text;
+  }
+}
+
+TEST(OptionsFile, MayRepeatANameInAnotherObject) {
+  const ReadOptions read(
+      R"({ "sdo": {"timeout": 5}, "allow": [{"rule": "a", "reason": "b"}, {"rule": "a", "reason": "b"}],
+    "names": {"1018h:04": "timeout"} /* "names": {} */ })");
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+}
+
+TEST(OptionsFile, HasAPositionForEachAllowedFinding) {
+  const ReadOptions read(
+      "{ \"silence\": [\"pdo-empty\",\n\"pdo-empty\"], \"allow\": [\n{\"rule\": \"a\", \"reason\": \"pdo-empty\"},\n"
+      "{\"reason\": \"pdo-empty\", \"rule\": \"a\"}] }");
+  ASSERT_EQ(read.options.allow.size(), 2U);
+  EXPECT_EQ(read.options.allow[0].position.line, 3U);
+  EXPECT_EQ(read.options.allow[0].position.column, 25U);
+  EXPECT_EQ(read.options.allow[1].position.line, 4U);
+  EXPECT_EQ(read.options.allow[1].position.column, 12U);
+  ASSERT_EQ(read.options.silence.size(), 2U);
+  EXPECT_EQ(read.options.silence[0].position.line, 1U);
+  EXPECT_EQ(read.options.silence[1].position.line, 2U);
+}
+
+TEST(OptionsFile, ReportsAFaultInAnArrayAtItsElement) {
+  const ReadOptions allow(
+      "{ \"allow\": [\n{\"rule\": \"a\", \"reason\": \"b\"},\n{\"rule\": \"a\", \"reason\": \"\"},\n{}] }");
+  EXPECT_EQ(findings(allow.diagnostics), (Findings{error_at(3, 15, "options"), error_at(4, 1, "options")}));
+  const ReadOptions settable("{ \"settable\": [\"1008h\",\n \"x\"] }");
+  EXPECT_EQ(findings(settable.diagnostics), (Findings{error_at(2, 2, "options")}));
+  const ReadOptions storage("{ \"storage\": {\"sub_indices\": {\"05h\": [\"2111h\",\n \"1017h\"]}} }");
+  EXPECT_EQ(findings(storage.diagnostics), (Findings{error_at(2, 2, "options")}));
+}
+
+TEST(OptionsFile, MayHaveDeepValues) {
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  for (const std::string& text :
+       {R"({ "storage": {"sub_indices": {"05h": )" + deep + "}} }", R"({ "storage": {"sub_indices": )" + deep + "} }",
+        R"({ "lss": {"bit_rates": )" + deep + "} }", R"({ "allow": )" + deep + " }", "{ \"sdo\": " + deep + " }"}) {
+    EXPECT_EQ(findings(ReadOptions(text).diagnostics, "options").size(), 1U) << text.substr(0, 60);
+  }
+}
+
+TEST(OptionsFile, HasTheSameLinesWithEachLineEnd) {
+  for (const std::string line_end : {"\n", "\r\n", "\r"}) {
+    const ReadOptions read("{" + line_end + "  \"silence\": [], // \"colour\" {" + line_end + "  \"colour\": 1" +
+                           line_end + "}");
+    EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(3, 3, "options")}));
+    const ReadOptions broken("{" + line_end + "  \"settable\": [,]" + line_end + "}");
+    EXPECT_EQ(findings(broken.diagnostics), (Findings{error_at(2, 16, "options-syntax")}));
   }
 }
 
