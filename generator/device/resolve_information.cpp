@@ -130,6 +130,9 @@ class InformationReader {
       const auto module = number(slot.field, "modules");
       if (module && *module <= 0xFFFF) {
         information_.connected_modules.push_back(static_cast<std::uint16_t>(*module));
+      } else if (module) {
+        diagnostics_.warning("modules", slot.field.position,
+                             fmt::format("{} is not the number of a module; it is left out", quote(slot.field.text)));
       }
     }
   }

@@ -18,6 +18,7 @@ namespace {
 using canopen::CobId;
 
 constexpr std::uint16_t default_sdo = 0x1200;
+constexpr std::uint32_t flag_bits = CobId::invalid_bit | CobId::no_rtr_bit | CobId::extended_bit;
 
 /// A COB-ID of the device after a reset.
 struct CobIdUse {
@@ -53,9 +54,28 @@ std::vector<CobIdUse> cob_ids_of(const Device& device) {
   return uses;
 }
 
-/// Bits 11..28 of a COB-ID with an 11-bit CAN-ID are 0. A disabled COB-ID is not checked.
+/// The node-ID that a formula adds; nothing if the file has a number.
+std::optional<std::uint32_t> added_node_id(const RuleContext& context, const CobIdUse& use) {
+  if (use.plus_node_id) return 0;
+  const EntryDescription* description = context.describe(*use.entry);
+  if (description == nullptr || !context.device.node_id) return std::nullopt;
+  const Field& configured = description->parameter_value;
+  const Field& field = context.sheet.is_dcf && !configured.empty() ? configured : description->default_value;
+  if (field.text.find('$') == std::string_view::npos) return std::nullopt;
+  return *context.device.node_id;
+}
+
+/// Bits 11..28 of a COB-ID with an 11-bit CAN-ID are 0. A disabled COB-ID is not checked. The node-ID must not change
+/// the flags, bits 29 to 31.
 bool check_frame(const RuleContext& context, const CobIdUse& use) {
   const std::uint32_t highest = use.of(last_node_id).value();
+  const std::uint32_t base = use.cob_id.value() - added_node_id(context, use).value_or(0);
+  if (((base ^ highest) & flag_bits) != 0) {
+    context.report("cob-id-frame", use.place(),
+                   fmt::format("{}: the CAN-ID of $NODEID+0x{:X} has more than 29 bits and changes the flags",
+                               named(*use.entry), base));
+    return false;
+  }
   if (!use.valid() || use.cob_id.extended() || (highest & 0x1FFF'F800U) == 0) return true;
   context.report("cob-id-frame", use.place(),
                  fmt::format("{} has more than 11 bits, but bit 29 selects an 11-bit CAN-ID", named(*use.entry)));
@@ -116,17 +136,6 @@ void check_restricted(const RuleContext& context, const CobIdUse& use) {
                  fmt::format("{} is restricted{} (CAN-ID {:03X}h of node {}: {}){}", named(*use.entry),
                              node_ids.words(), can_id, node_ids.first, restriction_of(use, can_id),
                              node_ids.count < last_node_id ? "; a given node-ID is checked alone" : ""));
-}
-
-/// The node-ID that a formula adds; nothing if the file has a number.
-std::optional<std::uint32_t> added_node_id(const RuleContext& context, const CobIdUse& use) {
-  if (use.plus_node_id) return 0;
-  const EntryDescription* description = context.describe(*use.entry);
-  if (description == nullptr || !context.device.node_id) return std::nullopt;
-  const Field& configured = description->parameter_value;
-  const Field& field = context.sheet.is_dcf && !configured.empty() ? configured : description->default_value;
-  if (field.text.find('$') == std::string_view::npos) return std::nullopt;
-  return *context.device.node_id;
 }
 
 /// $NODEID+0x181 for TPDO 1 is the COB-ID of node 1 plus the node-ID of the device.

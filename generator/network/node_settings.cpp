@@ -13,6 +13,7 @@
 #include "device/index_range.hpp"
 #include "device/pdo/fixed_mapping.hpp"
 #include "device/reserved_values.hpp"
+#include "device/types/little_endian.hpp"
 #include "device/types/value.hpp"
 #include "device/value_overlay.hpp"
 #include "diagnostics/quote.hpp"
@@ -26,6 +27,13 @@ using StatedEntries = std::map<std::pair<std::uint16_t, std::uint8_t>, Position>
 
 bool same(const Value* a, const Value& b) {
   return a != nullptr && a->bits == b.bits && a->bytes == b.bytes && a->plus_node_id == b.plus_node_id;
+}
+
+/// Whether a value of the type can be this number.
+bool holds(const canopen::DataTypeRow& type, std::uint64_t number) {
+  const bool is_signed = type.kind == canopen::DataClass::signed_integer;
+  if (!is_signed && type.kind != canopen::DataClass::unsigned_integer) return false;
+  return number <= low_bits(is_signed ? type.bits - 1U : type.bits);
 }
 
 bool is_outside_limits(const Entry& entry, const Value& value) {
@@ -70,6 +78,12 @@ void set_number(NetworkNode& node, std::uint16_t index, std::uint8_t sub_index, 
   if (entry == nullptr) {
     diagnostics.error("network-value", position,
                       fmt::format("node {} does not have {}", node.name, entry_label(index, sub_index)));
+    return;
+  }
+  if (!holds(*entry->type, number)) {
+    diagnostics.error("network-value", position,
+                      fmt::format("node {}: {} does not fit into {}, the data type of {}", node.name, number,
+                                  entry->type->name, named(*entry)));
     return;
   }
   const Value* const before = node.settings.value_of(*entry);

@@ -168,6 +168,17 @@ class AnotherNode(CommandLine):
         values = [re.search(r"\[2805\][^[]*ParameterValue=(\w+)\n", text)[1] for text in (five, moved)]
         self.assertEqual(values, ["0xFF05", "0xFF09"])
 
+    def test_moves_a_value_that_does_not_fit_for_each_node(self) -> None:
+        """UNSIGNED8 $NODEID+0xF0: 0xF5 for node 5, 0xFF for node 15, and no value for node 16."""
+        five = self.make(5, SOURCE_DIR / "eds/cpd.eds", "--all")
+        five += ("\n[2FFF]\nParameterName=Address\nObjectType=0x7\nDataType=0x0005\nAccessType=rw\n"
+                 "DefaultValue=$NODEID+0xF0\nParameterValue=0xF5\n")
+        source = self.write("five.dcf", five)
+        self.assertIn("\nParameterValue=0xFF\n", self.edsc("format", source, "--dcf", "--node-id", 15, "--all").stdout)
+        result = self.edsc("format", source, "--dcf", "--node-id", 16, "--all")
+        self.assertIn("does not fit into UNSIGNED8 with node-ID 16", result.stderr)
+        self.assertNotIn("ParameterValue=0x00\n", result.stdout)
+
     def test_is_said_where_a_cob_id_stays(self) -> None:
         five = self.make(5, SOURCE_DIR / "eds/cpd.eds", "--all")
         five = re.sub(r"(\[1400sub1\][^[]*DefaultValue=)[^\n]*", r"\g<1>0x205", five)

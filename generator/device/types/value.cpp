@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <string>
@@ -18,6 +19,8 @@ namespace {
 using canopen::DataClass;
 using canopen::DataType;
 using canopen::DataTypeRow;
+
+constexpr std::uint64_t last_node_id = 127;
 
 /// `0.5f`.
 std::string_view without_real_suffix(std::string_view digits) {
@@ -92,10 +95,30 @@ class ValueReader {
       error("node-id-formula", fmt::format("{} is not a valid $NODEID formula", quote(text)));
       return std::nullopt;
     }
-    const std::uint64_t number = *parsed;
-    if (node_id_) return positive_integer(number + *node_id_, true);
-    std::optional<Value> result = positive_integer(number, true);
-    if (result) result->plus_node_id = true;
+    return formula(*parsed, constant && is_hexadecimal(*constant));
+  }
+
+  /// The constant may be the two's complement of a negative number, as a value without $NODEID.
+  std::optional<Value> formula(std::uint64_t constant, bool hexadecimal) {
+    const bool is_signed = type_.kind == DataClass::signed_integer;
+    const std::uint64_t highest = is_signed ? mask() >> 1U : mask();
+    std::uint64_t last_fitting = last_node_id;
+    if (constant > highest && constant <= mask() && hexadecimal) {
+      constant |= ~mask();
+    } else {
+      last_fitting = constant > highest ? 0 : std::min(highest - constant, last_node_id);
+    }
+    if (node_id_) {
+      if (*node_id_ > last_fitting) return out_of_range(true, fmt::format(" with node-ID {}", *node_id_));
+      return value(constant + *node_id_);
+    }
+    if (last_fitting == 0) return out_of_range(true, " with any node-ID");
+    // A limit is checked for a known node-ID only.
+    if (last_fitting < last_node_id && !limit_) {
+      return out_of_range(true, fmt::format(" with node-IDs above {}", last_fitting));
+    }
+    std::optional<Value> result = value(constant);
+    result->plus_node_id = true;
     return result;
   }
 
@@ -106,14 +129,14 @@ class ValueReader {
     return true;
   }
 
-  /// `above` or below all values of the type.
-  std::optional<Value> out_of_range(bool above) {
+  /// `above` or below all values of the type. `condition` is the end of the message.
+  std::optional<Value> out_of_range(bool above, std::string_view condition = "") {
     if (limit_ == (above ? Limit::high : Limit::low)) {
-      warning("number-range", fmt::format("{} is outside the range of {}; this limit has no effect and is left out",
-                                          quote(field_.text), type_.name));
+      warning("number-range", fmt::format("{} is outside the range of {}{}; this limit has no effect and is left out",
+                                          quote(field_.text), type_.name, condition));
       return std::nullopt;
     }
-    error("number-range", fmt::format("{} does not fit into {}", quote(field_.text), type_.name));
+    error("number-range", fmt::format("{} does not fit into {}{}", quote(field_.text), type_.name, condition));
     return std::nullopt;
   }
 
@@ -202,6 +225,9 @@ class ValueReader {
     if (type_.bits == 64) return value(std::bit_cast<std::uint64_t>(*number));
     const auto single = static_cast<float>(*number);
     if (std::isinf(single) && !std::isinf(*number)) return out_of_range(*number > 0);
+    if (single == 0 && *number != 0) {
+      warning("number-range", fmt::format("{} is too close to 0 for {}; reading it as 0", quote(text), type_.name));
+    }
     return value(std::bit_cast<std::uint32_t>(single));
   }
 

@@ -56,17 +56,17 @@ class ValueMover {
     if (entry == nullptr || line.value.empty() || line.value.find('$') != std::string::npos) return;
     Diagnostics ignored;
     const auto value = parse_value({line.value, {}, true}, *entry->type, std::nullopt, ignored);
-    const auto default_value = parse_value(described.default_value, *entry->type, std::nullopt, ignored);
+    const auto default_value = parse_value(described.default_value, *entry->type, own_, ignored);
     const bool is_integer = entry->type->kind == canopen::DataClass::unsigned_integer ||
                             entry->type->kind == canopen::DataClass::signed_integer;
     if (!value || !is_integer) return;
     const bool is_cob_id = find_cob_id_parameter(index, sub_index) != nullptr;
     const std::uint64_t bits = low_bits(entry->type->bits);
     const std::uint64_t compared = is_cob_id ? bits & ~flag_bits : bits;
-    if (default_value && default_value->plus_node_id) {
-      if (((value->bits ^ (default_value->bits + own_)) & compared) == 0) {
-        line.value = fmt::format("0x{:0{}X}", (value->bits - own_ + node_id_) & bits, hex_digits_of(*entry->type));
-      }
+    if (default_value && described.default_value.text.find('$') != std::string_view::npos) {
+      if (((value->bits ^ default_value->bits) & compared) != 0) return;
+      if (!parse_value(described.default_value, *entry->type, node_id_, diagnostics_)) return;
+      line.value = fmt::format("0x{:0{}X}", (value->bits - own_ + node_id_) & bits, hex_digits_of(*entry->type));
     } else if (is_cob_id && is_can_id_of_own_node(value->bits)) {
       diagnostics_.warning(
           "cob-id-node-id", described.parameter_value.position,

@@ -236,6 +236,63 @@ TEST(NodeIdFormula, ThatDoesNotFitWithTheNodeIdAddedIsAnError) {
             error_of("number-range"));
 }
 
+TEST(NodeIdFormula, ThatExceedsItsTypeIsNeverWrapped) {
+  struct Row {
+    DataType type;
+    const char* constant;
+    unsigned last_node_id;  ///< with which the sum fits
+  };
+  for (const Row& row : {Row{DataType::unsigned8, "0x80", 127},
+                         Row{DataType::unsigned8, "0x81", 126},
+                         Row{DataType::unsigned8, "0xFE", 1},
+                         Row{DataType::unsigned8, "0xFF", 0},
+                         Row{DataType::integer8, "0x00", 127},
+                         Row{DataType::integer8, "0x01", 126},
+                         Row{DataType::integer8, "0x7F", 0},
+                         Row{DataType::integer8, "0x80", 127},
+                         Row{DataType::integer8, "0xFF", 127},
+                         Row{DataType::integer8, "128", 0},
+                         Row{DataType::integer16, "0x7FFE", 1},
+                         Row{DataType::unsigned24, "0xFFFFC0", 63},
+                         Row{DataType::unsigned32, "0xFFFFFF80", 127},
+                         Row{DataType::unsigned32, "0xFFFFFF81", 126},
+                         Row{DataType::unsigned32, "4294967295", 0},
+                         Row{DataType::unsigned64, "0xFFFFFFFFFFFFFF80", 127},
+                         Row{DataType::unsigned64, "0xFFFFFFFFFFFFFFFE", 1},
+                         Row{DataType::unsigned64, "0xFFFFFFFFFFFFFFFF", 0},
+                         Row{DataType::integer64, "0x7FFFFFFFFFFFFF80", 127},
+                         Row{DataType::integer64, "0x7FFFFFFFFFFFFFFF", 0},
+                         Row{DataType::integer64, "0xFFFFFFFFFFFFFFFF", 127},
+                         Row{DataType::integer64, "0x8000000000000000", 127},
+                         Row{DataType::unsigned32, "0xFFFFFFFFFFFFFFFF", 0},
+                         Row{DataType::integer8, "0xFFFFFFFFFFFFFFFF", 0}}) {
+    const std::string text = std::string{"$NODEID+"} + row.constant;
+    const Parsed any(row.type, text);
+    EXPECT_EQ(any.value.has_value(), row.last_node_id == 127) << text;
+    EXPECT_EQ(findings(any.diagnostics), row.last_node_id == 127 ? none : error_of("number-range")) << text;
+    for (unsigned node_id = 1; node_id <= 127; ++node_id) {
+      const Parsed parsed(row.type, text, static_cast<std::uint8_t>(node_id));
+      EXPECT_EQ(parsed.value.has_value(), node_id <= row.last_node_id) << text << " " << node_id;
+      EXPECT_EQ(findings(parsed.diagnostics), parsed.value ? none : error_of("number-range")) << text << " " << node_id;
+    }
+  }
+}
+
+TEST(NodeIdFormula, OfMoreThanSixtyFourBitsIsAnError) {
+  EXPECT_EQ(findings(Parsed(DataType::unsigned64, "$NODEID+0x10000000000000000").diagnostics),
+            error_of("node-id-formula"));
+}
+
+TEST(NodeIdFormula, NamesTheNodeIdsWithWhichItDoesNotFit) {
+  const auto message = [](const char* text, std::optional<std::uint8_t> node_id) {
+    return Parsed(DataType::unsigned8, text, node_id).diagnostics.all().front().message;
+  };
+  EXPECT_EQ(message("$NODEID+0xFF", std::nullopt), "\"$NODEID+0xFF\" does not fit into UNSIGNED8 with any node-ID");
+  EXPECT_EQ(message("$NODEID+0xC0", std::nullopt),
+            "\"$NODEID+0xC0\" does not fit into UNSIGNED8 with node-IDs above 63");
+  EXPECT_EQ(message("$NODEID+0xC0", std::uint8_t{64}), "\"$NODEID+0xC0\" does not fit into UNSIGNED8 with node-ID 64");
+}
+
 TEST(NodeIdFormula, OfASignedTypeIsExtendedToItsSign) {
   EXPECT_EQ(Parsed(DataType::integer16, "$NODEID+0xFF00").number(), -256);
   EXPECT_EQ(Parsed(DataType::integer16, "$NODEID+0xFF00", std::uint8_t{1}).number(), -255);

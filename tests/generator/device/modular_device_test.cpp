@@ -120,6 +120,12 @@ TEST(ModularDevice, HasNoMoreThan254SubIndicesWithoutObjExtend) {
   EXPECT_EQ(findings(text.diagnostics, "module-object"), (std::vector{error_at(8, 2, "module-object")}));
 }
 
+TEST(ModularDevice, ReportsANumberOfNoModule) {
+  const DeviceFromText text(modules + "[ConnectedModules]\nNrOfEntries=2\n1=1\n2=65537\n" + coupler);
+  EXPECT_EQ(text.device.information.connected_modules, (std::vector<std::uint16_t>{1}));
+  EXPECT_EQ(text.line_of("modules"), "2=65537");
+}
+
 TEST(ModularDevice, TakesItsModulesFromTheOptionsBeforeTheDcf) {
   Options options;
   options.connected_modules = {2};

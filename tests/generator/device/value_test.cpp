@@ -106,10 +106,10 @@ TEST(DomainValue, IsLeftOutWithAWarning) {
 
 /// LowLimit or HighLimit of an entry of this type.
 struct ParsedLimit {
-  ParsedLimit(Limit which, DataType data_type, std::string text)
+  ParsedLimit(Limit which, DataType data_type, std::string text, std::optional<std::uint8_t> node_id = std::nullopt)
       : source("value.eds", "[2000]\nDefaultValue=" + text + "\n"),
         value(parse_limit({source.line(2).substr(std::string_view{"DefaultValue="}.size()), {&source, 2, 14}, true},
-                          which, *canopen::find_data_type(static_cast<std::uint32_t>(data_type)), std::nullopt,
+                          which, *canopen::find_data_type(static_cast<std::uint32_t>(data_type)), node_id,
                           diagnostics)) {}
 
   SourceFile source;
@@ -140,6 +140,19 @@ TEST(LimitValue, BeyondItsTypeLimitsNothing) {
     EXPECT_FALSE(parsed.value) << row.text;
     EXPECT_EQ(findings(parsed.diagnostics), warning_of("number-range")) << row.text;
   }
+}
+
+TEST(LimitValue, ThatExceedsItsTypeWithTheNodeIdLimitsNothing) {
+  EXPECT_EQ(ParsedLimit(Limit::high, DataType::integer8, "$NODEID+0x7A", std::uint8_t{5}).value->bits, 0x7FU);
+  const ParsedLimit high(Limit::high, DataType::integer8, "$NODEID+0x7B", std::uint8_t{5});
+  EXPECT_FALSE(high.value);
+  EXPECT_EQ(findings(high.diagnostics), warning_of("number-range"));
+  const ParsedLimit low(Limit::low, DataType::integer8, "$NODEID+0x7B", std::uint8_t{5});
+  EXPECT_FALSE(low.value);
+  EXPECT_EQ(findings(low.diagnostics), error_of("number-range"));
+  const ParsedLimit unknown(Limit::high, DataType::integer8, "$NODEID+0x7B");
+  ASSERT_TRUE(unknown.value);
+  EXPECT_TRUE(unknown.value->plus_node_id);
 }
 
 TEST(LimitValue, ThatNoValueCanMeetIsAnError) {

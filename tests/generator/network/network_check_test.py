@@ -160,6 +160,13 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
     "reserved_transmission_type_of_an_rpdo": (network(signal(*SPEED), a={**NODE_A, "set": {"1401h:02": 252}}),
                                               [("error", "network-value")]),
     "a_consumer_for_each_node": (network(a={**NODE_A, "set": {"1016h:01": "0x200C8", "1016h:02": "0x300C8"}}), []),
+    "formula_that_fits": (network(a={**NODE_A, "set": {"2006h": "$NODEID+0xFFFE"}}), []),
+    "formula_that_does_not_fit": (network(a={**NODE_A, "set": {"2006h": "$NODEID+0xFFFF"}}), [("error", "network-value")]),
+    "formula_of_more_than_64_bits": (network(a={**NODE_A, "set": {"2006h": "$NODEID+0xFFFFFFFFFFFFFFFF"}}),
+                                     [("error", "network-value")]),
+    "number_of_more_than_64_bits": (network(a={**NODE_A, "set": {"2006h": 18446744073709551716}}), [("error", "network-value")]),
+    "heartbeat_that_does_not_fit": (network(a={"node_id": 1, "eds": "short.eds", "heartbeat_ms": 300}),
+                                    [("error", "network-value"), ("warning", "network-unmonitored")]),
     "two_consumers_for_a_node": (network(a={**NODE_A, "set": {"1016h:01": "0x200C8", "1016h:02": "0x200FA"}}),
                                  [("warning", "heartbeat-consumer")]),
     "more_objects_than_a_mapping_has": (network(a={**NODE_A, "set": {"1A00h:00": 5}}), [("warning", "pdo-mapping-gap")]),
@@ -235,6 +242,7 @@ def main() -> int:
         (folder / "valid.eds").write_text(sheet_with("1400sub1", "$NODEID+0x200"))
         (folder / "slow.eds").write_text(sheet_with("1800sub3", "200"))
         (folder / "wide.eds").write_text(wide_sheet())
+        (folder / "short.eds").write_text(re.sub(r"(\[1017\][^\[]*DataType=)0x0006", r"\g<1>0x0005", sheet_with("1017", "0")))
         for name, (text, code, expected) in TEXTS.items():
             got_code, found = check(edsc, folder, name, text)
             places = [(one["severity"], one["rule"], one["line"], one["column"]) for one in found
