@@ -6,11 +6,7 @@
 #include <canopen/storage/parameter_ranges.hpp>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <string_view>
-#include <utility>
 
-#include "backend/cpp/placement.hpp"
 #include "compare/compare_parts.hpp"
 #include "compare/print_changes.hpp"
 #include "device/options/option_table.hpp"
@@ -23,42 +19,6 @@ namespace {
 constexpr std::uint16_t store_parameters = 0x1010;
 constexpr std::string_view storage_version = "storage_version";
 constexpr std::string_view fates[] = {"kept", "converted", "dropped"};
-
-bool selects(const EntrySelector& selector, const Entry& entry) {
-  return selector.index == entry.index && (!selector.sub_index || *selector.sub_index == entry.sub_index);
-}
-
-/// Whether the options store an entry; nothing: they do not say. Entries come before objects.
-std::optional<bool> stored_by_options(const Options& options, const Entry& entry) {
-  for (const bool of_entries : {true, false}) {
-    for (const auto& [selector, how] : options.storing) {
-      if (selector.sub_index.has_value() == of_entries && selects(selector, entry)) return how != "never";
-    }
-    for (const auto& [selector, sub_index] : options.stored_by) {
-      if (selector.sub_index.has_value() == of_entries && selects(selector, entry)) return true;
-    }
-  }
-  return std::nullopt;
-}
-
-bool is_mapped_by_default(const Device& device, const Entry& entry) {
-  return std::ranges::any_of(device.pdos, [&](const Pdo& pdo) {
-    return !pdo.broken && std::ranges::any_of(pdo.entries, [&](const PdoEntry& mapped) {
-      return mapped.index == entry.index && mapped.sub_index == entry.sub_index;
-    });
-  });
-}
-
-bool is_stored_at(const StoringDevice& storing, const Placement& placement, const Object& object, const Entry& entry) {
-  if (placement.place(object, entry) != MemoryPlace::ram || entry.type->kind == canopen::DataClass::domain)
-    return false;
-  if (const auto by_options = stored_by_options(storing.options, entry)) return *by_options;
-  const canopen::AccessRow& access = canopen::row_of(entry.access);
-  const bool is_process_data = canopen::allows(entry.mappable(), canopen::Mappable::tpdo) !=
-                               canopen::allows(entry.mappable(), canopen::Mappable::rpdo);
-  return access.readable && access.writable && !is_process_data &&
-         canopen::parameter_detail::can_be_parameter(entry.index) && !is_mapped_by_default(storing.device, entry);
-}
 
 std::uint32_t version_of(const Options& options) {
   const auto row = std::ranges::find_if(
@@ -105,26 +65,55 @@ std::string summary(const std::vector<StoredValueChange>& values) {
 
 std::string_view to_string(StoredFate fate) { return fates[static_cast<std::size_t>(fate)]; }
 
-bool is_stored(const StoringDevice& storing, const Object& object, const Entry& entry) {
-  return is_stored_at(storing, Placement{storing.device, storing.options}, object, entry);
+StoredEntries::StoredEntries(const StoringDevice& storing) : placement_{storing.device, storing.options} {
+  for (const auto& [selector, how] : storing.options.storing) {
+    by_options_.try_emplace({selector.index, selector.sub_index}, how != "never");
+  }
+  for (const auto& [selector, sub_index] : storing.options.stored_by) {
+    by_options_.try_emplace({selector.index, selector.sub_index}, true);
+  }
+  for (const Pdo& pdo : storing.device.pdos) {
+    if (pdo.broken) continue;
+    for (const PdoEntry& mapped : pdo.entries) mapped_by_default_.emplace(mapped.index, mapped.sub_index);
+  }
+}
+
+bool StoredEntries::contains(const Object& object, const Entry& entry) const {
+  if (placement_.place(object, entry) != MemoryPlace::ram || entry.type->kind == canopen::DataClass::domain)
+    return false;
+  if (const auto stored = by_options(entry)) return *stored;
+  const canopen::AccessRow& access = canopen::row_of(entry.access);
+  const bool is_process_data = canopen::allows(entry.mappable(), canopen::Mappable::tpdo) !=
+                               canopen::allows(entry.mappable(), canopen::Mappable::rpdo);
+  return access.readable && access.writable && !is_process_data &&
+         canopen::parameter_detail::can_be_parameter(entry.index) &&
+         !mapped_by_default_.contains({entry.index, entry.sub_index});
+}
+
+std::optional<bool> StoredEntries::by_options(const Entry& entry) const {
+  for (const std::optional<std::uint8_t> sub_index : {std::optional{entry.sub_index}, std::optional<std::uint8_t>{}}) {
+    const auto found = by_options_.find({entry.index, sub_index});
+    if (found != by_options_.end()) return found->second;
+  }
+  return std::nullopt;
 }
 
 std::vector<StoredValueChange> compare_stored_values(const StoringDevice& before, const StoringDevice& after) {
   std::vector<StoredValueChange> values;
   if (before.device.find(store_parameters) == nullptr) return values;
   const bool still_stores = after.device.find(store_parameters) != nullptr;
-  const Placement old_placement{before.device, before.options};
-  const Placement new_placement{after.device, after.options};
+  const StoredEntries stored_before{before};
+  const StoredEntries stored_after{after};
   for (const Object& object : before.device.objects) {
     for (const Entry& entry : object.entries) {
-      if (!is_stored_at(before, old_placement, object, entry)) continue;
+      if (!stored_before.contains(object, entry)) continue;
       StoredValueChange value{StoredFate::kept, entry_label(entry.index, entry.sub_index),
                               entry.name,       {},
                               entry.position,   {after.device.source}};
       const Object* const new_object = after.device.find(entry.index);
       const Entry* const new_entry = new_object == nullptr ? nullptr : new_object->find(entry.sub_index);
       if (new_entry != nullptr) value.new_position = new_entry->position;
-      if (new_entry == nullptr || !still_stores || !is_stored_at(after, new_placement, *new_object, *new_entry)) {
+      if (new_entry == nullptr || !still_stores || !stored_after.contains(*new_object, *new_entry)) {
         value.fate = StoredFate::dropped;
         value.why = new_entry == nullptr ? "the entry does not exist any more" : "the entry is not stored any more";
       } else {

@@ -1,10 +1,17 @@
 /// What happens to the stored parameters of a device when it gets the firmware of another version.
 #pragma once
 
+#include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
+#include "backend/cpp/placement.hpp"
 #include "compare/change.hpp"
 #include "device/device.hpp"
 #include "device/options/options.hpp"
@@ -17,8 +24,21 @@ struct StoringDevice {
   const Options& options;
 };
 
-/// Whether 1010h stores the value of an entry: the same selection as that of canopen::ParameterLayout.
-[[nodiscard]] bool is_stored(const StoringDevice& storing, const Object& object, const Entry& entry);
+/// The entries of which 1010h stores the values: the same selection as that of canopen::ParameterLayout.
+class StoredEntries {
+ public:
+  explicit StoredEntries(const StoringDevice& storing);
+
+  [[nodiscard]] bool contains(const Object& object, const Entry& entry) const;
+
+ private:
+  /// Whether the options store an entry; nothing: they do not say.
+  [[nodiscard]] std::optional<bool> by_options(const Entry& entry) const;
+
+  Placement placement_;
+  std::map<std::pair<std::uint16_t, std::optional<std::uint8_t>>, bool> by_options_;  ///< objects and entries
+  std::set<EntryKey> mapped_by_default_;
+};
 
 enum class StoredFate : std::uint8_t {
   kept,       ///< loaded, unless the new limits exclude it

@@ -1,6 +1,7 @@
 /// Limits of a device (CiA 301, 7.4 and 7.5.2).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace edsc {
@@ -8,5 +9,8 @@ namespace edsc {
 inline constexpr std::uint16_t max_pdos = 512;  ///< per direction
 inline constexpr std::uint8_t max_mapped_objects = 64;
 inline constexpr std::uint8_t max_sub_objects = 254;
+
+/// Of a device that edsc resolves: an EDS of 1 MB in compact form, or with modules, can describe millions.
+inline constexpr std::size_t max_entries = 0x20000;
 
 }  // namespace edsc

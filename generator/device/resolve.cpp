@@ -6,6 +6,7 @@
 
 #include "device/complete_device.hpp"
 #include "device/index_range.hpp"
+#include "device/limits.hpp"
 #include "device/objects/entry_resolver.hpp"
 #include "device/objects/object_resolver.hpp"
 #include "device/objects/resolve_modules.hpp"
@@ -19,8 +20,6 @@
 
 namespace edsc {
 namespace {
-
-constexpr std::size_t max_entries = 0x20000;
 
 class Resolver {
  public:
@@ -88,7 +87,7 @@ class Resolver {
     add_compact_pdos(sheet_.device_info, device_, diagnostics_);
   }
 
-  /// Whether more objects may follow. In compact form, an EDS of 1 MB can describe millions of entries.
+  /// Whether more objects may follow.
   bool has_room(const ObjectDescription& last) {
     entries_ += device_.objects.back().entries.size();
     if (entries_ <= max_entries) return true;

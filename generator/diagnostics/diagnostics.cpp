@@ -61,7 +61,10 @@ bool Diagnostics::join(const Kind& kind, Diagnostic& diagnostic) {
   return true;
 }
 
-void Diagnostics::silence(std::string rule) { silenced_.push_back({std::move(rule)}); }
+void Diagnostics::silence(std::string rule) {
+  const bool is_new = std::ranges::find(silenced_, rule, &Silenced::rule) == silenced_.end();
+  if (is_new) silenced_.push_back({std::move(rule)});
+}
 
 bool Diagnostics::has_silenced(std::string_view rule) const {
   return std::ranges::any_of(silenced_, [&](const Silenced& one) { return one.rule == rule && one.has_fired; });

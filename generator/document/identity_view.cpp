@@ -127,7 +127,7 @@ Json bit_rate_rows(const Device& device) {
   all.erase(std::unique(all.begin(), all.end()), all.end());
   Json rows = Json::array();
   for (const std::uint16_t rate : all) {
-    const bool is_supported = std::ranges::find(supported, rate) != supported.end();
+    const bool is_supported = std::ranges::binary_search(supported, rate);
     rows.push_back({{"rate", rate}, {"supported", is_supported}});
   }
   return rows;

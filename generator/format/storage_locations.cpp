@@ -73,16 +73,19 @@ nlohmann::ordered_json storage_options(const IniFile& ini, const Device& device,
   if (locations.empty()) return nullptr;
   nlohmann::ordered_json entries = nlohmann::ordered_json::object();
   nlohmann::ordered_json sub_indices = nlohmann::ordered_json::object();
-  const StoringDevice storing{device, options};
+  const StoredEntries stored{{device, options}};
+  const auto add_entry = [&](const std::string& label, const char* how) {
+    entries.get_ref<nlohmann::ordered_json::object_t&>().emplace_back(label, how);  // labels differ
+  };
   for (const auto& [key, group] : locations) {
     const Object* const object = device.find(key.first);
     const Entry* const entry = object == nullptr ? nullptr : object->find(key.second);
     if (entry == nullptr || !canopen::parameter_detail::can_be_parameter(key.first)) continue;
     const bool is_excluded = std::ranges::find(never_stored, group) != std::end(never_stored);
-    const bool stores_now = is_stored(storing, *object, *entry);
+    const bool stores_now = stored.contains(*object, *entry);
     const std::string label = entry_label(key.first, key.second);
     if (is_excluded) {
-      if (stores_now) entries[label] = "never";
+      if (stores_now) add_entry(label, "never");
       continue;
     }
     if (!canopen::writable(entry->access)) continue;  // CANopenNode also writes constants to the storage
@@ -90,7 +93,7 @@ nlohmann::ordered_json storage_options(const IniFile& ini, const Device& device,
     if (sub_index) {
       sub_indices[fmt::format("{:02X}h", *sub_index)].push_back(label);
     } else if (!stores_now) {
-      entries[label] = "always";
+      add_entry(label, "always");
     }
   }
   nlohmann::ordered_json storage = nlohmann::ordered_json::object();

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
 #include "backend/cpp/identifier.hpp"
+#include "diagnostics/quote.hpp"
 #include "eds/ini.hpp"
 #include "text/ascii.hpp"
 #include "text/number_text.hpp"
@@ -16,6 +18,8 @@ namespace {
 
 constexpr std::size_t max_suggestions = 3;
 constexpr std::size_t max_listed = 8;  ///< sub-indices in a message
+constexpr std::size_t max_name_length = 1000;
+constexpr std::size_t max_names_with_suggestions = 50;  ///< more messages of one kind are not printed
 
 /// `2`, `0x2`, `02h`; after an index with h, all digits are hexadecimal.
 std::optional<std::uint8_t> parse_sub_index(std::string_view text, int base) {
@@ -26,13 +30,6 @@ std::optional<std::uint8_t> parse_sub_index(std::string_view text, int base) {
 bool same_name(std::string_view text, std::string_view identifier, std::string_view name) {
   return equal_ignoring_case(text, identifier) || equal_ignoring_case(text, name) ||
          (!text.empty() && to_snake_case(text) == identifier);
-}
-
-const Object* find_object(const NamedDevice& named, std::string_view text) {
-  const CppNames& names = named.names;
-  const auto same = [&](const Object& object) { return same_name(text, names.of(object), object.name); };
-  const auto at = std::ranges::find_if(named.device.objects, same);
-  return at != named.device.objects.end() ? &*at : nullptr;
 }
 
 const Entry* find_in(const Object& object, std::string_view text, const CppNames& names) {
@@ -94,7 +91,7 @@ class Suggestions {
       : wanted_{to_snake_case(text)}, most_{std::max<std::size_t>(2, wanted_.size() / 4)} {}
 
   void consider(std::string_view identifier, std::string label) {
-    if (wanted_.empty()) return;
+    if (wanted_.empty() || identifier.size() > max_name_length) return;
     std::size_t cost = distance(wanted_, identifier, most_);
     const bool inside = wanted_.size() >= 3 && identifier.find(wanted_) != std::string_view::npos;
     if (cost > most_ && !inside) return;
@@ -125,22 +122,6 @@ class Suggestions {
   std::vector<Row> rows_;
 };
 
-std::string near_names(const NamedDevice& named, std::string_view text) {
-  const CppNames& names = named.names;
-  Suggestions suggestions{text};
-  for (const Object& object : named.device.objects) {
-    suggestions.consider(names.of(object), fmt::format("{} ({})", names.of(object), index_label(object.index)));
-    if (!object.has_sub_indices()) continue;
-    for (const Entry& entry : object.entries) {
-      if (entry.sub_index == 0) continue;
-      const std::string label = entry_title(object, entry, names);
-      suggestions.consider(names.of(entry), label);
-      suggestions.consider(fmt::format("{}_{}", names.of(object), names.of(entry)), label);
-    }
-  }
-  return suggestions.text();
-}
-
 /// The neighbours of a missing index.
 std::string near_indices(const NamedDevice& named, std::uint16_t index) {
   const CppNames& names = named.names;
@@ -170,41 +151,20 @@ FoundEntry by_address(const NamedDevice& named, const EntryAddress& address) {
   return found(*object, entry);
 }
 
-/// `identity_object.vendor_id`, `identity_object:1`, `Identity object, Vendor-ID`, `read_input_8_bit[1]`: every place
-/// where the object name may end is tried, since names may contain all of these characters.
-std::optional<FoundEntry> by_both_names(const NamedDevice& named, std::string_view text) {
-  for (std::size_t at = text.find_first_of(".,:[<"); at != std::string_view::npos;
-       at = text.find_first_of(".,:[<", at + 1)) {
-    const Object* object = find_object(named, trim(text.substr(0, at)));
-    if (object == nullptr) continue;
-    std::string_view rest = text.substr(at + 1);
-    if ((text[at] == '[' && rest.ends_with(']')) || (text[at] == '<' && rest.ends_with('>'))) rest.remove_suffix(1);
-    if (text[at] == ':' && rest.starts_with(':')) rest.remove_prefix(1);
-    if (const Entry* entry = find_in(*object, trim(rest), named.names)) return found(*object, entry);
-    return no_entry(fmt::format("{} \"{}\" has no entry \"{}\"; it has {}", index_label(object->index), object->name,
-                                trim(rest), sub_indices_of(*object, named.names)));
-  }
-  return std::nullopt;
+std::string lower_case(std::string_view text) {
+  std::string lower{text};
+  for (char& c : lower) c = to_lower(c);
+  return lower;
 }
 
-/// The name of a sub-index alone.
-FoundEntry by_entry_name(const NamedDevice& named, std::string_view text) {
-  const CppNames& names = named.names;
-  std::vector<FoundEntry> matches;
-  for (const Object& object : named.device.objects) {
-    if (!object.has_sub_indices()) continue;
-    for (const Entry& entry : object.entries) {
-      if (same_name(text, names.of(entry), entry.name)) matches.push_back(found(object, &entry));
-    }
-  }
-  if (matches.size() == 1) return matches.front();
-  if (matches.empty()) return no_entry(fmt::format("the device has no object \"{}\"{}", text, near_names(named, text)));
-  std::string sentence = fmt::format("\"{}\" is ambiguous:", text);
-  for (std::size_t i = 0; i < std::min(matches.size(), max_suggestions); ++i) {
-    sentence += fmt::format("{} {}", i == 0 ? "" : " or", entry_title(*matches[i].object, *matches[i].entry, names));
-  }
-  if (matches.size() > max_suggestions) sentence += fmt::format(" or {} more", matches.size() - max_suggestions);
-  return no_entry(std::move(sentence));
+/// Adds one with its names. Nothing is found by an empty identifier.
+template <class Names, class Named>
+void add_names(Names& names, const Named& named, std::string_view identifier, std::string_view name) {
+  const std::string lower_identifier = lower_case(identifier);
+  const std::string lower_name = lower_case(name);
+  names.by_name[lower_identifier].push_back(named);
+  if (lower_name != lower_identifier) names.by_name[lower_name].push_back(named);
+  names.by_identifier[std::string{identifier}].push_back(named);
 }
 
 }  // namespace
@@ -222,21 +182,109 @@ std::optional<EntryAddress> parse_entry_address(std::string_view text) {
   return sub_index ? std::optional{EntryAddress{*index, sub_index}} : std::nullopt;
 }
 
-FoundEntry find_entry(const NamedDevice& named, std::string_view text) {
-  text = trim(text);
-  if (const Object* object = find_object(named, text)) return found(*object);
-  if (const auto address = parse_entry_address(text)) return by_address(named, *address);
-  if (auto both = by_both_names(named, text)) return *std::move(both);
-  return by_entry_name(named, text);
+EntryFinder::EntryFinder(const NamedDevice& named) : named_{named} {
+  for (const Object& object : named.device.objects) {
+    add_names(objects_, &object, named.names.of(object), object.name);
+    if (!object.has_sub_indices()) continue;
+    for (const Entry& entry : object.entries) {
+      add_names(entries_, NamedEntry{&object, &entry}, named.names.of(entry), entry.name);
+    }
+  }
 }
 
-FoundEntry find_one_entry(const NamedDevice& named, std::string_view text) {
-  FoundEntry result = find_entry(named, text);
+template <class Named>
+EntryFinder::Matches<Named> EntryFinder::find_named(const Names<Named>& names, std::string_view text) {
+  Matches<Named> matches;
+  if (const auto at = names.by_name.find(lower_case(text)); at != names.by_name.end()) matches.by_name = at->second;
+  if (text.empty()) return matches;
+  const auto at = names.by_identifier.find(to_snake_case(text));
+  if (at != names.by_identifier.end()) matches.by_identifier = at->second;
+  return matches;
+}
+
+const Object* EntryFinder::find_object(std::string_view text) const {
+  const auto [by_name, by_identifier] = find_named(objects_, text);
+  if (by_name.empty()) return by_identifier.empty() ? nullptr : by_identifier.front();
+  return by_identifier.empty() ? by_name.front() : std::min(by_name.front(), by_identifier.front());
+}
+
+std::string EntryFinder::near_names(std::string_view text) {
+  if (suggestions_++ >= max_names_with_suggestions) return "";
+  const CppNames& names = named_.names;
+  Suggestions suggestions{text};
+  for (const Object& object : named_.device.objects) {
+    suggestions.consider(names.of(object), fmt::format("{} ({})", names.of(object), index_label(object.index)));
+    if (!object.has_sub_indices()) continue;
+    for (const Entry& entry : object.entries) {
+      if (entry.sub_index == 0) continue;
+      const std::string label = entry_title(object, entry, names);
+      suggestions.consider(names.of(entry), label);
+      suggestions.consider(fmt::format("{}_{}", names.of(object), names.of(entry)), label);
+    }
+  }
+  return suggestions.text();
+}
+
+/// `identity_object.vendor_id`, `identity_object:1`, `Identity object, Vendor-ID`, `read_input_8_bit[1]`: every place
+/// where the object name may end is tried, since names may contain all of these characters.
+std::optional<FoundEntry> EntryFinder::by_both_names(std::string_view text) const {
+  for (std::size_t at = text.find_first_of(".,:[<"); at != std::string_view::npos;
+       at = text.find_first_of(".,:[<", at + 1)) {
+    const Object* object = find_object(trim(text.substr(0, at)));
+    if (object == nullptr) continue;
+    std::string_view rest = text.substr(at + 1);
+    if ((text[at] == '[' && rest.ends_with(']')) || (text[at] == '<' && rest.ends_with('>'))) rest.remove_suffix(1);
+    if (text[at] == ':' && rest.starts_with(':')) rest.remove_prefix(1);
+    if (const Entry* entry = find_in(*object, trim(rest), named_.names)) return found(*object, entry);
+    return no_entry(fmt::format("{} \"{}\" has no entry \"{}\"; it has {}", index_label(object->index), object->name,
+                                trim(rest), sub_indices_of(*object, named_.names)));
+  }
+  return std::nullopt;
+}
+
+/// The name of a sub-index alone.
+FoundEntry EntryFinder::by_entry_name(std::string_view text) {
+  const auto [by_name, by_identifier] = find_named(entries_, text);
+  std::vector<NamedEntry> matches;
+  std::ranges::set_union(by_name, by_identifier, std::back_inserter(matches));
+  if (matches.size() == 1) return found(*matches.front().object, matches.front().entry);
+  if (matches.empty()) return no_entry(fmt::format("the device has no object \"{}\"{}", text, near_names(text)));
+  std::string sentence = fmt::format("\"{}\" is ambiguous:", text);
+  for (std::size_t i = 0; i < std::min(matches.size(), max_suggestions); ++i) {
+    sentence +=
+        fmt::format("{} {}", i == 0 ? "" : " or", entry_title(*matches[i].object, *matches[i].entry, named_.names));
+  }
+  if (matches.size() > max_suggestions) sentence += fmt::format(" or {} more", matches.size() - max_suggestions);
+  return no_entry(std::move(sentence));
+}
+
+FoundEntry EntryFinder::find_new(std::string_view text) {
+  if (text.size() > max_name_length)
+    return no_entry(fmt::format("{} is too long for the name of an entry", quote(text)));
+  if (const Object* object = find_object(text)) return found(*object);
+  if (const auto address = parse_entry_address(text)) return by_address(named_, *address);
+  if (auto both = by_both_names(text)) return *std::move(both);
+  return by_entry_name(text);
+}
+
+FoundEntry EntryFinder::find(std::string_view text) {
+  text = trim(text);
+  const auto [at, is_new] = found_.try_emplace(std::string{text});
+  if (is_new) at->second = find_new(text);
+  return at->second;
+}
+
+FoundEntry EntryFinder::find_one(std::string_view text) {
+  FoundEntry result = find(text);
   if (result.ok() && result.entry == nullptr) {
     result.problem = fmt::format("{} \"{}\" has sub-indices: {}", index_label(result.object->index),
-                                 result.object->name, sub_indices_of(*result.object, named.names));
+                                 result.object->name, sub_indices_of(*result.object, named_.names));
   }
   return result;
 }
+
+FoundEntry find_entry(const NamedDevice& named, std::string_view text) { return EntryFinder{named}.find(text); }
+
+FoundEntry find_one_entry(const NamedDevice& named, std::string_view text) { return EntryFinder{named}.find_one(text); }
 
 }  // namespace edsc

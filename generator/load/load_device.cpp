@@ -117,8 +117,9 @@ void silence_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics) {
   for (const SilencedRule& silenced : loaded.options.silence) {
     if (find_rule(silenced.rule) == nullptr) {
       diagnostics.error("options", silenced.position, "silence: " + unknown_rule(silenced.rule));
+    } else {
+      diagnostics.silence(silenced.rule);
     }
-    diagnostics.silence(silenced.rule);
   }
 }
 

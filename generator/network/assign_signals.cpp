@@ -10,6 +10,7 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "device/cob_id_parameter.hpp"
 #include "device/index_range.hpp"
@@ -38,33 +39,44 @@ struct SignalGroup {
   unsigned bits = 0;
 };
 
-bool same_receivers(const Signal& a, const Signal& b) {
-  return std::ranges::equal(a.to, b.to, {}, &SignalEnd::node, &SignalEnd::node);
-}
-
 std::uint32_t number_or_0(const WrittenNumber& number) { return number ? number->value : 0; }
 
-bool same_timing(const SignalDescription& a, const SignalDescription& b) {
-  const auto timing = [](const SignalDescription& one) {
-    return std::tuple{number_or_0(one.every_ms), number_or_0(one.every_sync), one.event && one.event->value};
-  };
-  return timing(a) == timing(b);
+/// What the signals of one PDO have in common: sender, timing and receivers.
+using SignalKind = std::tuple<const NetworkNode*, std::uint32_t, std::uint32_t, bool, std::vector<const NetworkNode*>>;
+
+SignalKind kind_of(const Signal& signal) {
+  const SignalDescription& timing = *signal.description;
+  std::vector<const NetworkNode*> receivers;
+  for (const SignalEnd& end : signal.to) receivers.push_back(end.node);
+  return {signal.from.node, number_or_0(timing.every_ms), number_or_0(timing.every_sync),
+          timing.event && timing.event->value, std::move(receivers)};
 }
 
-bool may_share_pdo(const SignalGroup& group, const Signal& signal) {
-  const Signal& first = *group.signals.front();
-  return first.from.node == signal.from.node && same_timing(*first.description, *signal.description) &&
-         same_receivers(first, signal) && group.signals.size() < max_entries &&
-         group.bits + signal.from.entry->type->bits <= max_bits;
-}
+/// The groups of one kind in order, and by the size of a signal the first that may have room for it.
+struct GroupsOfKind {
+  std::vector<std::size_t> groups;
+  std::map<unsigned, std::size_t> first_with_room;
+};
 
+/// Each signal is in the first group of its kind that has room for it.
 std::vector<SignalGroup> group(const std::vector<Signal>& signals) {
   std::vector<SignalGroup> groups;
+  std::map<SignalKind, GroupsOfKind> kinds;
   for (const Signal& signal : signals) {
-    auto at = std::ranges::find_if(groups, [&](const SignalGroup& one) { return may_share_pdo(one, signal); });
-    if (at == groups.end()) at = groups.insert(groups.end(), SignalGroup{});
-    at->signals.push_back(&signal);
-    at->bits += signal.from.entry->type->bits;
+    const unsigned bits = signal.from.entry->type->bits;
+    GroupsOfKind& kind = kinds[kind_of(signal)];
+    std::size_t& at = kind.first_with_room[bits];
+    const auto has_room = [&](const SignalGroup& one) {
+      return one.signals.size() < max_entries && one.bits + bits <= max_bits;
+    };
+    while (at < kind.groups.size() && !has_room(groups[kind.groups[at]])) ++at;
+    if (at == kind.groups.size()) {
+      kind.groups.push_back(groups.size());
+      groups.emplace_back();
+    }
+    SignalGroup& chosen = groups[kind.groups[at]];
+    chosen.signals.push_back(&signal);
+    chosen.bits += bits;
   }
   return groups;
 }
@@ -182,7 +194,7 @@ class SignalPlanner {
     });
     if (chosen == nullptr) {
       chosen = find_pdo(node, direction, [&](const Pdo& pdo) {
-        return pdo.dynamic && pdo.mapping->entries.size() > planned.mapping.size() && !is_configured(node, pdo);
+        return pdo.dynamic && pdo.mapping->entries.size() > planned.mapping.size() && !is_known_configured(node, pdo);
       });
     }
     if (chosen == nullptr) {
@@ -240,9 +252,16 @@ class SignalPlanner {
     });
   }
 
+  /// is_configured(), once for each PDO.
+  [[nodiscard]] bool is_known_configured(const NetworkNode& node, const Pdo& pdo) const {
+    const auto [at, is_new] = configured_.try_emplace({&node, pdo.direction, pdo.number}, false);
+    if (is_new) at->second = is_configured(node, pdo);
+    return at->second;
+  }
+
   /// Whether `set` or a DCF makes an RPDO receive what a node other than the sender of the signal transmits.
   [[nodiscard]] bool is_linked_to_another(const NetworkNode& node, const Pdo& pdo, const NetworkNode& sender) const {
-    if (pdo.direction != PdoDirection::receive || !on_by_default(pdo) || !is_configured(node, pdo)) return false;
+    if (pdo.direction != PdoDirection::receive || !on_by_default(pdo) || !is_known_configured(node, pdo)) return false;
     const canopen::CobId cob_id{static_cast<std::uint32_t>(communication_default(pdo, 1).value_or(0))};
     return is_sent_by_another(cob_id, sender);
   }
@@ -305,6 +324,7 @@ class SignalPlanner {
   std::vector<CobIdUse> uses_;  ///< as configured without signals
   SignalPlan plan_;
   std::set<PdoKey> taken_;
+  mutable std::map<PdoKey, bool> configured_;
   std::map<std::pair<const NetworkNode*, PdoDirection>, std::uint16_t> master_pdos_;
   std::set<std::uint32_t> used_;      ///< CAN-IDs of the devices
   std::set<std::uint32_t> assigned_;  ///< CAN-IDs of planned PDOs

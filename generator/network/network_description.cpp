@@ -26,6 +26,7 @@ std::optional<std::string> eds_text(const Json& value) {
 }
 
 constexpr std::size_t max_name_length = 64;
+constexpr std::size_t max_nodes = 127;
 
 /// A name is also that of files and, without its blanks, of C++. Bytes above 7Fh are parts of letters in UTF-8.
 bool is_node_name(std::string_view name) {
@@ -167,6 +168,9 @@ class NetworkReader {
       return;
     }
     for (const auto& [name, json] : file_.members(*nodes)) {
+      if (network.nodes.size() == max_nodes) {
+        return error(*json, fmt::format("a network has at most {} nodes; the others are left out", max_nodes));
+      }
       if (!json->is_object()) {
         error(*json, fmt::format("node {} must be an object", quote(name)));
         continue;

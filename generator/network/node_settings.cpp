@@ -94,8 +94,9 @@ void set_number(NetworkNode& node, std::uint16_t index, std::uint8_t sub_index, 
 namespace {
 
 /// A value in the notation of an EDS, of an entry by name or address. `stated` has the entries of the node so far.
-void set_text(NetworkNode& node, const WrittenValue& written, StatedEntries& stated, Diagnostics& diagnostics) {
-  const FoundEntry found = find_one_entry(node.named(), written.entry.value);
+void set_text(NetworkNode& node, const WrittenValue& written, EntryFinder& entries, StatedEntries& stated,
+              Diagnostics& diagnostics) {
+  const FoundEntry found = entries.find_one(written.entry.value);
   if (!found.ok()) {
     diagnostics.error("network-value", written.entry.position, fmt::format("node {}: {}", node.name, found.problem));
     return;
@@ -146,7 +147,8 @@ void apply_node_members(NetworkNode& node, Diagnostics& diagnostics) {
     set_number(node, communication::producer_heartbeat, 0, time->value, time->position, diagnostics);
     stated.emplace(std::pair{communication::producer_heartbeat, std::uint8_t{0}}, time->position);
   }
-  for (const WrittenValue& value : node.description->set) set_text(node, value, stated, diagnostics);
+  EntryFinder entries{node.named()};
+  for (const WrittenValue& value : node.description->set) set_text(node, value, entries, stated, diagnostics);
 }
 
 void configure(NetworkNode& node, const SourceFile& network_file, Diagnostics& diagnostics) {

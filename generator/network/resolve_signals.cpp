@@ -105,7 +105,7 @@ class SignalResolver {
 
   const Entry* find_entry(const NetworkNode& node, std::string_view name, PdoDirection direction,
                           const Position& position) {
-    const FoundEntry found = find_one_entry(node.named(), name);
+    const FoundEntry found = entries_.try_emplace(&node, node.named()).first->second.find_one(name);
     if (!found.ok()) {
       error(position, fmt::format("node {}: {}", node.name, found.problem));
       return nullptr;
@@ -138,6 +138,7 @@ class SignalResolver {
 
   const Network& network_;
   Diagnostics& diagnostics_;
+  std::map<const NetworkNode*, EntryFinder> entries_;
 };
 
 /// An entry that receives two signals has the value of the one that came last.

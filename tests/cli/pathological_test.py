@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
-"""Unusual, possibly malicious files: edsc ends within a bounded time for each.
+"""Unusual, possibly malicious files: edsc ends within a bounded time for each, and takes twice the time for twice the size.
 
     pathological_test.py SOURCE_DIR EDSC [--times] [--large]
 
 Creates files of 0.4 to 1.6 MB in a temporary folder, 2.5 times as much with --large, and runs `edsc check`, `generate`, `dump`
 and `format` on each. The limit of 10 s of CPU time per MB detects hangs and steps of quadratic cost, and is sufficient for a slow
-machine and sanitizers; bench/ measures the time of edsc.
+machine and sanitizers; bench/ measures the time of edsc. For files that grow in one part, the CPU time of two sizes is compared.
 """
 
 from __future__ import annotations
 
+import json
 import resource
 import signal
 import subprocess
@@ -183,6 +184,125 @@ class Pathological(unittest.TestCase):
                     seconds = cpu_seconds() - before
                     size = path.stat().st_size / MB
                     print(f"{path.stem:32} {command:9} {size:5.1f} MB {seconds:6.2f} s {seconds / size:6.2f} s/MB", flush=True)
+
+
+def numbered(template: str, count: int) -> str:
+    return "".join(template.format(i=i, number=i + 1, rest=count - i) for i in range(count))
+
+
+def vars_from(count: int, first: int = 0x2000, more: str = "") -> str:
+    return "".join(var(f"{first + i:04X}", f"a{i}", more) for i in range(count))
+
+
+MODULE = "[SupportedModules]\nNrOfEntries=1\n[M1ModuleInfo]\nProductName=a\n"
+EXTENSION = "[M1SubExtends]\nNrOfEntries=1\n1=0x2000\n[M1SubExt2000]\nParameterName=a\nDataType=5\nAccessType=ro\n"
+EMPTY_EXTENSION = "[M1SubExt{0}]\nParameterName=a\nDataType=5\nAccessType=ro\nCount=0\n"
+
+
+def connected(places: int, kinds: int = 1) -> str:
+    return f"[ConnectedModules]\nNrOfEntries={places}\n" + "".join(f"{i + 1}={i % kinds + 1}\n" for i in range(places))
+
+
+def fixed_objects(count: int, listed_from: int) -> str:
+    return (f"{MODULE}[M1FixedObjects]\nNrOfEntries={count}\n" + "".join(f"{i + 1}=0x{listed_from + i:04X}\n" for i in range(count))
+            + "".join(f"[M1Fixed{0xFFFF - i:04X}]\nParameterName=a\nDataType=5\nAccessType=ro\n" for i in range(count))
+            + connected(1) + var("1F00", "a"))
+
+
+def with_options(options: object, count: int = 1, indent: int | None = 1) -> dict[str, str]:
+    return {"device.eds": vars_from(count), "device.options.json": json.dumps(options, indent=indent)}
+
+
+def network(more: dict[str, object], **members: object) -> dict[str, str]:
+    device = {"node_id": 2, "eds": "device.eds", **more}
+    return {"device.eds": "[DeviceInfo]\nVendorName=a\n" + vars_from(4000),
+            "network.json": json.dumps({"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": True}, "a": device}, **members})}
+
+
+def keys(count: int) -> list[str]:
+    return [f"{0x2000 + i:04X}h" for i in range(count)]
+
+
+CHECK, GENERATE, NETWORK = ["check", "device.eds"], ["generate", "--keep-going", "device.eds", "-o", "out"], [
+    "network", "check", "network.json"]
+
+# By name: the smaller of two sizes, the files of a size, and the command. The larger size is twice the smaller one.
+GROWING: dict[str, tuple[int, Callable[[int], dict[str, str]], list[str]]] = {
+    "modules_that_extend_objects": (100, lambda n: {
+        "device.eds": MODULE + EXTENSION + "Count=254\nObjExtend=1\n" + connected(n) + var("1F00", "a")}, CHECK),
+    "modules_with_empty_extensions": (2000, lambda n: {
+        "device.eds": MODULE + "".join(EMPTY_EXTENSION.format(f"{0x2000 + i:04X}") for i in range(n)) + connected(n)
+                      + var("1F00", "a")}, CHECK),
+    "kinds_of_modules": (20000, lambda n: {
+        "device.eds": numbered("[M{number}ModuleInfo]\nProductName=a\n", n) + connected(n, n) + var("1F00", "a")}, CHECK),
+    "fixed_objects_descending": (24000, lambda n: {"device.eds": fixed_objects(n, 0x10000 - n)}, CHECK),
+    "fixed_objects_that_are_missing": (20000, lambda n: {"device.eds": fixed_objects(n, 0x1000)}, CHECK),
+    "dynamic_channels_descending": (20000, lambda n: {
+        "device.eds": f"[DynamicChannels]\nNrOfSeg={n}\n"
+                      + numbered("Type{rest}=7\nDir{rest}=ro\nRange{rest}=0xA080\nPPOffset{rest}=0\n", n) + var("2000", "a")}, CHECK),
+    "comments_descending": (100000, lambda n: {
+        "device.eds": f"[Comments]\nLines={n}\n" + numbered("Line{rest}=a\n", n) + var("2000", "a")}, CHECK),
+    "allow_rows": (10000, lambda n: with_options(
+        {"allow": [{"rule": "pdo-empty", "object": f"{i % 0x8000 + 0x2000:04X}h", "reason": f"r{i}"} for i in range(n)]}), CHECK),
+    "silence_rows": (20000, lambda n: with_options({"silence": [f"rule{i}" for i in range(n)]}, 8000), CHECK),
+    "settable_entries": (20000, lambda n: with_options({"settable": keys(n)}, n), GENERATE),
+    "wrong_names": (20000, lambda n: with_options({"names": dict.fromkeys(keys(n), 1)}), CHECK),
+    "unknown_options": (20000, lambda n: with_options({f"x{i}": 1 for i in range(n)}), CHECK),
+    "long_name_of_an_option": (100000, lambda n: with_options({"x" * n: [1] * (n // 4)}), CHECK),
+    "deep_options": (500000, lambda n: {"device.eds": var("2000", "a"), "device.options.json": "[" * n + "]" * n}, CHECK),
+    "deep_members_of_options": (100000, lambda n: {
+        "device.eds": var("2000", "a"), "device.options.json": '{"a": ' * n + "1" + "}" * n}, CHECK),
+    "deep_storage_group": (100000, lambda n: {"device.eds": var("2000", "a"), "device.options.json":
+                                              '{"storage": {"sub_indices": {"05h": ' + "[" * n + "]" * n + "}}}"}, CHECK),
+    "deep_bit_rates": (100000, lambda n: {"device.eds": var("2000", "a"), "device.options.json":
+                                          '{"lss": {"bit_rates": ' + "[" * n + "]" * n + "}}"}, CHECK),
+    "unknown_members_of_a_network": (20000, lambda n: network({}, **{f"x{i}": 1 for i in range(n)}), NETWORK),
+    "long_name_of_a_network_member": (100000, lambda n: network({}, **{"x" * n: [1] * (n // 4)}), NETWORK),
+    "unknown_entries_in_set": (4000, lambda n: network({"set": {f"speed {i}": 1 for i in range(n)}}), NETWORK),
+    "entries_in_set": (20000, lambda n: {**network({"set": {f"a{i}": 1 for i in range(n)}}),
+                                         "device.eds": "[DeviceInfo]\nVendorName=a\n" + vars_from(n)}, NETWORK),
+    "one_name_in_set": (10000, lambda n: {
+        **network({"set": {f"a.{i}": 1 for i in range(n)}}),
+        "device.eds": "[DeviceInfo]\nVendorName=a\n" + "".join(var(f"{0x2000 + i:04X}", "a") for i in range(n))}, NETWORK),
+    "long_name_in_set": (20000, lambda n: network({"set": {"a." * n: 1}}), NETWORK),
+    "nodes_of_a_network": (500, lambda n: {
+        **network({}, nodes={f"n{i}": {"node_id": 1, "eds": "device.eds"} for i in range(n)}), "device.eds": var("2000", "a")}, NETWORK),
+}
+LARGEST_RATIO = 3.2
+NEGLIGIBLE_SECONDS = 0.4  # of the larger size: the time of other work
+LIMIT_SECONDS = 20
+
+
+class Growing(unittest.TestCase):
+    def seconds(self, files: dict[str, str], command: list[str]) -> float:
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in files.items():
+                (Path(folder) / name).write_text(text, encoding="utf-8", newline="")
+            before = cpu_seconds()
+            done = subprocess.run([EDSC, *command], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                  preexec_fn=lambda: limit_cpu_seconds(LIMIT_SECONDS), check=False)
+            self.assertIn(done.returncode, (0, 1, 2, -signal.SIGXCPU), done.stderr[-2000:].decode(errors="replace"))
+            return cpu_seconds() - before if done.returncode != -signal.SIGXCPU else float("inf")
+
+
+def add_growing_test(name: str, size: int, make: Callable[[int], dict[str, str]], command: list[str]) -> None:
+    def test(self: Growing) -> None:
+        smaller = larger = float("inf")
+        for _ in range(3):
+            smaller, larger = min(smaller, self.seconds(make(size), command)), min(larger, self.seconds(make(2 * size), command))
+            if larger < NEGLIGIBLE_SECONDS or larger < LARGEST_RATIO * smaller < float("inf"):
+                break
+        if VERBOSE:
+            print(f"{name:32} {smaller:6.2f} s {larger:6.2f} s", flush=True)
+        if larger >= NEGLIGIBLE_SECONDS:
+            self.assertLess(larger, LARGEST_RATIO * smaller, f"{name}: the time grows faster than the size")
+            self.assertLess(larger, float("inf"), f"{name}: edsc has not ended after {LIMIT_SECONDS} s of CPU time")
+
+    setattr(Growing, f"test_{name}", test)
+
+
+for growing_name, growing in GROWING.items():
+    add_growing_test(growing_name, *growing)
 
 
 def add_test(name: str, make: Callable[[], str]) -> None:

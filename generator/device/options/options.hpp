@@ -29,10 +29,10 @@ struct EntrySelector {
 /// Mapping parameters that are constants regardless of their access type in the EDS.
 struct StaticMapping {
   bool all = false;
-  std::vector<std::uint16_t> parameters;  ///< indices
+  std::vector<std::uint16_t> parameters;  ///< indices, ascending
 
   [[nodiscard]] bool applies_to(std::uint16_t index) const {
-    return all || std::ranges::find(parameters, index) != parameters.end();
+    return all || std::ranges::binary_search(parameters, index);
   }
 };
 
@@ -91,7 +91,7 @@ struct Options {
   /// Maximum bytes of a string in RAM.
   std::map<EntryKey, std::uint16_t> string_capacity;
   /// Constant or ro entries that the application sets at start-up: they are in RAM.
-  std::vector<EntryKey> settable;
+  std::vector<EntryKey> settable;  ///< ascending, without duplicates
   /// Rules that are not reported for this device.
   std::vector<SilencedRule> silence;
   /// The connected modules of a modular device: their numbers, by place. Empty: as in the DCF.
@@ -119,7 +119,7 @@ struct Options {
   std::vector<DeprecatedOption> deprecated;
 
   [[nodiscard]] bool is_settable(std::uint16_t index, std::uint8_t sub_index) const {
-    return std::ranges::find(settable, EntryKey{index, sub_index}) != settable.end();
+    return std::ranges::binary_search(settable, EntryKey{index, sub_index});
   }
 
   /// Whether the options file, or an implied option, states an option of the runtime.

@@ -125,6 +125,12 @@ class StructuredOptions {
     return is_new;
   }
 
+  template <class List>
+  static void sort_unique(List& list) {
+    std::ranges::sort(list);
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  }
+
   /// Appends what `parse` reads from each text of an array.
   template <class List, class Parse>
   void append_each(const json& value, const char* meaning, List& list, Parse parse,
@@ -156,6 +162,7 @@ class StructuredOptions {
   void settable(const json& value) {
     append_each(value, "expected an array of entries such as \"1018h:04\"", options_.settable, parse_entry_key,
                 "not an entry such as \"1018h:04\"");
+    sort_unique(options_.settable);
   }
 
   void silence(const json& value) {
@@ -215,6 +222,7 @@ class StructuredOptions {
                   const auto index = parse_index(text);
                   return index && contains(mapping_parameters, *index) ? index : std::nullopt;
                 });
+    sort_unique(options_.static_mapping.parameters);
   }
 
   void no_event(const json& value) {

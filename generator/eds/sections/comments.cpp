@@ -34,14 +34,16 @@ Comments read_comments(const SourceFile& source, const IniSection& section, Diag
   Comments comments;
   comments.present = true;
   comments.text.reserve(section.entries.size());
+  NumberedRows<NumberedField> lines{comments.text};
   read_keys(
       source, section, diagnostics,
       [&](std::string_view key) {
         if (equal_ignoring_case(key, count_key)) return &comments.lines;
         const std::optional<std::uint32_t> number = match_key(comment_line, key);
-        return number ? &numbered_field(comments.text, *number) : nullptr;
+        return number ? &lines.find_or_add(*number).field : nullptr;
       },
       count_key);
+  lines.sort();
   check_count(source, section, comments, diagnostics);
   return comments;
 }

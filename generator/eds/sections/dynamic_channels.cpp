@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 
 #include "eds/number.hpp"
@@ -11,18 +10,9 @@
 namespace edsc {
 namespace {
 
-DynamicSegment& segment_of(DynamicChannels& channels, std::uint32_t number) {
-  std::vector<DynamicSegment>& segments = channels.segments;
-  const auto at = std::ranges::lower_bound(segments, number, {}, &DynamicSegment::number);
-  if (at != segments.end() && at->number == number) return *at;
-  DynamicSegment segment;
-  segment.number = number;
-  return *segments.insert(at, segment);
-}
-
-Field* find_segment_key(std::string_view key, DynamicChannels& channels) {
+Field* find_segment_key(std::string_view key, NumberedRows<DynamicSegment>& segments) {
   for (const KeyRow<DynamicSegment>& row : segment_keys) {
-    if (const auto number = match_key(row.key, key)) return &(segment_of(channels, *number).*row.field);
+    if (const auto number = match_key(row.key, key)) return &(segments.find_or_add(*number).*row.field);
   }
   return nullptr;
 }
@@ -33,13 +23,15 @@ DynamicChannels read_dynamic_channels(const SourceFile& source, const IniSection
   DynamicChannels channels;
   channels.present = true;
   channels.nr_of_segments.position = section_position(source, section);
+  NumberedRows<DynamicSegment> segments{channels.segments};
   read_keys(
       source, section, diagnostics,
       [&](std::string_view key) {
         return equal_ignoring_case(key, segment_count_key.name) ? &channels.nr_of_segments
-                                                                : find_segment_key(key, channels);
+                                                                : find_segment_key(key, segments);
       },
       segment_count_key.name);
+  segments.sort();
   const std::string_view text = strip_inline_comment(channels.nr_of_segments.text);
   const std::optional<std::uint64_t> count = text.empty() ? std::optional<std::uint64_t>{0} : parse_unsigned(text);
   if (!count || *count != channels.segments.size()) {

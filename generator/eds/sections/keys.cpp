@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <system_error>
 
@@ -39,11 +38,6 @@ std::optional<std::uint64_t> read_number_of_key(Numbering numbering, std::string
 
 Field make_field(const SourceFile& source, const IniEntry& entry) {
   return {entry.value, value_position(source, entry), true};
-}
-
-Field& numbered_field(std::vector<NumberedField>& fields, std::uint32_t number) {
-  const auto at = std::ranges::lower_bound(fields, number, {}, &NumberedField::number);
-  return at != fields.end() && at->number == number ? at->field : fields.insert(at, {number, {}})->field;
 }
 
 std::optional<std::uint32_t> match_key(const SectionKey& row, std::string_view key) {

@@ -1,12 +1,14 @@
 /// Keys of sections as rows of tables, and reading them into the members of a struct.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "diagnostics/diagnostics.hpp"
@@ -74,8 +76,26 @@ void place_fields(const KeyRow<Struct> (&table)[n], const Position& position, St
 
 [[nodiscard]] Field make_field(const SourceFile& source, const IniEntry& entry);
 
-/// Returns the field of `number`; adds one if necessary.
-[[nodiscard]] Field& numbered_field(std::vector<NumberedField>& fields, std::uint32_t number);
+/// Rows with a member `number`, which are found by it while they are read in any order.
+template <typename Row>
+class NumberedRows {
+ public:
+  explicit NumberedRows(std::vector<Row>& rows) : rows_{rows} {}
+
+  /// Returns the row of `number`; adds one if necessary. The reference is valid until the next call.
+  [[nodiscard]] Row& find_or_add(std::uint32_t number) {
+    const auto [at, is_new] = places_.try_emplace(number, rows_.size());
+    if (is_new) rows_.emplace_back().number = number;
+    return rows_[at->second];
+  }
+
+  /// Sorts the rows by their number; the last call.
+  void sort() { std::ranges::sort(rows_, {}, &Row::number); }
+
+ private:
+  std::vector<Row>& rows_;
+  std::unordered_map<std::uint32_t, std::size_t> places_;
+};
 
 /// Whether `key` is a key of this row, ignoring letter case: its number, 3 in `Line3`, or 0 without a number. Nothing
 /// for any other key.

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -168,13 +170,14 @@ class NodeDcfMaker {
   /// Reports settings that a reader of the DCF does not get.
   void check_values(const ReadSheet& read) {
     Diagnostics ignored;
-    const auto held = configured_values(read.sheet, read.device, ignored);
+    std::map<EntryKey, std::string> held;
+    for (ConfiguredValue& one : configured_values(read.sheet, read.device, ignored)) {
+      held.emplace(EntryKey{one.entry->index, one.entry->sub_index}, std::move(one.data));
+    }
     for (const Setting& setting : node_.settings) {
       const Entry& entry = *node_.device().find(setting.index, setting.sub_index);
-      const bool is_held = std::ranges::any_of(held, [&](const ConfiguredValue& one) {
-        return one.entry->index == entry.index && one.entry->sub_index == entry.sub_index &&
-               one.data == bytes_of(*entry.default_value, *entry.type);
-      });
+      const auto value = held.find(EntryKey{entry.index, entry.sub_index});
+      const bool is_held = value != held.end() && value->second == bytes_of(*entry.default_value, *entry.type);
       if (is_held || !canopen::writable(entry.access)) continue;
       diagnostics_.error("network-value", setting.value.position,
                          fmt::format("node {}: a DCF cannot hold this value of {}", node_.name, named(entry)));

@@ -120,6 +120,40 @@ TEST(ModularDevice, HasNoMoreThan254SubIndicesWithoutObjExtend) {
   EXPECT_EQ(findings(text.diagnostics, "module-object"), (std::vector{error_at(8, 2, "module-object")}));
 }
 
+/// A module that adds `count` sub-indices from 6000h on, `extend_after` to an object, and one that begins at 6001h.
+std::string modules_that_extend(const std::string& count, const std::string& extend_after) {
+  return "[SupportedModules]\nNrOfEntries=2\n[M1ModuleInfo]\nProductName=A\n[M2ModuleInfo]\nProductName=B\n"
+         "[M1SubExtends]\nNrOfEntries=1\n1=0x6000\n[M2SubExtends]\nNrOfEntries=1\n1=0x6001\n"
+         "[M1SubExt6000]\nParameterName=A\nDataType=5\nAccessType=ro\nCount=" +
+         count + "\nObjExtend=" + extend_after +
+         "\n[M2SubExt6001]\nParameterName=B\nDataType=5\nAccessType=ro\nCount=2\nObjExtend=2\n";
+}
+
+TEST(ModularDevice, FillsTheFirstObjectWithRoomForEachModule) {
+  const DeviceFromText text(modules_that_extend("3", "1") + connected({1, 2, 1, 2}) + coupler);
+  std::vector<std::string> names;
+  for (const Object& object : text.device.objects) {
+    std::string name = object.index == 0x2000 ? "" : std::to_string(object.index - 0x6000) + ":";
+    for (std::size_t i = 1; i < object.entries.size(); ++i) name += object.entries[i].name;
+    names.push_back(name);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"", "0:A", "1:AB", "2:AB", "3:AB", "4:AB", "5:A"}));
+  EXPECT_EQ(rules_of(text.diagnostics), Rules{});
+}
+
+TEST(ModularDevice, HasAtMost131072Entries) {
+  const DeviceFromText text(modules_that_extend("254", "254") + connected(std::vector<int>(520, 1)) + coupler);
+  EXPECT_EQ(text.finding("dictionary-size").severity, Severity::error);
+  std::size_t entries = 0;
+  for (const Object& object : text.device.objects) entries += object.entries.size();
+  EXPECT_LE(entries, 131074U);
+}
+
+TEST(ModularDevice, ReportsThatAnObjectIsFullOnce) {
+  const DeviceFromText text(modules_that_extend("200", "0") + connected({1, 1, 1, 1}) + coupler);
+  EXPECT_EQ(findings(text.diagnostics, "module-object"), (std::vector{error_at(13, 2, "module-object")}));
+}
+
 TEST(ModularDevice, ReportsANumberOfNoModule) {
   const DeviceFromText text(modules + "[ConnectedModules]\nNrOfEntries=2\n1=1\n2=65537\n" + coupler);
   EXPECT_EQ(text.device.information.connected_modules, (std::vector<std::uint16_t>{1}));

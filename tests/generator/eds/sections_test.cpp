@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,12 @@ TEST(CommentsSection, HoldsLinesByTheirNumber) {
   const ReadSections read("[Comments]\nLines=2\nLine2=second\nline1=first; with a semicolon\n");
   EXPECT_EQ(read.device.information.comments, (std::vector<std::string>{"first; with a semicolon", "second"}));
   EXPECT_EQ(rules_of(read.diagnostics), Rules{});
+}
+
+TEST(CommentsSection, MayHaveItsLinesInAnyOrder) {
+  const ReadSections read("[Comments]\nLines=4\nLine3=c\nLine4=d\nLine1=a\nLine2=b\nLine4=other\n");
+  EXPECT_EQ(read.device.information.comments, (std::vector<std::string>{"a", "b", "c", "d"}));
+  EXPECT_EQ(findings(read.diagnostics, "duplicate-key"), (std::vector{warning_at(7, 1, "duplicate-key")}));
 }
 
 TEST(CommentsSection, CountsItsLines) {
@@ -142,6 +150,15 @@ TEST(DynamicChannelsSection, HoldsSegments) {
   EXPECT_EQ(channel.last_index, 0xA0BFU);
   EXPECT_EQ(channel.process_picture_offset, 4U);
   EXPECT_EQ(rules_of(read.diagnostics), Rules{});
+}
+
+TEST(DynamicChannelsSection, MayHaveItsSegmentsInAnyOrder) {
+  const ReadSections read(
+      "[DynamicChannels]\nType2=6\nNrOfSeg=3\nType3=7\nType1=5\nDir3=ro\nDir1=rw\nDir2=wo\nRange2=0xA0C0\n"
+      "Range1=0xA000\nRange3=0xA100\nPPOffset3=0\nPPOffset2=0\nPPOffset1=0\n");
+  std::vector<std::optional<std::uint32_t>> types;
+  for (const DynamicChannel& channel : read.device.information.dynamic_channels) types.push_back(channel.data_type);
+  EXPECT_EQ(types, (std::vector<std::optional<std::uint32_t>>{5, 6, 7}));
 }
 
 TEST(DynamicChannelsSection, MayBeEmpty) {

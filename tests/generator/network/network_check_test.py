@@ -31,6 +31,9 @@ TEXTS = {  # name: (text, exit code, findings as (severity, rule, line, column))
                          [("error", "network-syntax", 2, 2)]),
     "duplicate_member_of_set": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": true}, "a": {"node_id": 2, "eds": "node.eds", '
                                 '"set": {"2006h": 1,\r\r "2006h": 1}}}}', 1, [("error", "network-syntax", 3, 2)]),
+    "more_than_127_nodes": ('{"bit_rate": 500, "nodes": {' + ", ".join(f'"m{i}": {{"node_id": {i}, "master": true}}'
+                                                                       for i in range(1, 128)) + ',\n "x": {}, "y": {}}}', 1,
+                            [("error", "network-file", 2, 2)]),
     "name_with_line_end": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": true},\n "a/b": {"node_id": 2, '
                            '"master": true}}}', 1, [("error", "network-file", 2, 2)]),
     "node_id_of_an_eds": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": true}, "a": {"node_id": 128, "eds": "node.eds"}}}',
