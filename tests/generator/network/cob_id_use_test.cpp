@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
+#include "load/load_device.hpp"
 #include "support/device_from_text.hpp"
 
 namespace edsc {
@@ -23,12 +25,14 @@ std::string sdo_parameter(const std::string& index, const std::string& requests,
 using Row = std::tuple<std::uint32_t, bool, SdoFrames>;  ///< CAN-ID, transmits
 
 std::vector<Row> sdo_uses(const std::string& objects) {
-  const DeviceFromText text(objects + var("2000", "Value", "5"), {}, {"", std::uint8_t{5}});
+  DeviceFromText text(objects + var("2000", "Value", "5"), {}, {"", std::uint8_t{5}});
+  LoadedDevice loaded;
+  loaded.device = std::move(text.device);
   Network network;
   network.nodes.emplace_back();
   network.nodes.back().name = "request";  // a text that a name may have
   network.nodes.back().node_id = 5;
-  network.nodes.back().device = text.device;
+  network.nodes.back().loaded = &loaded;
   std::vector<Row> rows;
   for (const CobIdUse& use : cob_id_uses(network)) {
     EXPECT_EQ(use.sdo != SdoFrames::none, use.service == FrameService::sdo) << use.what;
