@@ -174,7 +174,7 @@ inline constexpr Rule rows[] = {
     Rule{"name-digit", note, "a name begins with a digit", "edsc"},
     // COB-IDs.
     Rule{"cob-id-missing", note, "a COB-ID without default value, or 0", "CiA 301, 7.3.5"},
-    Rule{"cob-id-frame", error, "an 11-bit CAN-ID with more than 11 bits", "CiA 301, 7.5.2.35"},
+    Rule{"cob-id-frame", error, "a CAN-ID with more bits than its frame has", "CiA 301, 7.5.2.35"},
     Rule{"cob-id-restricted", error, "a restricted CAN-ID", "CiA 301, 7.3.5"},
     Rule{"cob-id-node-id", warning, "a CAN-ID of one node in an EDS for any node, or the node-ID is added twice",
          "CiA 301, 7.3.5"},
