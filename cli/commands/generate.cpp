@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
-#include "backend/cpp/cpp_view.hpp"
 #include "backend/cpp/identifier.hpp"
 #include "backend/dbc/dbc.hpp"
 #include "backend/render.hpp"
+#include "backend/target.hpp"
 #include "commands/commands.hpp"
 #include "load/load_device.hpp"
 #include "shared/common_options.hpp"
@@ -30,7 +31,8 @@ constexpr const char* examples = R"(Examples:
   edsc generate eds/drive.eds -o build/generated           headers for namespace drive
   edsc generate drive.eds -o out --name axis1 --node-id 5  a second one, with its node-ID fixed
   edsc generate vendor.eds -o out --keep-going             leave out what is wrong in the EDS of a purchased device
-  edsc generate drive.eds --node-id 5 --dbc drive.dbc      the PDOs of node 5 for CAN tools, without headers)";
+  edsc generate drive.eds --node-id 5 --dbc drive.dbc      the PDOs of node 5 for CAN tools, without headers
+  edsc generate drive.eds -o out --target c                out/drive/objects.h for programs in C)";
 
 struct Settings {
   LoadSettings load;
@@ -38,6 +40,7 @@ struct Settings {
   std::string dbc;
   std::string depfile;
   std::string depfile_target;
+  std::string target{targets().front().name};
   std::string templates;
   bool verbose = false;
   ColorOption color;
@@ -59,11 +62,27 @@ struct ChosenTemplate {
   }
 };
 
+/// What `--target` can be, with its meaning.
+std::string target_help() {
+  std::string text = "language of the files";
+  const char* separator = ": ";
+  for (const Target& target : targets()) {
+    text += fmt::format("{}{} ({})", std::exchange(separator, ", "), target.name, target.summary);
+  }
+  return text;
+}
+
+std::vector<std::string> target_names() {
+  std::vector<std::string> names;
+  for (const Target& target : targets()) names.emplace_back(target.name);
+  return names;
+}
+
 /// A file that replaces nothing has a misspelled name. Hidden files, such as those of git and of editors, are no
 /// templates.
-void check_template_names(const std::string& folder) {
+void check_template_names(const std::string& folder, const std::vector<Template>& templates) {
   std::vector<std::string> known;
-  for (const Template& built_in : built_in_templates()) known.push_back(std::string{built_in.file_name} + ".mustache");
+  for (const Template& built_in : templates) known.push_back(std::string{built_in.file_name} + ".mustache");
   for (const fs::directory_entry& file : fs::directory_iterator{to_native(folder)}) {
     const std::string name = from_native(file.path().filename());
     if (name.starts_with('.') || !file.is_regular_file() || std::ranges::find(known, name) != known.end()) continue;
@@ -73,10 +92,10 @@ void check_template_names(const std::string& folder) {
 }
 
 /// The built-in templates, each replaced by the file of the same name in `folder`, if it exists.
-std::vector<ChosenTemplate> choose_templates(const std::string& folder) {
-  if (!folder.empty()) check_template_names(folder);
+std::vector<ChosenTemplate> choose_templates(const std::string& folder, const std::vector<Template>& templates) {
+  if (!folder.empty()) check_template_names(folder, templates);
   std::vector<ChosenTemplate> chosen;
-  for (const Template& built_in : built_in_templates()) {
+  for (const Template& built_in : templates) {
     ChosenTemplate one{built_in, nullptr};
     const std::string path = join_path(folder, std::string{built_in.file_name} + ".mustache");
     if (!folder.empty() && fs::exists(to_native(path))) {
@@ -93,9 +112,10 @@ std::vector<ChosenTemplate> choose_templates(const std::string& folder) {
 /// Releases data sheet and device as soon as the view is complete, since large ones need more memory than their files.
 std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loaded, Diagnostics& diagnostics,
                                    std::vector<std::string>& inputs) {
-  const auto templates = choose_templates(settings.templates);
+  const Target& target = target_of(settings.target);
+  const auto templates = choose_templates(settings.templates, templates_of(target));
   loaded.sheet = {};
-  const auto view = cpp_view(loaded.named(), loaded.options, diagnostics);
+  const auto view = target.view(loaded.named(), loaded.options, diagnostics);
   const std::string folder = join_path(settings.output, loaded.names->space());
   loaded.device.reset();
   std::vector<OutputFile> files;
@@ -182,6 +202,7 @@ void add_generate_options(Command command, int& exit_code) {
   add_options_option(command, settings.load.options_path);
   command.add_flag("--static-mapping", settings.load.static_mapping,
                    "no PDO can be mapped over the bus, for smaller firmware");
+  add_choice(command, "--target", settings.target, target_names(), target_help().c_str()).show_default();
   command.add_option("--templates", settings.templates, "folder with templates that replace the built-in ones")
       .existing_folder();
   command.add_option("--depfile", settings.depfile, "write what the headers depend on, for make and ninja");

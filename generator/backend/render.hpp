@@ -18,6 +18,9 @@ struct Template {
 /// The templates of the generated headers, in the order of writing their files.
 [[nodiscard]] const std::vector<Template>& built_in_templates();
 
+/// The templates of a target of `edsc generate`, by its name; for C++ the same.
+[[nodiscard]] const std::vector<Template>& target_templates(std::string_view target);
+
 /// The other templates: of reports, with their styles and scripts, and of networks.
 [[nodiscard]] const std::vector<Template>& report_templates();
 
