@@ -8,7 +8,7 @@
 
 #include "conform/verdict.hpp"
 #include "diagnostics/diagnostics.hpp"
-#include "load/find_entry.hpp"
+#include "lookup/find_entry.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc::conform {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "conform/case.hpp"
-#include "load/find_entry.hpp"
+#include "lookup/find_entry.hpp"
 #include "online/simulated_port.hpp"
 
 namespace edsc::conform {

@@ -16,9 +16,9 @@
 #include "shared/exit_code.hpp"
 #include "shared/left_out_text.hpp"
 #include "shared/output.hpp"
+#include "system/depfile.hpp"
 #include "system/path.hpp"
 #include "system/write_files.hpp"
-#include "text/depfile.hpp"
 #include "text/printable.hpp"
 #include "text/suggestion.hpp"
 

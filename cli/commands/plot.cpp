@@ -8,7 +8,7 @@
 #include "decode/log/ordered_time.hpp"
 #include "decode/log/value_number.hpp"
 #include "device/scaled_unit.hpp"
-#include "load/find_entry.hpp"
+#include "lookup/find_entry.hpp"
 #include "monitor/progress_line.hpp"
 #include "plot/plot_svg.hpp"
 #include "shared/define_command.hpp"

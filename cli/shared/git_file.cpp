@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "system/gzip.hpp"
 #include "system/path.hpp"
 #include "system/run_program.hpp"
-#include "text/gzip.hpp"
 
 namespace edsc {
 namespace {

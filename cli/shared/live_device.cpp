@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "load/find_entry.hpp"
+#include "lookup/find_entry.hpp"
 #include "online/identity.hpp"
 #include "shared/common_options.hpp"
 #include "shared/exit_code.hpp"

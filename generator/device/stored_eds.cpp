@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "text/gzip.hpp"
+#include "system/gzip.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {

@@ -17,7 +17,7 @@
 #include "device/types/value.hpp"
 #include "device/value_overlay.hpp"
 #include "diagnostics/quote.hpp"
-#include "load/find_entry.hpp"
+#include "lookup/find_entry.hpp"
 
 namespace edsc {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "diagnostics/quote.hpp"
-#include "load/find_entry.hpp"
+#include "lookup/find_entry.hpp"
 
 namespace edsc {
 namespace {

@@ -8,9 +8,9 @@
 #include <system_error>
 #include <utility>
 
+#include "system/gzip.hpp"
 #include "system/path.hpp"
 #include "text/code_page.hpp"
-#include "text/gzip.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc {

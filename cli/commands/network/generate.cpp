@@ -13,8 +13,8 @@
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/output.hpp"
+#include "system/depfile.hpp"
 #include "system/path.hpp"
-#include "text/depfile.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {

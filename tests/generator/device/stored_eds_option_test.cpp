@@ -7,7 +7,7 @@
 #include "backend/cpp/cpp_view.hpp"
 #include "device/stored_eds.hpp"
 #include "support/device_from_text.hpp"
-#include "text/gzip.hpp"
+#include "system/gzip.hpp"
 
 namespace edsc {
 namespace {

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "text/gzip.hpp"
+#include "system/gzip.hpp"
 
 namespace edsc {
 namespace {

@@ -1,4 +1,4 @@
-#include "text/gzip.hpp"
+#include "system/gzip.hpp"
 
 #define ZLIB_CONST  // the input of zlib is const
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "text/gzip.hpp"
+#include "system/gzip.hpp"
 
 #include <gtest/gtest.h>
 

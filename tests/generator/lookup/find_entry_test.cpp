@@ -1,4 +1,4 @@
-#include "load/find_entry.hpp"
+#include "lookup/find_entry.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "text/depfile.hpp"
+#include "system/depfile.hpp"
 
 #include <fmt/format.h>
 
