@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+"""Each command of edsc with the eight reference devices and the three plants: on their files, and on a bus with all of them.
+
+    every_command_test.py SOURCE_DIR EDSC NODE [unittest arguments]
+
+NODE is the program of one of the devices. Other tests judge what the commands print; this one that each ends as it should, and
+that a checker of memory has nothing to say: EDSC may be a program with AddressSanitizer, or a script that runs edsc under
+valgrind (CONTRIBUTING.md).
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import tempfile
+from pathlib import Path
+
+import live
+from live import EDSC, FAILED, FINE, SOURCE_DIR, ReferenceDevices
+
+MEMORY_FAULT = 99  # as an exit code, which none of the commands has
+REPORT = re.compile(r"==\d+==|runtime error:")  # of AddressSanitizer, valgrind; of UBSan
+PLANTS = [SOURCE_DIR / f"examples/networks/{plant}.json" for plant in ("eight_devices", "four_modules", "twelve_axes")]
+COMMAND = re.compile(r"^  ([a-z][a-z-]*)  ", re.MULTILINE)
+ENVIRONMENT = {**os.environ, "ASAN_OPTIONS": f"exitcode={MEMORY_FAULT}", "UBSAN_OPTIONS": f"exitcode={MEMORY_FAULT}"}
+
+
+def commands_of(*group: str) -> list[str]:
+    """Returns the commands in the help of edsc, or of a command that has others."""
+    printed = subprocess.run([EDSC, *group, "--help"], capture_output=True, text=True, check=True).stdout
+    if group:
+        printed = printed.partition("\nSubcommands:\n")[2]
+    return COMMAND.findall(re.split(r"\nExamples:", printed)[0])
+
+
+class EveryCommand(ReferenceDevices):
+    used: set[tuple[str, ...]] = {("bus",)}  # commands that a test has run; setUp() runs `bus`
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        """After all tests: no command was forgotten."""
+        every = set()
+        for command in commands_of():
+            every |= {(command, name) for name in commands_of(command)} or {(command,)}
+        assert every == cls.used, f"not the commands of the help: {sorted(every ^ cls.used)}"
+
+    def run_command(self, words: str, *arguments: object, exit_codes: tuple[int, ...] = (FINE,), bus: bool = False) -> None:
+        command, *subcommand = words.split()
+        self.used.add((command, *subcommand))
+        if bus and command in ("lss", "send"):  # edsc send BUS sync, edsc network scan BUS
+            line = [EDSC, command, self.network.address, *subcommand]
+        else:
+            line = [EDSC, command, *subcommand, *([self.network.address] if bus else [])]
+        line = [*map(str, line), *map(str, arguments)]
+        result = subprocess.run(line, cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True, errors="replace",
+                                timeout=1200)
+        self.assertIn(result.returncode, exit_codes, f"{' '.join(line)}\n{result.stderr}")
+        self.assertNotRegex(result.stderr, REPORT, " ".join(line))
+
+    def on_bus(self, words: str, *arguments: object, exit_codes: tuple[int, ...] = (FINE,)) -> None:
+        self.run_command(words, *arguments, exit_codes=exit_codes, bus=True)
+
+    def test_1_files_of_devices(self) -> None:
+        for kind in ("bash", "zsh", "man"):
+            self.run_command("completion", kind)
+        for device in self.devices:
+            with self.subTest(device):
+                sheet = SOURCE_DIR / f"eds/{device}.eds"
+                for form in ("text", "json", "sarif"):
+                    self.run_command("check", sheet, "--node-id", 5, "--format", form)
+                self.run_command("dump", sheet)
+                self.run_command("dump", sheet, "--cpp", "--node-id", 5)
+                self.run_command("generate", sheet, "-o", "out")
+                self.run_command("generate", sheet, "-o", "out", "--target", "c")
+                self.run_command("generate", sheet, "--node-id", 5, "--dbc", f"{device}.dbc")
+                self.run_command("format", sheet)
+                self.run_command("format", sheet, "--dcf", "--node-id", 5, "--all", "-o", f"{device}.dcf")
+                self.run_command("format", f"{device}.dcf", "--concise", "-o", f"{device}.bin")
+                self.run_command("diff", sheet, f"{device}.dcf", "--node-id", 5, exit_codes=(FINE, FAILED))
+                self.run_command("diff", sheet, SOURCE_DIR / "eds/rk5c.eds", "--storage", "--format", "markdown",
+                                 exit_codes=(FINE, FAILED))
+                self.run_command("document", sheet, "-o", f"{device}.html")
+                self.run_command("document", f"{device}.dcf", "--against", sheet, "-o", f"{device}.md")
+
+    def test_2_plants(self) -> None:
+        self.run_command("network members")
+        for plant in PLANTS:
+            with self.subTest(plant.stem):
+                for form in ("text", "json", "sarif"):
+                    self.run_command("network check", plant, "--times", "--format", form)
+                self.run_command("network generate", plant, "-o", plant.stem)
+                self.run_command("document", plant, "--nodes", "-o", f"{plant.stem}.html")
+        self.run_command("network simulate", PLANTS[-1], "--for", "2s")
+
+    def test_3_bus(self) -> None:
+        """On a bus with all devices; a log of it is the input of the commands for logs."""
+        self.start_devices()
+        with tempfile.TemporaryFile("w+") as log:
+            recorder = subprocess.Popen([str(EDSC), "record", self.network.address], stdout=log, stderr=subprocess.PIPE,
+                                        text=True, env=ENVIRONMENT)
+            self.addCleanup(recorder.communicate)
+            self.addCleanup(recorder.kill)
+            self.used.add(("record",))
+            self.use_devices()
+            self.use_lss()
+            self.use_plant()
+            recorder.terminate()
+            self.assertNotRegex(recorder.stderr.read(), REPORT)
+            recorder.wait()
+            self.assertNotEqual(recorder.returncode, MEMORY_FAULT)
+            log.seek(0)
+            (self.folder / "bus.log").write_text(log.read())
+        self.use_log()
+
+    def use_devices(self) -> None:
+        sheets = [f"--eds={SOURCE_DIR}/eds/{device}.eds" for device in self.devices]
+        self.on_bus("scan", "--nodes", "1..8", *sheets, "--format", "json")
+        for node_id, device in zip(self.node_ids, self.devices):
+            with self.subTest(device):
+                sheet = SOURCE_DIR / f"eds/{device}.eds"
+                self.on_bus("read", node_id, "--all", "--eds", sheet, "--format", "json", exit_codes=(FINE, FAILED))
+                self.on_bus("write", node_id, "1017h", "200", "--eds", sheet, "--verify")
+                self.on_bus("save", node_id, sheet, "-o", f"saved-{device}.dcf", "--all")
+                self.on_bus("configure", node_id, f"saved-{device}.dcf", "--all", exit_codes=(FINE, FAILED))
+                self.on_bus("conform", node_id, sheet, "--level", "read", "--html", f"{device}.html", "--junit",
+                            f"{device}.xml", exit_codes=(FINE, FAILED))
+        self.on_bus("nmt", "start", "all")
+        self.on_bus("send sync", "--every", "10", "--count", "20")
+        self.on_bus("send time")
+        self.on_bus("send frame", "123#0102")
+        self.on_bus("send pdo", f"6={SOURCE_DIR}/eds/cpd.eds", "1", "controlword=0x06")
+        for form in ("text", "json"):
+            self.on_bus("monitor", *self.sheets, "--once", "1", "--bit-rate", "500", "--format", form)
+
+    def use_lss(self) -> None:
+        """The numbers are those of the sensor, node 8, which returns to its node-ID."""
+        numbers = ["--vendor", "5555h", "--product", "1h", "--revision", "1h", "--serial", "1h"]
+        self.on_bus("lss fastscan", exit_codes=(FINE, FAILED))
+        self.on_bus("lss select", *numbers, "--timeout", "50", exit_codes=(FINE, FAILED))
+        self.on_bus("lss assign", *numbers, "--node-id", "8", "--timeout", "50", exit_codes=(FINE, FAILED))
+        self.on_bus("lss state", "configuration")
+        for command, *arguments in (("inquire",), ("node-id", 8), ("bit-rate", 250), ("store",), ("activate", "--delay", 10)):
+            self.on_bus(f"lss {command}", *arguments, "--timeout", "50", exit_codes=(FINE, FAILED))
+        self.on_bus("lss state", "waiting")
+
+    def use_plant(self) -> None:
+        self.on_bus("network scan", "--sheets", SOURCE_DIR / "eds", "--nodes", "1..8", "-o", "found.json",
+                    exit_codes=(FINE, FAILED))
+        self.on_bus("network verify", PLANTS[0], "--format", "json", exit_codes=(FINE, FAILED))
+        self.on_bus("network apply", PLANTS[0], exit_codes=(FINE, FAILED))
+
+    def use_log(self) -> None:
+        for form in ("text", "json", "csv"):
+            self.run_command("decode", "bus.log", *self.sheets, "--format", form)
+        self.run_command("decode", "bus.log", *self.sheets, "--summary")
+        for form in ("text", "json", "html"):
+            self.run_command("audit", "bus.log", *self.sheets, "--cycles", "--bit-rate", "500", "--format", form,
+                             exit_codes=(FINE, FAILED))
+        self.run_command("plot", "bus.log", "6/1017h", *self.sheets, "-o", "plot.svg")
+
+
+if __name__ == "__main__":
+    live.run()
