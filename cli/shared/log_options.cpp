@@ -66,9 +66,9 @@ Option add_log_options(Command command, LogSettings& settings) {
       "log of candump, CANoe (asc), PCAN-View (trc), tcpdump or Wireshark; \"-\" for standard input");
   std::vector<std::string> formats{automatic};
   std::string help = "format of LOG; auto: by its content";
-  for (const LogFormat& row : log_formats()) {
-    formats.emplace_back(row.name);
-    help += fmt::format("; {}: {}", row.name, row.description);
+  for (const LogFormat* const row : log_formats) {
+    formats.emplace_back(row->name);
+    help += fmt::format("; {}: {}", row->name, row->description);
   }
   add_choice(command, "--log-format", settings.log_format, formats, help.c_str());
   command

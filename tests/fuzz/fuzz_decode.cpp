@@ -89,8 +89,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const auto output : {edsc::LogOutput::text, edsc::LogOutput::json, edsc::LogOutput::csv}) {
     edsc::fuzz::decode(nodes, log, output, nullptr);
   }
-  for (const edsc::LogFormat& format : edsc::log_formats()) {
-    edsc::fuzz::decode(nodes, log, edsc::LogOutput::text, &format);
+  for (const edsc::LogFormat* const format : edsc::log_formats) {
+    edsc::fuzz::decode(nodes, log, edsc::LogOutput::text, format);
   }
   return 0;
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -22,8 +21,16 @@ struct LogFormat {
   std::unique_ptr<LogSource> (*open)(LogInput& input, std::string& problem);
 };
 
+// Each is defined in a source of its own.
+extern const LogFormat pcapng_format;
+extern const LogFormat pcap_format;
+extern const LogFormat trc_format;
+extern const LogFormat asc_format;
+extern const LogFormat candump_format;
+
 /// In the order of detection; the last one is that of all other logs.
-[[nodiscard]] std::span<const LogFormat> log_formats();
+inline constexpr const LogFormat* log_formats[] = {&pcapng_format, &pcap_format, &trc_format, &asc_format,
+                                                   &candump_format};
 
 /// The format that the content has.
 [[nodiscard]] const LogFormat& detect_format(LogInput& input);

@@ -16,16 +16,4 @@ class LogSource {
   [[nodiscard]] virtual bool next(LogLine& line) = 0;
 };
 
-/// Parses the lines of a text format, in their order.
-class LineParser {
- public:
-  LineParser() = default;
-  LineParser(const LineParser&) = delete;
-  LineParser& operator=(const LineParser&) = delete;
-  virtual ~LineParser() = default;
-
-  /// `text` has no line end. The texts of the result are valid until the next call, and as long as `text`.
-  [[nodiscard]] virtual LogLine parse(std::string_view text) = 0;
-};
-
 }  // namespace edsc

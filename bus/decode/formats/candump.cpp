@@ -1,6 +1,11 @@
-#include "decode/formats/candump_parser.hpp"
-
+/// Lines of candump (decode/log/log_line.hpp), with the times of its option -t d, which count from the previous line.
 #include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "decode/formats/log_formats.hpp"
+#include "decode/formats/text_source.hpp"
 
 namespace edsc {
 namespace {
@@ -11,7 +16,21 @@ bool is_difference(std::int64_t us, std::int64_t before_us) {
   return us < before_us - before_us / out_of_order_part;
 }
 
-}  // namespace
+class CandumpParser final : public LineParser {
+ public:
+  /// The beginning of the log shows whether its times are differences; if it is too short for that, later lines do.
+  explicit CandumpParser(std::string_view beginning);
+
+  [[nodiscard]] LogLine parse(std::string_view text) override;
+
+ private:
+  void count_time(LogLine& line);
+
+  bool differences_ = false;
+  std::optional<std::int64_t> last_us_;
+  std::int64_t sum_us_ = 0;  ///< of the times of a log that begins with 0
+  bool from_zero_ = false;
+};
 
 CandumpParser::CandumpParser(std::string_view beginning) {
   while (!differences_) {
@@ -39,5 +58,14 @@ LogLine CandumpParser::parse(std::string_view text) {
   if (line.has_time) count_time(line);
   return line;
 }
+
+std::unique_ptr<LogSource> open_candump(LogInput& input, std::string& /*problem*/) {
+  return std::make_unique<TextSource<CandumpParser>>(input, input.beginning());
+}
+
+}  // namespace
+
+const LogFormat candump_format{"candump", "log or screen output of candump", [](std::string_view) { return true; },
+                               open_candump};
 
 }  // namespace edsc

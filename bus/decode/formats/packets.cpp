@@ -1,13 +1,17 @@
-#include "decode/formats/packet_source.hpp"
-
+/// Captures of tcpdump and Wireshark: pcap and pcapng with the link type CAN_SOCKETCAN. The time is in seconds since
+/// 1970 with six decimals; there is no name of an interface.
 #include <fmt/format.h>
 #include <pcap/pcap.h>
-#include <stdio.h>
+#include <stdio.h>  // fopencookie
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 
+#include "decode/formats/log_formats.hpp"
 #include "decode/formats/words.hpp"
 
 namespace edsc {
@@ -120,8 +124,6 @@ bool begins_with_one_of(std::string_view beginning, std::span<const std::string_
   return std::ranges::any_of(words, [&](std::string_view word) { return beginning.starts_with(word); });
 }
 
-}  // namespace
-
 bool is_pcap(std::string_view beginning) {
   // In both byte orders, with microseconds and with nanoseconds.
   constexpr std::string_view magics[] = {"\xD4\xC3\xB2\xA1", "\xA1\xB2\xC3\xD4", "\x4D\x3C\xB2\xA1",
@@ -138,5 +140,10 @@ std::unique_ptr<LogSource> open_packets(LogInput& input, std::string& problem) {
   problem = source->open();
   return problem.empty() ? std::move(source) : nullptr;
 }
+
+}  // namespace
+
+const LogFormat pcapng_format{"pcapng", "capture of Wireshark", is_pcapng, open_packets};
+const LogFormat pcap_format{"pcap", "capture of tcpdump", is_pcap, open_packets};
 
 }  // namespace edsc
