@@ -23,7 +23,7 @@ namespace {
 
 class Resolver {
  public:
-  Resolver(const DataSheet& sheet, const Options& options, std::optional<std::uint8_t> node_id,
+  Resolver(const DataSheet& sheet, const Options& options, const std::optional<std::uint8_t>& node_id,
            Diagnostics& diagnostics)
       : sheet_{sheet}, options_{options}, node_id_{node_id}, diagnostics_{diagnostics} {}
 
@@ -144,7 +144,7 @@ class Resolver {
 
   const DataSheet& sheet_;
   const Options& options_;
-  std::optional<std::uint8_t> node_id_;
+  const std::optional<std::uint8_t>& node_id_;
   Diagnostics& diagnostics_;
   Device device_;
   std::size_t entries_ = 0;
@@ -152,7 +152,7 @@ class Resolver {
 
 }  // namespace
 
-Device resolve_device(const DataSheet& sheet, const Options& options, std::optional<std::uint8_t> node_id,
+Device resolve_device(const DataSheet& sheet, const Options& options, const std::optional<std::uint8_t>& node_id,
                       Diagnostics& diagnostics) {
   return Resolver{sheet, options, node_id, diagnostics}.resolve();
 }
