@@ -17,12 +17,11 @@ namespace edsc {
 namespace {
 
 constexpr std::uint16_t store_parameters = 0x1010;
-constexpr std::string_view storage_version = "storage_version";
+constexpr const OptionRow* storage_version = find_option("storage", "version");
 constexpr std::string_view fates[] = {"kept", "converted", "dropped"};
 
 std::uint32_t version_of(const Options& options) {
-  const auto row = std::ranges::find_if(
-      options.runtime, [](const RuntimeOption& option) { return option.row->flat_name == storage_version; });
+  const auto row = std::ranges::find(options.runtime, storage_version, &RuntimeOption::row);
   return row == options.runtime.end() ? 0 : row->value;
 }
 

@@ -73,7 +73,7 @@ std::string cpp_value(const RuntimeOption& option) {
 ordered_json runtime_rows(const Options& options) {
   ordered_json rows = json_array(options.runtime.size());
   for (const RuntimeOption& option : options.runtime) {
-    rows.push_back(json_object("name", option.row->flat_name, "value", cpp_value(option)));
+    rows.push_back(json_object("name", member_of(*option.row), "value", cpp_value(option)));
   }
   return rows;
 }

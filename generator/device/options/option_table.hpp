@@ -35,12 +35,13 @@ struct OptionGroup {
   std::string_view meaning{};
 };
 
-/// A row with a form other than `structured` sets the member `flat_name` of canopen::DeviceOptions, in the group `lss`
-/// the member `name` of canopen::LssOptions. A structured option has a reader of its own in structured_options.cpp.
+/// A row with a form other than `structured` sets the member `member_of(row)` of canopen::DeviceOptions, in the group
+/// `lss` the member `name` of canopen::LssOptions. A structured option has a reader of its own in
+/// structured_options.cpp.
 struct OptionRow {
   OptionGroup group;
   std::string_view name;       ///< in its group
-  std::string_view flat_name;  ///< deprecated name outside the group; empty: none
+  std::string_view flat_name;  ///< deprecated name outside the group; empty: none, as for each new option
   OptionForm form;
   std::string_view meaning;
   std::string_view default_value{};  ///< as in the options file; empty: `default_text` describes it
@@ -214,6 +215,12 @@ inline constexpr const auto& options_table = option_table::rows;
 [[nodiscard]] constexpr const OptionRow* find_flat_option(std::string_view flat_name) {
   const auto* const found = std::ranges::find(options_table, flat_name, &OptionRow::flat_name);
   return flat_name.empty() || found == std::end(options_table) ? nullptr : found;
+}
+
+/// The member of canopen::DeviceOptions that the row sets: `sdo_timeout`.
+[[nodiscard]] inline std::string member_of(const OptionRow& row) {
+  if (!row.flat_name.empty()) return std::string{row.flat_name};
+  return std::string{row.group.name}.append(1, '_').append(row.name);
 }
 
 /// Returns the group; null if there is none.

@@ -133,7 +133,7 @@ class OptionsReader {
         file_.error(value, name, unknown_option("", name));
       }
     }
-    std::ranges::sort(options_.runtime, {}, [](const RuntimeOption& option) { return option.row->flat_name; });
+    std::ranges::sort(options_.runtime, {}, [](const RuntimeOption& option) { return member_of(*option.row); });
   }
 
  private:
@@ -187,8 +187,8 @@ class OptionsReader {
 }  // namespace
 
 std::uint32_t Options::inhibit_time_unit() const {
-  const auto stated =
-      std::ranges::find_if(runtime, [](const RuntimeOption& one) { return one.row->flat_name == "inhibit_time_unit"; });
+  constexpr const OptionRow* unit = find_option("pdo", "inhibit_time_unit");
+  const auto stated = std::ranges::find(runtime, unit, &RuntimeOption::row);
   return stated == runtime.end() ? usual_inhibit_time_unit : stated->value;
 }
 
@@ -203,7 +203,7 @@ bool Options::is_set(const OptionRow& row) const {
 
 void Options::set(const RuntimeOption& option) {
   const auto after = std::ranges::find_if(
-      runtime, [&](const RuntimeOption& one) { return one.row->flat_name > option.row->flat_name; });
+      runtime, [&](const RuntimeOption& one) { return member_of(*one.row) > member_of(*option.row); });
   runtime.insert(after, option);
 }
 

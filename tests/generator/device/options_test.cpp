@@ -123,7 +123,7 @@ TEST(OptionsFile, HandsEachDepartureToTheRuntime) {
     for (const char* value : {"true", "false"}) {
       const ReadOptions read(in_group(row, value));
       EXPECT_EQ(findings(read.diagnostics), Findings{}) << row.name;
-      EXPECT_EQ(read.runtime(), (Runtime{{std::string{row.flat_name}, value}}));
+      EXPECT_EQ(read.runtime(), (Runtime{{member_of(row), value}}));
     }
   }
   for (const std::string group : {"pdo", "sync", "emcy"}) {

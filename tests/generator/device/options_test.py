@@ -115,7 +115,8 @@ def main() -> int:
     }
     runtime = source_dir / "runtime/include/canopen"
     lss = {option["name"].removeprefix("lss."): option for option in options if option["name"].startswith("lss.")}
-    device = {option["flat_name"]: option for option in options if "flat_name" in option and option["form"] != "structured"}
+    device = {option.get("flat_name", option["name"].replace(".", "_")): option
+              for option in options if option["form"] != "structured" and not option["name"].startswith("lss.")}
     problems = runtime_problems("DeviceOptions", members_of(runtime / "od/device_options.hpp", "DeviceOptions"), device)
     problems += runtime_problems("LssOptions", members_of(runtime / "lss/lss_options.hpp", "LssOptions"), lss)
     for path, text in texts.items():
