@@ -41,7 +41,7 @@ int dump(const Settings& settings) {
   const auto loaded = load_device(load, diagnostics);
   nlohmann::ordered_json view;
   if (loaded->device) {
-    view = device_view(loaded->named());
+    view = device_view(*loaded->device, loaded->names->identifiers());
     separate_configured_values(loaded->sheet, *loaded->device, view);
     if (settings.cpp) view["cpp"] = cpp_view(loaded->named(), loaded->options, diagnostics);
   }

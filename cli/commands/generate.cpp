@@ -134,7 +134,7 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
 /// The DBC file. Prints which PDOs it does not have.
 OutputFile render_dbc(const Settings& settings, const NamedDevice& named) {
   if (!named.device.node_id) throw_requires("--dbc", "--node-id or a DCF, since CAN-IDs depend on the node-ID");
-  Dbc dbc = dbc_of(named);
+  Dbc dbc = dbc_of(named.device, named.identifiers());
   for (const std::string& note : dbc.notes) fmt::print(stderr, "edsc: not in the DBC file: {}\n", note);
   return {settings.dbc, std::move(dbc.text)};
 }

@@ -160,8 +160,8 @@ class DeviceComparison {
   /// Of objects or entries.
   template <typename Named>
   void compare_names(const std::string& label, const Named& a, const Named& b) {
-    const std::string& old_name = old_names_.of(a);
-    const std::string& new_name = new_names_.of(b);
+    const std::string old_name = old_names_.of(a);
+    const std::string new_name = new_names_.of(b);
     const bool compiles = old_name == new_name;
     if (compiles && a.name == b.name) return;
     Change& change =

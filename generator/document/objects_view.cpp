@@ -182,8 +182,7 @@ class ObjectRows {
     types_.emplace(entry.type->name);
     accesses_.emplace(access);
     const std::string comment = object.has_sub_indices() ? comment_before(entry.position) : "";
-    const std::string cpp = input_.loaded.names->type_of(object, entry);
-    const std::size_t member = cpp.find("::", std::string_view{"od::"}.size());
+    const CppType cpp = input_.loaded.names->type_of(object, entry);
     return {{"sub_id", object.has_sub_indices() ? Json(anchor_of(object, entry)) : Json(nullptr)},
             {"href", anchor_of(object, entry)},
             {"sub_index", fmt::format("{:02X}", entry.sub_index)},
@@ -200,9 +199,9 @@ class ObjectRows {
             {"changed", is_changed},
             {"limits", limits_text(entry)},
             {"unit", unit_text(entry)},
-            {"cpp", cpp},
-            {"cpp_object", cpp.substr(0, member)},
-            {"cpp_member", member == std::string::npos ? Json(nullptr) : Json(cpp.substr(member))},
+            {"cpp", cpp.text()},
+            {"cpp_object", cpp.object},
+            {"cpp_member", shown(cpp.member)},
             {"entry_line", entry.position.line},
             {"description", shown(entry.description)},
             {"entry_comment", shown(comment)}};

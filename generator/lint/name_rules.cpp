@@ -15,7 +15,7 @@ namespace {
 struct Named {
   std::string label;
   const std::string& name;
-  const std::string& identifier;
+  std::string identifier;
   Position position;
 };
 
@@ -51,7 +51,7 @@ bool may_be_changed(std::string_view identifier) {
 template <typename Fill>
 void check_name(const RuleContext& context, const Named& named, Scope& scope, Fill fill) {
   if (named.name.empty() || !may_be_changed(named.identifier)) return;
-  const std::string wanted = to_snake_case(named.name);
+  const std::string wanted = to_cpp_identifier(named.name);
   if (wanted.empty()) {
     context.report("name-empty", named.position,
                    fmt::format("{} \"{}\" has no character that a C++ name can contain; using {}", named.label,

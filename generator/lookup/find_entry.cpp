@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
-#include "backend/cpp/identifier.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/ini.hpp"
 #include "text/ascii.hpp"
 #include "text/number_text.hpp"
+#include "text/snake_case.hpp"
 
 namespace edsc {
 namespace {
@@ -32,7 +32,7 @@ bool same_name(std::string_view text, std::string_view identifier, std::string_v
          (!text.empty() && to_snake_case(text) == identifier);
 }
 
-const Entry* find_in(const Object& object, std::string_view text, const CppNames& names) {
+const Entry* find_in(const Object& object, std::string_view text, const Identifiers& names) {
   const auto same = [&](const Entry& entry) { return same_name(text, names.of(entry), entry.name); };
   const auto at = std::ranges::find_if(object.entries, same);
   if (at != object.entries.end()) return &*at;
@@ -47,7 +47,7 @@ FoundEntry found(const Object& object, const Entry* entry = nullptr) {
 
 FoundEntry no_entry(std::string sentence) { return {nullptr, nullptr, std::move(sentence)}; }
 
-std::string sub_indices_of(const Object& object, const CppNames& names) {
+std::string sub_indices_of(const Object& object, const Identifiers& names) {
   std::string text;
   for (std::size_t i = 0; i < std::min(object.entries.size(), max_listed); ++i) {
     const Entry& entry = object.entries[i];
@@ -61,7 +61,7 @@ std::string sub_indices_of(const Object& object, const CppNames& names) {
 }
 
 /// `1018h:01 identity_object.vendor_id`
-std::string entry_title(const Object& object, const Entry& entry, const CppNames& names) {
+std::string entry_title(const Object& object, const Entry& entry, const Identifiers& names) {
   const std::string label = entry_label(entry.index, entry.sub_index);
   if (!object.has_sub_indices()) return fmt::format("{} {}", label, names.of(object));
   return fmt::format("{} {}.{}", label, names.of(object), names.of(entry));
@@ -124,7 +124,7 @@ class Suggestions {
 
 /// The neighbours of a missing index.
 std::string near_indices(const NamedDevice& named, std::uint16_t index) {
-  const CppNames& names = named.names;
+  const Identifiers& names = named.identifiers();
   const auto above = std::ranges::upper_bound(named.device.objects, index, {}, &Object::index);
   std::string text;
   const auto add = [&](const Object& object) {
@@ -146,7 +146,7 @@ FoundEntry by_address(const NamedDevice& named, const EntryAddress& address) {
   const Entry* entry = object->find(*address.sub_index);
   if (entry == nullptr) {
     return no_entry(fmt::format("{} \"{}\" has no sub-index {:02X}h; it has {}", index_label(object->index),
-                                object->name, *address.sub_index, sub_indices_of(*object, named.names)));
+                                object->name, *address.sub_index, sub_indices_of(*object, named.identifiers())));
   }
   return found(*object, entry);
 }
@@ -184,10 +184,10 @@ std::optional<EntryAddress> parse_entry_address(std::string_view text) {
 
 EntryFinder::EntryFinder(const NamedDevice& named) : named_{named} {
   for (const Object& object : named.device.objects) {
-    add_names(objects_, &object, named.names.of(object), object.name);
+    add_names(objects_, &object, named.identifiers().of(object), object.name);
     if (!object.has_sub_indices()) continue;
     for (const Entry& entry : object.entries) {
-      add_names(entries_, NamedEntry{&object, &entry}, named.names.of(entry), entry.name);
+      add_names(entries_, NamedEntry{&object, &entry}, named.identifiers().of(entry), entry.name);
     }
   }
 }
@@ -210,7 +210,7 @@ const Object* EntryFinder::find_object(std::string_view text) const {
 
 std::string EntryFinder::near_names(std::string_view text) {
   if (suggestions_++ >= max_names_with_suggestions) return "";
-  const CppNames& names = named_.names;
+  const Identifiers& names = named_.identifiers();
   Suggestions suggestions{text};
   for (const Object& object : named_.device.objects) {
     suggestions.consider(names.of(object), fmt::format("{} ({})", names.of(object), index_label(object.index)));
@@ -235,9 +235,9 @@ std::optional<FoundEntry> EntryFinder::by_both_names(std::string_view text) cons
     std::string_view rest = text.substr(at + 1);
     if ((text[at] == '[' && rest.ends_with(']')) || (text[at] == '<' && rest.ends_with('>'))) rest.remove_suffix(1);
     if (text[at] == ':' && rest.starts_with(':')) rest.remove_prefix(1);
-    if (const Entry* entry = find_in(*object, trim(rest), named_.names)) return found(*object, entry);
+    if (const Entry* entry = find_in(*object, trim(rest), named_.identifiers())) return found(*object, entry);
     return no_entry(fmt::format("{} \"{}\" has no entry \"{}\"; it has {}", index_label(object->index), object->name,
-                                trim(rest), sub_indices_of(*object, named_.names)));
+                                trim(rest), sub_indices_of(*object, named_.identifiers())));
   }
   return std::nullopt;
 }
@@ -251,8 +251,8 @@ FoundEntry EntryFinder::by_entry_name(std::string_view text) {
   if (matches.empty()) return no_entry(fmt::format("the device has no object \"{}\"{}", text, near_names(text)));
   std::string sentence = fmt::format("\"{}\" is ambiguous:", text);
   for (std::size_t i = 0; i < std::min(matches.size(), max_suggestions); ++i) {
-    sentence +=
-        fmt::format("{} {}", i == 0 ? "" : " or", entry_title(*matches[i].object, *matches[i].entry, named_.names));
+    sentence += fmt::format("{} {}", i == 0 ? "" : " or",
+                            entry_title(*matches[i].object, *matches[i].entry, named_.identifiers()));
   }
   if (matches.size() > max_suggestions) sentence += fmt::format(" or {} more", matches.size() - max_suggestions);
   return no_entry(std::move(sentence));
@@ -278,7 +278,7 @@ FoundEntry EntryFinder::find_one(std::string_view text) {
   FoundEntry result = find(text);
   if (result.ok() && result.entry == nullptr) {
     result.problem = fmt::format("{} \"{}\" has sub-indices: {}", index_label(result.object->index),
-                                 result.object->name, sub_indices_of(*result.object, named_.names));
+                                 result.object->name, sub_indices_of(*result.object, named_.identifiers()));
   }
   return result;
 }

@@ -41,7 +41,7 @@ class EntryFinder {
  public:
   explicit EntryFinder(const NamedDevice& named);
 
-  /// Finds by address; by generated name, `position_actual_value` or `identity_object.vendor_id`; or by the name in the
+  /// Finds by address; by identifier, `position_actual_value` or `identity_object.vendor_id`; or by the name in the
   /// EDS, `Identity object.Vendor-ID`, ignoring letter case. The name of a sub-index is sufficient if only one object
   /// has it; an element of an array is `name.3` or `name[3]`.
   [[nodiscard]] FoundEntry find(std::string_view text);
@@ -53,8 +53,8 @@ class EntryFinder {
   /// What has a name: all of one kind, in the order of the device.
   template <class Named>
   struct Names {
-    std::unordered_map<std::string, std::vector<Named>> by_name;        ///< in lower case; of EDS and generated code
-    std::unordered_map<std::string, std::vector<Named>> by_identifier;  ///< of the generated code
+    std::unordered_map<std::string, std::vector<Named>> by_name;        ///< in lower case; of EDS and identifiers
+    std::unordered_map<std::string, std::vector<Named>> by_identifier;  ///< as `Identifiers` has them
   };
   struct NamedEntry {
     const Object* object;

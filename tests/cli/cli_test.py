@@ -575,6 +575,12 @@ class Dump(CommandLine):
         device = json.loads(self.edsc("dump", GOOD, "--cpp").stdout)
         self.assertEqual(device["cpp"]["namespace"], "every_type")
 
+    def test_has_identifiers_without_the_reserved_words_of_a_language(self) -> None:
+        device = json.loads(self.edsc("dump", FIXTURES / "names.eds", "--cpp").stdout)
+        identifiers = {row["name"]: row["identifier"] for row in device["objects"]}
+        self.assertEqual(identifiers["class"], "class")
+        self.assertIn("class_", [row.get("identifier") for row in device["cpp"]["types"]])
+
     def test_of_names_in_other_scripts_is_json(self) -> None:
         device = json.loads(self.edsc("dump", FIXTURES / "names.eds").stdout)
         self.assertIn("速度", [row["name"] for row in device["objects"]])

@@ -28,7 +28,8 @@ void split(const std::string& input, LoadedDevice& loaded, Diagnostics& diagnost
 }
 
 void generate(const LoadedDevice& loaded, bool rendered, Diagnostics& diagnostics) {
-  static_cast<void>(device_view(loaded.named()).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::strict));
+  static_cast<void>(device_view(*loaded.device, loaded.names->identifiers())
+                        .dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::strict));
   const nlohmann::ordered_json view = cpp_view(loaded.named(), loaded.options, diagnostics);
   if (!rendered) return;
   for (const Template& one : built_in_templates()) {

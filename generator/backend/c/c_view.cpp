@@ -12,7 +12,6 @@
 #include <string_view>
 
 #include "backend/cpp/cpp_text.hpp"
-#include "backend/cpp/identifier.hpp"
 #include "backend/cpp/json_object.hpp"
 #include "device/pdo/pdo_defaults.hpp"
 #include "device/types/value_bytes.hpp"
@@ -99,19 +98,14 @@ constexpr std::string_view keywords[] = {
     "long", "register", "restrict", "return",   "short", "signed",   "sizeof",   "static",  "struct", "switch",
     "true", "typedef",  "union",    "unsigned", "void",  "volatile", "while"};
 
-/// A name without the underscore that distinguishes it from names which are reserved in C++ only.
-std::string without_underscore(std::string name) {
-  if (name.ends_with('_')) name.pop_back();
-  return name;
-}
-
 std::string member_name(std::string name) {
   return std::ranges::find(keywords, name) != std::end(keywords) ? name + "_" : name;
 }
 
 class CView {
  public:
-  explicit CView(const NamedDevice& named) : device_{named.device}, names_{named.names} {}
+  explicit CView(const NamedDevice& named)
+      : device_{named.device}, names_{named.identifiers()}, space_{named.names.space()} {}
 
   [[nodiscard]] ordered_json view() {
     ordered_json entries = ordered_json::array();
@@ -121,20 +115,20 @@ class CView {
     ordered_json pdos = ordered_json::array();
     ordered_json left_out = ordered_json::array();
     for (const Pdo& pdo : device_.pdos) add_pdo(pdo, pdos, left_out);
-    return json_object("file", cpp_comment(file_name_of(device_.source->name())), "device", names_.space(), "guard",
-                       upper_case(names_.space()) + "_OBJECTS_H", "entries", std::move(entries), "pdos",
-                       std::move(pdos), "left_out", std::move(left_out));
+    return json_object("file", cpp_comment(file_name_of(device_.source->name())), "device", space_, "guard",
+                       upper_case(space_) + "_OBJECTS_H", "entries", std::move(entries), "pdos", std::move(pdos),
+                       "left_out", std::move(left_out));
   }
 
  private:
   [[nodiscard]] std::string name_of(const Object& object, const Entry& entry) const {
-    const std::string of_object = without_underscore(names_.of(object));
-    return object.has_sub_indices() ? fmt::format("{}_{}", of_object, without_underscore(names_.of(entry))) : of_object;
+    if (!object.has_sub_indices()) return names_.of(object);
+    return fmt::format("{}_{}", names_.of(object), names_.of(entry));
   }
 
   [[nodiscard]] ordered_json entry_row(const Object& object, const Entry& entry) {
     const std::string name =
-        fmt::format("{}_{}", names_.space(),
+        fmt::format("{}_{}", space_,
                     scope_.take(name_of(object, entry), fmt::format("{:04x}_{:02x}", entry.index, entry.sub_index)));
     const std::string type = type_of(*entry.type);
     ordered_json constants = ordered_json::array();
@@ -160,7 +154,7 @@ class CView {
       return;
     }
     const std::string name =
-        fmt::format("{}_{}pdo_{}", names_.space(), pdo.direction == PdoDirection::receive ? 'r' : 't', pdo.number);
+        fmt::format("{}_{}pdo_{}", space_, pdo.direction == PdoDirection::receive ? 'r' : 't', pdo.number);
     ordered_json constants = ordered_json::array();
     constexpr std::uint8_t cob_id = 1;
     if (const Entry* const entry = pdo.communication == nullptr ? nullptr : pdo.communication->find(cob_id)) {
@@ -199,7 +193,8 @@ class CView {
   }
 
   const Device& device_;
-  const CppNames& names_;
+  const Identifiers& names_;
+  const std::string& space_;  ///< the prefix of all names
   IdentifierScope scope_;
 };
 

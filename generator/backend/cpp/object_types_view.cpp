@@ -46,7 +46,7 @@ std::string padded(std::string text, std::size_t column) {
 
 /// The name of an element without its number: "field" for "Field 1", "Field1" and, for sub-index 0Ah, "Field A".
 std::string without_number(const Entry& element) {
-  const std::string name = to_snake_case(element.name);
+  const std::string name = to_cpp_identifier(element.name);
   const std::string hexadecimal = fmt::format("{:x}", element.sub_index);
   std::string rest;
   for (std::size_t begin = 0; begin < name.size();) {
@@ -127,14 +127,13 @@ class ObjectTypes {
                                   const std::map<std::string, int>& names) const {
     if (options_.names.contains({element.index, element.sub_index})) return true;
     const std::string name = without_number(element);
-    if (name.empty() || name == to_snake_case(object.name)) return false;
-    if (object.entries.size() == 2) return name == to_snake_case(element.name);
+    if (name.empty() || name == to_cpp_identifier(object.name)) return false;
+    if (object.entries.size() == 2) return name == to_cpp_identifier(element.name);
     return names.at(name) == 1;
   }
 
   [[nodiscard]] std::string element_name(const Object& object, const Entry& element) const {
-    std::string name = names_.of(element);
-    if (name.ends_with('_')) name.pop_back();  // which distinguishes C++ keywords
+    const std::string& name = names_.identifiers().of(element);
     return name.starts_with(names_.of(object) + "_") ? name : names_.of(object) + "_" + name;
   }
 

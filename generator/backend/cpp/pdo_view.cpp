@@ -28,7 +28,7 @@ std::string type_name(const Pdo& pdo) { return fmt::format("{}{}", is_receive(pd
 
 std::string entry_type(const NamedDevice& named, const PdoEntry& entry) {
   if (entry.dummy != nullptr) return fmt::format("canopen::Dummy<0x{:04X}, {}>", entry.index, entry.bits);
-  const std::string object = named.names.type_of(*named.device.find(entry.index), *entry.object);
+  const std::string object = named.names.type_of(*named.device.find(entry.index), *entry.object).text();
   const canopen::DataTypeRow& type = *entry.object->type;
   if (type.kind == DataClass::string) return fmt::format("canopen::FixedString<{}, {}>", object, entry.bits / 8);
   return entry.bits == type.bits ? object : fmt::format("canopen::Padded<{}, {}>", object, entry.bits);

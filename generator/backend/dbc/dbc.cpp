@@ -294,8 +294,8 @@ BA_DEF_DEF_ "SystemSignalLongSymbol" "";
 
 }  // namespace
 
-Dbc dbc_of(const NamedDevice& named) {
-  return dbc_of(std::vector<DbcNode>{{named.names.space(), &named.device, &named.names}});
+Dbc dbc_of(const Device& device, const Identifiers& names) {
+  return dbc_of(std::vector<DbcNode>{{names.device(), &device, &names}});
 }
 
 Dbc dbc_of(const std::vector<DbcNode>& nodes) { return DbcWriter{nodes}.write(); }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "backend/cpp/cpp_names.hpp"
+#include "backend/identifiers.hpp"
 
 namespace edsc {
 
@@ -17,7 +17,7 @@ struct Dbc {
 struct DbcNode {
   std::string name;  ///< an identifier
   const Device* device = nullptr;
-  const CppNames* names = nullptr;
+  const Identifiers* names = nullptr;
 };
 
 /// Returns a message for each default PDO that is enabled. `device` has a node-ID and the identifiers of its objects.
@@ -29,7 +29,7 @@ struct DbcNode {
 /// transmission type 254 or 255, in milliseconds.
 ///
 /// MPDOs and PDOs with an invalid mapping are left out, and those whose CAN-ID another PDO of the device already has.
-[[nodiscard]] Dbc dbc_of(const NamedDevice& named);
+[[nodiscard]] Dbc dbc_of(const Device& device, const Identifiers& names);
 
 /// The same for several devices. The RPDOs with the CAN-ID of a TPDO are not messages; their nodes receive the signals
 /// that they map. An RPDO without a TPDO is a message without a sender.

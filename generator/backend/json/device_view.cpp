@@ -40,7 +40,7 @@ void add_text(const char* key, std::string_view text, ordered_json& view) {
   if (!text.empty()) view[key] = text;
 }
 
-ordered_json entry_view(const Entry& entry, const CppNames& names) {
+ordered_json entry_view(const Entry& entry, const Identifiers& names) {
   ordered_json view;
   view["index"] = entry.index;
   view["sub_index"] = entry.sub_index;
@@ -139,7 +139,7 @@ ordered_json type_view(const TypeDefinition& type) {
   return view;
 }
 
-ordered_json object_view(const Object& object, const CppNames& names) {
+ordered_json object_view(const Object& object, const Identifiers& names) {
   ordered_json view;
   view["index"] = object.index;
   view["object_type"] = to_string(object.type);
@@ -173,12 +173,11 @@ void separate(const Entry& entry, const DataSheet& sheet, const ObjectDescriptio
 
 }  // namespace
 
-ordered_json device_view(const NamedDevice& named) {
-  const auto& [device, names] = named;
+ordered_json device_view(const Device& device, const Identifiers& names) {
   ordered_json view;
   view["schema"] = 2;
   view["source"] = file_name_of(device.source->name());
-  view["name"] = names.space();
+  view["name"] = names.device();
   view["vendor_name"] = device.vendor_name;
   view["vendor_number"] = device.vendor_number;
   view["product_name"] = device.product_name;

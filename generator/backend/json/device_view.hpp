@@ -3,13 +3,13 @@
 
 #include <nlohmann/json.hpp>
 
-#include "backend/cpp/cpp_names.hpp"
+#include "backend/identifiers.hpp"
 #include "eds/data_sheet.hpp"
 
 namespace edsc {
 
 /// The device itself: objects, entries, values and PDO layouts, free of any target language.
-[[nodiscard]] nlohmann::ordered_json device_view(const NamedDevice& named);
+[[nodiscard]] nlohmann::ordered_json device_view(const Device& device, const Identifiers& names);
 
 /// In the view of a DCF: `default_value` becomes the DefaultValue, and `parameter_value` the ParameterValue, if
 /// present. Values that CiA 301 fixes remain `default_value`.

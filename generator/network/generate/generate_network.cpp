@@ -11,6 +11,7 @@
 #include "network/generate/node_dcf.hpp"
 #include "network/generate/plant_header.hpp"
 #include "system/path.hpp"
+#include "text/snake_case.hpp"
 
 namespace edsc {
 namespace {
@@ -31,8 +32,10 @@ std::vector<std::string> inputs_of(const Network& network) {
 
 Dbc dbc_of(const Network& network) {
   std::vector<DbcNode> nodes;
-  for (const NetworkNode& node : network.nodes)
-    nodes.push_back({to_namespace(node.name), &node.device(), &*node.loaded->names});
+  for (const NetworkNode& node : network.nodes) {
+    const std::string name = to_snake_case(node.name);
+    nodes.push_back({name.empty() ? "node" : name, &node.device(), &node.named().identifiers()});
+  }
   return dbc_of(nodes);
 }
 

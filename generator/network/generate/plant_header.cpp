@@ -60,7 +60,7 @@ class PlantHeader {
     IdentifierScope names;
     for (const std::string_view one : plant_members) static_cast<void>(names.take(std::string{one}, ""));
     for (const NetworkNode& node : network_.nodes) {
-      const std::string wanted = to_snake_case(node.name);
+      const std::string wanted = to_cpp_identifier(node.name);
       identifiers_.push_back(names.take(wanted.empty() ? "node" : wanted, std::to_string(node.node_id)));
     }
   }

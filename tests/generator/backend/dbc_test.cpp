@@ -46,7 +46,7 @@ bool has_line(const Dbc& dbc, const std::string& line) {
 
 Dbc dbc_from(const std::string& pdos, const std::string& name = "drive") {
   const DeviceFromText read{objects() + pdos, {}, {.name = name, .node_id = 5}};
-  return dbc_of(read.named());
+  return dbc_of(read.device, read.names.identifiers());
 }
 
 TEST(Dbc, HasATpdoWithTheTypesOfItsObjects) {
@@ -92,6 +92,31 @@ TEST(Dbc, ShortensLongNamesAndKeepsThemInAttributes) {
   EXPECT_TRUE(has_line(dbc,
                        "BA_ \"SystemSignalLongSymbol\" SG_ 389 axis_values_of_the_left_hand_s_2 "
                        "\"axis_values_of_the_left_hand_side_drive_slip\";"));
+}
+
+TEST(Dbc, NamesSignalsAsTheEdsDoesWithoutReservedWordsOfALanguage) {
+  const std::string mapped = "PDOMapping=1\n";
+  const DeviceFromText read{var("2100", "Switch", "0x5", "ro", mapped) + var("2101", "Float", "0x5", "ro", mapped) +
+                                var("2102", "Class", "0x5", "ro", mapped) + var("2103", "int", "0x5", "ro", mapped) +
+                                var("2104", "Speed", "0x5", "ro", mapped) + var("2105", "SPEED", "0x5", "ro", mapped) +
+                                group("2106", "Default", "0x9", 2) + sub("2106", 0, "Highest sub-index", "0x5") +
+                                sub("2106", 1, "Type", "0x5", mapped) +
+                                pdo("1800", "1A00", "$NODEID+0x180",
+                                    {"0x21000008", "0x21010008", "0x21020008", "0x21030008", "0x21040008", "0x21050008",
+                                     "0x21060108", "0x21000008"}),
+                            {},
+                            {.name = {}, .node_id = 5},
+                            "signal.eds"};
+  const Dbc dbc = dbc_of(read.device, read.names.identifiers());
+  EXPECT_TRUE(has_line(dbc, "BU_: signal")) << dbc.text;
+  EXPECT_TRUE(has_line(dbc, "BO_ 389 signal_tpdo_1: 8 signal"));
+  unsigned start = 0;
+  for (const char* name : {"switch", "float", "class", "int", "speed", "speed_2105", "default_type", "switch_2"}) {
+    EXPECT_TRUE(has_line(
+        dbc, " SG_ " + std::string{name} + " : " + std::to_string(start) + "|8@1+ (1,0) [0|255] \"\" Vector__XXX"))
+        << name;
+    start += 8;
+  }
 }
 
 TEST(Dbc, NamesThePdosThatItDoesNotHave) {

@@ -4,6 +4,9 @@
 
 #include <string>
 
+#include "backend/identifiers.hpp"
+#include "text/snake_case.hpp"
+
 namespace edsc {
 namespace {
 
@@ -50,17 +53,23 @@ TEST(Identifier, IsEmptyWhenNoLetterAndNoDigitIsLeft) {
   }
 }
 
-TEST(Identifier, IsNoWordOfTheLanguage) {
-  EXPECT_EQ(to_snake_case("Default"), "default_");
-  EXPECT_EQ(to_snake_case("SWITCH"), "switch_");
-  EXPECT_EQ(to_snake_case("xor eq"), "xor_eq_");
-  EXPECT_EQ(to_snake_case("static cast"), "static_cast_");
+TEST(Identifier, MayBeAWordOfALanguage) {
+  EXPECT_EQ(to_snake_case("SWITCH"), "switch");
+  EXPECT_EQ(to_snake_case("Float_"), "float");
 }
 
-TEST(Identifier, IsNoUsualMacroAndNoMemberOfAGeneratedObject) {
+TEST(CppIdentifier, IsNoWordOfTheLanguage) {
+  EXPECT_EQ(to_cpp_identifier("Default"), "default_");
+  EXPECT_EQ(to_cpp_identifier("SWITCH"), "switch_");
+  EXPECT_EQ(to_cpp_identifier("xor eq"), "xor_eq_");
+  EXPECT_EQ(to_cpp_identifier("static cast"), "static_cast_");
+  EXPECT_EQ(to_cpp_identifier("Statusword"), "statusword");
+}
+
+TEST(CppIdentifier, IsNoUsualMacroAndNoMemberOfAGeneratedObject) {
   for (const char* name : {"errno", "linux", "unix", "stdin", "assert", "offsetof", "type", "index", "sub_index",
                            "name", "bits", "access", "mappable", "low_limit", "high_limit", "od", "std", "canopen"}) {
-    EXPECT_EQ(to_snake_case(name), std::string{name} + "_");
+    EXPECT_EQ(to_cpp_identifier(name), std::string{name} + "_");
   }
 }
 

@@ -17,14 +17,14 @@ using nlohmann::json;
 /// The view of a device with these sections and one object.
 json sections_view(const std::string& sections) {
   const DeviceFromText text(sections + var("2000", "Value", "5"));
-  return device_view(text.named());
+  return device_view(text.device, text.names.identifiers());
 }
 
 TEST(InformationView, HasTheNameOfTheFileWithoutFolders) {
   for (const std::string path : {"drive \xC3\xA4.eds", "/eds/drive \xC3\xA4.eds", "C:\\EDS\\drive \xC3\xA4.eds"}) {
     const DeviceFromText text(var("2000", "Value", "5"), {}, {}, path);
     Diagnostics diagnostics;
-    EXPECT_EQ(device_view(text.named())["source"], "drive \xC3\xA4.eds") << path;
+    EXPECT_EQ(device_view(text.device, text.names.identifiers())["source"], "drive \xC3\xA4.eds") << path;
     EXPECT_EQ(cpp_view(text.named(), {}, diagnostics)["file"], "drive \xC3\xA4.eds") << path;
   }
 }

@@ -301,7 +301,7 @@ TEST(LiveDefaults, MayRepeatASetting) {
 
 TEST(CompleteDevice, SaysInTheDumpWhichValuesAreByCia301) {
   const DeviceFromText text(var("1005", "SYNC", "7", "rw", "DefaultValue=0x80\n") + var("1014", "EMCY", "7"));
-  const nlohmann::ordered_json view = device_view(text.named());
+  const nlohmann::ordered_json view = device_view(text.device, text.names.identifiers());
   EXPECT_FALSE(view["objects"][0]["entries"][0].contains("default_by"));
   EXPECT_EQ(view["objects"][1]["entries"][0]["default_value"], "$NODEID+0x80");
   EXPECT_EQ(view["objects"][1]["entries"][0]["default_by"], "CiA 301, 7.5.2.17");

@@ -1,4 +1,4 @@
-/// C++ names of the device and its objects, and options that name entries.
+/// Identifiers and C++ names of the device and its objects, and options that name entries.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -20,6 +20,28 @@ TEST(Names, AreUniqueInTheDevice) {
   EXPECT_EQ(names.size(), 4U);
   EXPECT_EQ(text.names.of(*text.device.find(0x2000)), "speed");
   EXPECT_EQ(text.names.of(*text.device.find(0x2001)), "speed_2001");
+}
+
+TEST(Names, HaveAnUnderscoreInCppOnlyWhereCppReservesThem) {
+  Options options;
+  options.names[{0x2004, 0}] = "float_";
+  const DeviceFromText text(var("2000", "Switch", "5") + var("2001", "SWITCH", "5") + var("2002", "Speed", "5") +
+                                group("2003", "Class", "0x9", 2) + sub("2003", 0, "Value", "5") +
+                                sub("2003", 1, "Type", "5") + var("2004", "Set value", "5"),
+                            options);
+  const Identifiers& identifiers = text.names.identifiers();
+  const auto expect = [&](std::uint16_t index, const char* identifier, const char* cpp_name) {
+    EXPECT_EQ(identifiers.of(*text.device.find(index)), identifier);
+    EXPECT_EQ(text.names.of(*text.device.find(index)), cpp_name);
+  };
+  expect(0x2000, "switch", "switch_");
+  expect(0x2001, "switch_2001", "switch_2001");
+  expect(0x2002, "speed", "speed");
+  expect(0x2003, "class", "class_");
+  expect(0x2004, "float", "float_");
+  EXPECT_EQ(identifiers.of(text.entry(0x2003, 1)), "type");
+  EXPECT_EQ(text.names.of(text.entry(0x2003, 1)), "type_");
+  EXPECT_EQ(text.names.type_of(*text.device.find(0x2003), text.entry(0x2003, 1)).text(), "od::class_::type_");
 }
 
 TEST(Names, OfSubObjectsAreUniqueInTheirObject) {
@@ -54,6 +76,7 @@ TEST(Names, OfTheDeviceComeFromTheFile) {
   EXPECT_EQ(name_of("1.eds"), "n_1");
   EXPECT_EQ(name_of("---.eds"), "device");
   EXPECT_EQ(name_of("namespace.eds"), "namespace_");
+  EXPECT_EQ(DeviceFromText(var("2000", "V", "5"), {}, {}, "signal.eds").names.identifiers().device(), "signal");
   EXPECT_EQ(DeviceFromText(var("2000", "V", "5"), {}, {"axis1", std::nullopt}).names.space(), "axis1");
 }
 

@@ -36,7 +36,7 @@ struct Formatted {
 
   /// The device as `edsc dump` shows it, without line numbers.
   [[nodiscard]] nlohmann::ordered_json view() const {
-    nlohmann::ordered_json view = device_view({device, CppNames{device, {}}});
+    nlohmann::ordered_json view = device_view(device, Identifiers{device, {}});
     remove_lines(view);
     return view;
   }

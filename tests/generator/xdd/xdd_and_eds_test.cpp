@@ -90,7 +90,7 @@ nlohmann::ordered_json view_of(const DataSheet& sheet, Diagnostics& diagnostics)
   const Device device = resolve_device(sheet, options, {}, diagnostics);
   const CppNames names{device, options, "pump"};
   check_device({device, names}, sheet, options, diagnostics);
-  nlohmann::ordered_json view = device_view({device, names}).flatten();
+  nlohmann::ordered_json view = device_view(device, names.identifiers()).flatten();
   for (auto row = view.begin(); row != view.end();) {
     row = row.key().ends_with("/line") || row.key() == "/source" ? view.erase(row) : std::next(row);
   }
