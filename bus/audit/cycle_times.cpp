@@ -30,7 +30,7 @@ std::int64_t sync_period(std::uint32_t cob_id, const AuditState& audit) {
 
 /// The event timer, or the SYNCs of the transmission type; none on request and for other events.
 Parameter parameter_of(const TpdoSettings& tpdo, std::uint16_t number, std::uint32_t sync_id, const AuditState& audit) {
-  const auto index = static_cast<std::uint16_t>(0x1800 + number - 1);
+  const std::uint16_t index = parameters_of(PdoDirection::transmit, number).communication;
   if (tpdo.is_event_driven()) return {index, 5, tpdo.event_us};
   if (tpdo.is_cyclic()) return {index, 2, tpdo.transmission_type * sync_period(sync_id, audit)};
   return {};

@@ -10,7 +10,7 @@ constexpr std::int64_t per_millisecond = 1000;  ///< microseconds
 void read_tpdos(const NodeModel& model, NodeSettings& settings) {
   for (const PdoLayout& pdo : model.pdos()) {
     if (pdo.direction != PdoDirection::transmit) continue;
-    const auto index = static_cast<std::uint16_t>(0x1800 + pdo.number - 1);
+    const std::uint16_t index = parameters_of(PdoDirection::transmit, pdo.number).communication;
     if (settings.tpdos.size() < pdo.number) settings.tpdos.resize(pdo.number);
     TpdoSettings& tpdo = settings.tpdos[pdo.number - 1U];
     tpdo.is_sent = pdo.cob_id.valid() && pdo.bits > 0;

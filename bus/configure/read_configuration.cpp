@@ -67,18 +67,17 @@ class Values {
 
 /// The entries that the valid RPDOs of the node write.
 std::set<Key> written_by_rpdos(const Device& device, const Values& values) {
-  constexpr std::uint16_t first = 0x1400, last = 0x15FF, to_mapping = 0x0200;
+  constexpr std::uint16_t first = 0x1400, last = 0x15FF;
   std::set<Key> written;
   for (const Object& object : device.objects) {
     if (object.index < first || object.index > last) continue;
-    const auto mapping = static_cast<std::uint16_t>(object.index + to_mapping);
+    const std::uint16_t mapping = mapping_parameter_of(object.index);
     const bool valid =
         (values.find(object.index, 1).value_or(canopen::CobId::invalid_bit) & canopen::CobId::invalid_bit) == 0;
     const std::uint32_t count = valid ? values.find(mapping, 0).value_or(0) : 0;
-    for (std::uint32_t i = 1; i <= count && i <= 64; ++i) {
-      const std::uint32_t mapped = values.find(mapping, static_cast<std::uint8_t>(i)).value_or(0);
-      written.insert({static_cast<std::uint16_t>(mapped >> 16), static_cast<std::uint8_t>(mapped >> 8)});
-    }
+    const auto value_of = [&](std::uint8_t sub_index) { return values.find(mapping, sub_index).value_or(0); };
+    const auto used = static_cast<std::uint8_t>(std::min<std::uint32_t>(count, classical_can.objects));
+    for (const MappingValue& mapped : read_mapping(used, value_of)) written.insert({mapped.index, mapped.sub_index});
   }
   return written;
 }

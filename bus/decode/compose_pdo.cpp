@@ -57,8 +57,9 @@ ComposedPdo compose_pdo(const PdoLayout& pdo, std::span<const PdoValue> values) 
   std::uint64_t word = 0;
   for (const PdoField& field : pdo.fields) {
     if (!composed.ok()) return composed;
-    composed.problem = field.offset + unsigned{field.bits} > 64 ? pdo_name(pdo) + " maps more than 64 bits"
-                                                                : put_field(field, values, word);
+    composed.problem = field.is_within(classical_can)
+                           ? put_field(field, values, word)
+                           : fmt::format("{} maps more than {} bits", pdo_name(pdo), classical_can.bits());
   }
   composed.frame.id = pdo.cob_id.can_id();
   composed.frame.extended = pdo.cob_id.extended();

@@ -1,11 +1,10 @@
 #include "decode/node_model.hpp"
 
+#include <algorithm>
 #include <array>
-#include <canopen/pdo/pdo_mapping.hpp>
 
 #include "device/cob_id_parameter.hpp"
 #include "device/index_range.hpp"
-#include "device/limits.hpp"
 #include "device/types/little_endian.hpp"
 #include "text/counted.hpp"
 
@@ -14,7 +13,6 @@ namespace {
 
 using canopen::CobId;
 
-constexpr unsigned max_bits = 64;
 constexpr std::uint32_t save_signature = 0x6576'6173, load_signature = 0x6461'6F6C;  ///< "save", "load"
 
 constexpr std::uint32_t key_of(std::uint16_t index, std::uint8_t sub_index) {
@@ -31,11 +29,9 @@ constexpr std::array timing_parameters = {IndexRange{0x1005, 0x1007}, IndexRange
                                           IndexRange{0x1019, 0x1019}, IndexRange{0x1400, 0x15FF},
                                           IndexRange{0x1800, 0x19FF}, IndexRange{0x1F80, 0x1F80}};
 
-constexpr std::uint16_t from_communication_to_mapping = 0x200;
-
 template <class PdoKind>
 std::uint16_t communication_of(const PdoKind& pdo) {
-  return static_cast<std::uint16_t>((pdo.direction == PdoDirection::receive ? 0x1400 : 0x1800) + pdo.number - 1);
+  return parameters_of(pdo.direction, pdo.number).communication;
 }
 
 }  // namespace
@@ -90,11 +86,8 @@ DriveWord NodeModel::drive_word(std::uint16_t index, std::uint8_t sub_index) con
   return profile_ == 402 ? drive_word_at(index, sub_index) : DriveWord::none;
 }
 
-PdoField NodeModel::field(std::uint32_t mapping) const {
-  PdoField field;
-  field.index = static_cast<std::uint16_t>(mapping >> 16);
-  field.sub_index = static_cast<std::uint8_t>(mapping >> 8);
-  field.bits = static_cast<std::uint8_t>(mapping);
+PdoField NodeModel::field(const PlacedObject& mapped) const {
+  PdoField field{mapped};
   const Object* object = device_->find(field.index);
   field.entry = object != nullptr ? object->find(field.sub_index) : nullptr;
   if (field.entry != nullptr) {
@@ -111,7 +104,7 @@ PdoField NodeModel::field(std::uint32_t mapping) const {
 }
 
 std::string NodeModel::mapped_name(std::uint32_t mapping) const {
-  const PdoField mapped = field(mapping);
+  const PdoField mapped = field({MappingValue::of(mapping)});
   return mapped.name + ", " + counted(unsigned{mapped.bits}, "bit");
 }
 
@@ -122,18 +115,16 @@ void NodeModel::lay_out(std::size_t at) {
   layout.number = pdo.number;
   constexpr std::uint8_t cob_id_parameter = 1;
   layout.cob_id = cob_id(communication_of(pdo), cob_id_parameter);
-  const auto index = static_cast<std::uint16_t>(communication_of(pdo) + from_communication_to_mapping);
+  const std::uint16_t index = mapping_parameter_of(communication_of(pdo));
   const std::uint32_t count = parameter(index, 0).value_or(0);
-  layout.multiplexed = count >= canopen::source_multiplexed;
-  for (unsigned i = 1; i <= count && i <= max_mapped_objects && !layout.multiplexed; ++i) {
-    const std::uint32_t mapping = parameter(index, static_cast<std::uint8_t>(i)).value_or(0);
-    PdoField one = field(mapping);
-    if (mapping == 0 || one.bits == 0) continue;
-    if (layout.bits + one.bits > max_bits) break;
-    one.offset = static_cast<std::uint8_t>(layout.bits);
-    layout.bits += one.bits;
-    layout.fields.push_back(std::move(one));
+  layout.multiplexed = is_multiplexed(count);
+  const auto value_of = [&](std::uint8_t sub_index) { return parameter(index, sub_index).value_or(0); };
+  const auto used = layout.multiplexed ? 0U : std::min<std::uint32_t>(count, classical_can.objects);
+  for (const PlacedObject& mapped : read_mapping(static_cast<std::uint8_t>(used), value_of)) {
+    if (!mapped.is_within(classical_can)) break;
+    if (mapped.bits != 0) layout.fields.push_back(field(mapped));
   }
+  layout.bits = total_bits(layout.fields);
   pdos_[at] = std::move(layout);
 }
 
@@ -158,7 +149,7 @@ bool NodeModel::learn(std::uint16_t index, std::uint8_t sub_index, std::span<con
   if (!changes_meaning) return false;
   for (std::size_t at = 0; at < pdos_.size(); ++at) {
     const std::uint16_t first = communication_of(pdos_[at]);
-    if (index == first || index == first + from_communication_to_mapping) lay_out(at);
+    if (index == first || index == mapping_parameter_of(first)) lay_out(at);
   }
   return true;
 }

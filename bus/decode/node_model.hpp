@@ -11,20 +11,17 @@
 
 #include "device/device.hpp"
 #include "device/options/options.hpp"
+#include "pdo/mapping.hpp"
 #include "values/drive_words.hpp"
 
 namespace edsc {
 
-/// The position of an object in a PDO.
-struct PdoField {
-  std::uint16_t index = 0;
-  std::uint8_t sub_index = 0;
-  std::uint8_t offset = 0;  ///< in bits
-  std::uint8_t bits = 0;
+/// An object in a PDO.
+struct PdoField : PlacedObject {
   DriveWord drive_word = DriveWord::none;
   const Entry* entry = nullptr;                ///< null: a dummy, or an entry that does not exist
   const canopen::DataTypeRow* type = nullptr;  ///< null if neither is known
-  std::string name;                            ///< `Statusword`
+  std::string name = {};                       ///< `Statusword`
 };
 
 struct PdoLayout {
@@ -88,7 +85,7 @@ class NodeModel {
   using Parameters = std::map<Key, std::uint32_t>;
 
   [[nodiscard]] canopen::CobId cob_id(std::uint16_t index, std::uint8_t sub_index = 0) const;
-  [[nodiscard]] PdoField field(std::uint32_t mapping) const;
+  [[nodiscard]] PdoField field(const PlacedObject& mapped) const;
   void lay_out(std::size_t pdo);
   void lay_out_all();
 

@@ -22,7 +22,7 @@ void append_field(std::string& text, const PdoField& field, std::uint64_t word, 
   value.sub_index = field.sub_index;
   value.name = field.name;
   value.type = field.type;
-  value.number = field.offset < 64 ? word >> field.offset & low_bits(field.bits) : 0;
+  value.number = field.offset < classical_can.bits() ? word >> field.offset & low_bits(field.bits) : 0;
   value.bits = field.bits;
   text += field.name;
   text += " = ";
@@ -49,7 +49,7 @@ void append_pdo(const Frame& frame, const PdoLayout& pdo, Message& message) {
   const std::size_t bytes = bytes_for(pdo.bits);
   const char* separator = "";
   for (const PdoField& field : pdo.fields) {
-    if (static_cast<unsigned>(field.offset) + field.bits > bits) break;
+    if (field.end() > bits) break;
     message.text += separator;
     append_field(message.text, field, word, message);
     separator = ", ";

@@ -5,8 +5,8 @@
 #include "backend/cpp/cpp_view.hpp"
 #include "backend/json/device_view.hpp"
 #include "commands/commands.hpp"
-#include "device/pdo/resolve_pdos.hpp"
 #include "load/load_device.hpp"
+#include "pdo/mapping_fault.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -29,7 +29,7 @@ struct Settings {
 /// A broken PDO is marked as broken; with any other error, parts of the EDS are missing or assumed.
 bool is_incomplete(const Diagnostics& diagnostics) {
   return std::ranges::any_of(diagnostics.all(), [](const Diagnostic& one) {
-    return one.severity == Severity::error && !is_broken_pdo_rule(one.rule);
+    return one.severity == Severity::error && !is_mapping_rule(one.rule);
   });
 }
 

@@ -158,8 +158,8 @@ void add_pdo_options(Command command, Settings& settings) {
              "node-ID of the PDO, and its EDS, DCF, XDD or XDC")
       .required();
   add_parsed(
-      command, "NUMBER", settings.number, [](const std::string& text) { return parse_count(text, 512); },
-      "a number from 1 to 512", "number of the RPDO: 1 is 1400h")
+      command, "NUMBER", settings.number, [](const std::string& text) { return parse_count(text, classical_can.pdos); },
+      fmt::format("a number from 1 to {}", classical_can.pdos), "number of the RPDO: 1 is 1400h")
       .required();
   command.add_option("OBJECT=VALUE", settings.values, "a value for each mapped object, by name or address");
   command.add_flag("--tpdo", settings.transmit, "send a TPDO of the node in its place");

@@ -6,8 +6,8 @@
 #include <cstring>
 
 #include "decode/formats/log_formats.hpp"
-#include "device/pdo/resolve_pdos.hpp"
 #include "eds/number.hpp"
+#include "pdo/mapping_fault.hpp"
 #include "shared/exit_code.hpp"
 #include "system/input_file.hpp"
 #include "system/waiting_signals.hpp"
@@ -36,7 +36,7 @@ NodeArgument parse_node_argument(const std::string& text) {
 void print_errors(const Diagnostics& diagnostics, const ColorOption& color) {
   Diagnostics errors;
   for (const Diagnostic& one : diagnostics.all()) {
-    if (one.severity == Severity::error && !is_broken_pdo_rule(one.rule)) errors.report(one);
+    if (one.severity == Severity::error && !is_mapping_rule(one.rule)) errors.report(one);
   }
   print_findings(stderr, errors, color);
 }

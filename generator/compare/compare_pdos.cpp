@@ -23,10 +23,7 @@ const Entry* parameter(const Pdo& pdo, std::uint8_t sub_index) {
 std::optional<Value> default_of(const Entry* entry) { return entry != nullptr ? entry->default_value : std::nullopt; }
 
 /// The properties of an entry that matter to a PDO partner.
-struct LayoutEntry {
-  std::uint16_t index;
-  std::uint8_t sub_index;
-  std::uint8_t bits;
+struct LayoutEntry : MappingValue {
   const canopen::DataTypeRow* type;
 
   friend bool operator==(const LayoutEntry&, const LayoutEntry&) = default;
@@ -35,8 +32,7 @@ struct LayoutEntry {
 std::vector<LayoutEntry> layout_of(const Pdo& pdo) {
   std::vector<LayoutEntry> layout;
   for (const PdoEntry& entry : pdo.entries) {
-    layout.push_back(
-        {entry.index, entry.sub_index, entry.bits, entry.object != nullptr ? entry.object->type : entry.dummy});
+    layout.push_back({entry, entry.object != nullptr ? entry.object->type : entry.dummy});
   }
   return layout;
 }

@@ -32,12 +32,6 @@ std::uint8_t Object::highest_sub_index() const {
   return last != entries.rend() ? last->sub_index : 0;
 }
 
-unsigned Pdo::bits() const {
-  unsigned sum = 0;
-  for (const PdoEntry& entry : entries) sum += entry.bits;
-  return sum;
-}
-
 const Object* Device::find(std::uint16_t index) const {
   const auto at = std::ranges::lower_bound(objects, index, {}, &Object::index);
   return at != objects.end() && at->index == index ? &*at : nullptr;

@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "device/information.hpp"
+#include "device/types/little_endian.hpp"
 #include "diagnostics/diagnostics.hpp"
+#include "pdo/mapping.hpp"
 
 namespace edsc {
 
@@ -88,14 +90,8 @@ struct Object {
   [[nodiscard]] std::uint8_t highest_sub_index() const;
 };
 
-enum class PdoDirection : std::uint8_t { receive, transmit };
-
 /// One entry of a default mapping.
-struct PdoEntry {
-  std::uint8_t position = 0;  ///< 1..64: its sub-index in the mapping parameter
-  std::uint16_t index = 0;
-  std::uint8_t sub_index = 0;
-  std::uint8_t bits = 0;
+struct PdoEntry : PlacedObject {
   const Entry* object = nullptr;                ///< null if the entry does not exist
   const canopen::DataTypeRow* dummy = nullptr;  ///< set if the index is that of a data type
   Position place;                               ///< the mapping value
@@ -107,13 +103,14 @@ struct Pdo {
   std::uint16_t number = 1;  ///< 1..512
   const Object* communication = nullptr;
   const Object* mapping = nullptr;  ///< null if the object is missing
-  std::vector<PdoEntry> entries;    ///< their number is sub-index 0
+  std::vector<PdoEntry> entries;    ///< those that are not empty
   Position position;                ///< the communication parameter's section, else the mapping parameter's
   bool multiplexed = false;         ///< sub-index 0 of its mapping is 254 or 255: an MPDO, which has no entries
   bool dynamic = false;             ///< the mapping can be changed: the mapping parameter is in RAM
   bool broken = false;              ///< the mapping is invalid
 
-  [[nodiscard]] unsigned bits() const;
+  [[nodiscard]] unsigned bits() const { return total_bits(entries); }
+  [[nodiscard]] unsigned bytes() const { return static_cast<unsigned>(bytes_for(bits())); }
 };
 
 /// The basic type of a type that the EDS defines.

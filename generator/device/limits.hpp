@@ -1,4 +1,4 @@
-/// Limits of a device (CiA 301, 7.4 and 7.5.2).
+/// Limits of a device (CiA 301, 7.4). Those of PDOs are in pdo/limits.hpp.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,6 @@
 
 namespace edsc {
 
-inline constexpr std::uint16_t max_pdos = 512;  ///< per direction
-inline constexpr std::uint8_t max_mapped_objects = 64;
 inline constexpr std::uint8_t max_sub_objects = 254;
 
 /// Of a device that edsc resolves: an EDS of 1 MB in compact form, or with modules, can describe millions.

@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::uint8_t cob_id_sub_index = 1;
 constexpr std::uint8_t sync_start_sub_index = 6;
-constexpr unsigned frame_bits = 64;
 
 /// The drawing of a PDO in units of SVG: a frame of 8 bytes from left to right, bit 0 of byte 0 first.
 constexpr unsigned bit_width = 12;
@@ -55,22 +54,22 @@ std::string fitting_name(const PdoEntry& mapped, const std::string& name, unsign
   return fitting(fits ? name : mapped.object->name, width);
 }
 
-Json field_view(const Device& device, const PdoEntry& mapped, unsigned start) {
+Json field_view(const Device& device, const PdoEntry& mapped) {
   const unsigned width = mapped.bits * bit_width;
   const std::string name = name_of(device, mapped);
   const Object* const object = device.find(mapped.index);
   const bool is_number = mapped.object != nullptr && mapped.object->type->kind != canopen::DataClass::string;
-  return {{"x", bit_x(start)},
+  return {{"x", bit_x(mapped.offset)},
           {"width", width},
-          {"text_x", bit_x(start) + text_margin},
-          {"text_end", bit_x(start) + width - text_margin},
+          {"text_x", bit_x(mapped.offset) + text_margin},
+          {"text_end", bit_x(mapped.offset) + width - text_margin},
           {"field_class", mapped.dummy != nullptr    ? "dummy"
                           : mapped.object == nullptr ? "missing"
                                                      : "mapped"},
           {"field_name", name},
           {"short_name", shown(fitting_name(mapped, name, width))},
           {"short_entry", shown(fitting(entry_label(mapped.index, mapped.sub_index), width))},
-          {"range", bit_range(start, mapped.bits)},
+          {"range", bit_range(mapped.offset, mapped.bits)},
           {"bits", mapped.bits},
           {"significance", is_number && mapped.bits > 8},
           {"entry", entry_label(mapped.index, mapped.sub_index)},
@@ -110,14 +109,10 @@ Json tick_rows(unsigned bytes) {
 
 /// Null if nothing is mapped, or more than a frame has.
 Json drawing_view(const Device& device, const Pdo& pdo) {
-  if (pdo.entries.empty() || pdo.bits() == 0 || pdo.bits() > frame_bits) return nullptr;
+  if (pdo.entries.empty() || pdo.bits() == 0 || pdo.bits() > classical_can.bits()) return nullptr;
   Json fields = Json::array();
-  unsigned start = 0;
-  for (const PdoEntry& mapped : pdo.entries) {
-    fields.push_back(field_view(device, mapped, start));
-    start += mapped.bits;
-  }
-  const unsigned bytes = (start + 7) / 8;
+  for (const PdoEntry& mapped : pdo.entries) fields.push_back(field_view(device, mapped));
+  const unsigned bytes = pdo.bytes();
   const std::string label = spoken(fields, pdo);
   return {{"view_width", 2 * left_margin + 8 * byte_width},
           {"frame_width", bytes * byte_width},
@@ -172,21 +167,22 @@ std::string remark_of(const Pdo& pdo) {
   if (pdo.multiplexed) return "multiplex PDO: each frame states the object that it carries";
   if (pdo.mapping == nullptr) return "missing mapping parameter";
   if (pdo.entries.empty()) return "no object is mapped by default";
-  if (pdo.bits() > frame_bits) return fmt::format("the mapping has {} bits; a frame has 64", pdo.bits());
+  if (pdo.bits() > classical_can.bits())
+    return fmt::format("the mapping has {} bits; a frame has {}", pdo.bits(), classical_can.bits());
   return pdo.broken ? "the mapping is invalid" : "";
 }
 
 Json pdo_view(const DeviceToDocument& input, const Pdo& pdo) {
   const bool receives = pdo.direction == PdoDirection::receive;
-  const auto offset = static_cast<std::uint16_t>(pdo.number - 1);
+  const PdoParameterIndices parameters = parameters_of(pdo.direction, pdo.number);
   const bool is_enabled = on_by_default(pdo);
   return {{"pdo_id", fmt::format("{}pdo-{}", receives ? 'r' : 't', pdo.number)},
           {"pdo_label", pdo_label(pdo)},
           {"enabled", is_enabled},
           {"state", is_enabled ? "enabled" : "disabled by default"},
           {"size", counted(pdo.bits(), "bit")},
-          {"communication", index_label(static_cast<std::uint16_t>((receives ? 0x1400 : 0x1800) + offset))},
-          {"mapping_object", index_label(static_cast<std::uint16_t>((receives ? 0x1600 : 0x1A00) + offset))},
+          {"communication", index_label(parameters.communication)},
+          {"mapping_object", index_label(parameters.mapping)},
           {"has_communication", pdo.communication != nullptr},
           {"has_mapping", pdo.mapping != nullptr},
           {"remark", shown(remark_of(pdo))},

@@ -14,7 +14,7 @@ namespace {
 /// Reports the first of the sub-indices 1..count that is missing or empty.
 void check_gaps(const RuleContext& context, const Pdo& pdo, const Entry& count) {
   const std::uint64_t entries = count.default_value->bits;
-  for (std::uint64_t i = 1; i <= std::min<std::uint64_t>(entries, 64); ++i) {
+  for (std::uint64_t i = 1; i <= std::min<std::uint64_t>(entries, classical_can.objects); ++i) {
     const Entry* entry = pdo.mapping->find(static_cast<std::uint8_t>(i));
     if (entry == nullptr) {
       context.report("pdo-mapping-count", count.default_value->position,
@@ -75,7 +75,7 @@ void check_granularity_of_mappings(const RuleContext& context) {
       return;
     }
     const auto finer =
-        std::ranges::find_if(pdo.entries, [&](const PdoEntry& entry) { return entry.bits % *granularity != 0; });
+        std::ranges::find_if(pdo.entries, [&](const PdoEntry& entry) { return !entry.is_multiple_of(*granularity); });
     if (finer == pdo.entries.end()) continue;
     context.report("pdo-granularity", finer->place,
                    fmt::format("{} entry {} maps {} of {}, but Granularity is {}", pdo_label(pdo), finer->position,

@@ -14,7 +14,6 @@
 
 #include "device/cob_id_parameter.hpp"
 #include "device/index_range.hpp"
-#include "device/limits.hpp"
 #include "device/pdo/pdo_defaults.hpp"
 #include "network/cob_id_use.hpp"
 #include "network/communication_objects.hpp"
@@ -26,7 +25,6 @@
 namespace edsc {
 namespace {
 
-constexpr unsigned max_bits = 64;
 constexpr std::size_t max_entries = 8;  // of a new PDO, as in devices with 8 entries
 constexpr std::uint8_t max_sub_index = 254;
 constexpr std::uint32_t max_can_id = 0x6DF;       // the IDs above are restricted
@@ -67,7 +65,7 @@ std::vector<SignalGroup> group(const std::vector<Signal>& signals) {
     GroupsOfKind& kind = kinds[kind_of(signal)];
     std::size_t& at = kind.first_with_room[bits];
     const auto has_room = [&](const SignalGroup& one) {
-      return one.signals.size() < max_entries && one.bits + bits <= max_bits;
+      return one.signals.size() < max_entries && one.bits + bits <= classical_can.bits();
     };
     while (at < kind.groups.size() && !has_room(groups[kind.groups[at]])) ++at;
     if (at == kind.groups.size()) {
@@ -81,8 +79,8 @@ std::vector<SignalGroup> group(const std::vector<Signal>& signals) {
   return groups;
 }
 
-std::uint32_t mapping_value(std::uint16_t index, std::uint8_t sub_index, unsigned bits) {
-  return std::uint32_t{index} << 16 | std::uint32_t{sub_index} << 8 | bits;
+MappingValue mapping_value(std::uint16_t index, std::uint8_t sub_index, const Entry& entry) {
+  return {index, sub_index, entry.type->bits};
 }
 
 /// All CAN-IDs that a device has in a COB-ID that exists.
@@ -136,23 +134,23 @@ class SignalPlanner {
     }
   }
 
-  std::vector<std::uint32_t> sent_mapping(const SignalGroup& group) {
-    std::vector<std::uint32_t> mapping;
+  std::vector<MappingValue> sent_mapping(const SignalGroup& group) {
+    std::vector<MappingValue> mapping;
     for (const Signal* const signal : group.signals) mapping.push_back(mapped(signal->from, *signal, true));
     return mapping;
   }
 
-  std::vector<std::uint32_t> received_mapping(const SignalGroup& group, std::size_t receiver) {
-    std::vector<std::uint32_t> mapping;
+  std::vector<MappingValue> received_mapping(const SignalGroup& group, std::size_t receiver) {
+    std::vector<MappingValue> mapping;
     for (const Signal* const signal : group.signals) mapping.push_back(mapped(signal->to[receiver], *signal, false));
     return mapping;
   }
 
-  std::uint32_t mapped(const SignalEnd& end, const Signal& signal, bool is_sent) {
+  MappingValue mapped(const SignalEnd& end, const Signal& signal, bool is_sent) {
     const Entry& entry = *end.entry;
-    if (end.node->has_file()) return mapping_value(entry.index, entry.sub_index, entry.type->bits);
+    if (end.node->has_file()) return mapping_value(entry.index, entry.sub_index, entry);
     const MasterEntry& copy = master_entry(end, signal.description->position, is_sent);
-    return mapping_value(copy.index, copy.sub_index, entry.type->bits);
+    return mapping_value(copy.index, copy.sub_index, entry);
   }
 
   /// The copy of an entry in a master without a file. If its object has the most sub-indices already, reports an error.
@@ -178,14 +176,14 @@ class SignalPlanner {
   }
 
   /// A PDO of the node that has the mapping, or can get it.
-  std::optional<PlannedPdo> choose(const NetworkNode& node, PdoDirection direction, std::vector<std::uint32_t> mapping,
+  std::optional<PlannedPdo> choose(const NetworkNode& node, PdoDirection direction, std::vector<MappingValue> mapping,
                                    const Signal& first) {
     PlannedPdo planned{node.name, direction, 1, 0, 255, {}, std::move(mapping), first.description->position};
     if (!node.has_file()) {
       planned.number = ++master_pdos_[{&node, direction}];
-      if (planned.number <= max_pdos) return planned;
+      if (planned.number <= classical_can.pdos) return planned;
       diagnostics_.error("network-signal", planned.position,
-                         fmt::format("the master can have {} {}PDOs at most", max_pdos,
+                         fmt::format("the master can have {} {}PDOs at most", classical_can.pdos,
                                      direction == PdoDirection::receive ? "R" : "T"));
       return std::nullopt;
     }
@@ -220,10 +218,8 @@ class SignalPlanner {
   /// Names a PDO that maps these entries and others, and whose mapping is fixed or configured; empty if there is none.
   [[nodiscard]] std::string fixed_mapping(const NetworkNode& node, const PlannedPdo& planned) const {
     const Pdo* const pdo = find_pdo(node, planned.direction, [&](const Pdo& one) {
-      return std::ranges::all_of(planned.mapping, [&](std::uint32_t value) {
-        return std::ranges::any_of(one.entries, [value](const PdoEntry& entry) {
-          return mapping_value(entry.index, entry.sub_index, entry.bits) == value;
-        });
+      return std::ranges::all_of(planned.mapping, [&](const MappingValue& value) {
+        return std::ranges::any_of(one.entries, [&](const MappingValue& entry) { return entry == value; });
       });
     });
     if (pdo == nullptr) return {};
@@ -266,10 +262,9 @@ class SignalPlanner {
     return is_sent_by_another(cob_id, sender);
   }
 
-  static bool has_mapping(const Pdo& pdo, const std::vector<std::uint32_t>& mapping) {
-    return std::ranges::equal(pdo.entries, mapping, {}, [](const PdoEntry& entry) {
-      return mapping_value(entry.index, entry.sub_index, entry.bits);
-    });
+  static bool has_mapping(const Pdo& pdo, const std::vector<MappingValue>& mapping) {
+    return std::ranges::equal(pdo.entries, mapping,
+                              [](const MappingValue& a, const MappingValue& b) { return a == b; });
   }
 
   /// The PDO of a signal whose CAN-ID the others get: the sender or receiver with a stated one; else the sender; for a
@@ -361,10 +356,7 @@ void set_if_different(NetworkNode& node, std::uint16_t index, std::uint8_t sub_i
 }
 
 void apply(NetworkNode& node, const PlannedPdo& pdo, Diagnostics& diagnostics) {
-  const bool receives = pdo.direction == PdoDirection::receive;
-  const auto offset = static_cast<std::uint16_t>(pdo.number - 1);
-  const auto communication = static_cast<std::uint16_t>((receives ? 0x1400 : 0x1800) + offset);
-  const auto mapping = static_cast<std::uint16_t>((receives ? 0x1600 : 0x1A00) + offset);
+  const auto [communication, mapping] = parameters_of(pdo.direction, pdo.number);
   const auto set = [&](std::uint16_t index, std::size_t sub_index, std::uint64_t number) {
     set_if_different(node, index, static_cast<std::uint8_t>(sub_index), number, pdo.position, diagnostics);
   };
@@ -375,7 +367,7 @@ void apply(NetworkNode& node, const PlannedPdo& pdo, Diagnostics& diagnostics) {
     set(communication, event_timer_sub_index, *pdo.event_timer_ms);
   }
   set(mapping, 0, pdo.mapping.size());
-  for (std::size_t i = 0; i < pdo.mapping.size(); ++i) set(mapping, i + 1, pdo.mapping[i]);
+  for (std::size_t i = 0; i < pdo.mapping.size(); ++i) set(mapping, i + 1, pdo.mapping[i].value());
 }
 
 }  // namespace

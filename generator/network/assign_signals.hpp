@@ -28,9 +28,9 @@ struct PlannedPdo {
   std::uint32_t cob_id = 0;
   std::uint8_t transmission_type = 255;
   std::optional<std::uint16_t> event_timer_ms;
-  std::vector<std::uint32_t> mapping;  ///< values of the mapping parameter
-  Position position;                   ///< of its first signal
-  bool has_stated_can_id = false;      ///< by `set` or a DCF
+  std::vector<MappingValue> mapping;
+  Position position;               ///< of its first signal
+  bool has_stated_can_id = false;  ///< by `set` or a DCF
 };
 
 struct SignalPlan {

@@ -222,20 +222,21 @@ class MasterSheet {
       return pdo.node == master_.name && pdo.direction == direction;
     };
     const auto count = static_cast<std::uint16_t>(std::ranges::count_if(plan_.pdos, is_of_master));
-    for (std::uint16_t i = 0; i < count; ++i) {
+    for (std::uint16_t number = 1; number <= count; ++number) {
+      const PdoParameterIndices indices = parameters_of(direction, number);
       std::vector<SheetEntry> communication{{1, "COB-ID", unsigned32, "rw", "0x80000000"},
                                             {2, "Transmission type", unsigned8, "rw", "255"}};
       if (!receives) communication.push_back({3, "Inhibit time", unsigned16, "rw", "0"});
       communication.push_back({5, "Event timer", unsigned16, "rw", "0"});
-      sheet_.add_record(static_cast<std::uint16_t>((receives ? 0x1400 : 0x1800) + i),
-                        fmt::format("{}PDO {} communication parameter", receives ? "R" : "T", i + 1), communication);
+      sheet_.add_record(indices.communication,
+                        fmt::format("{}PDO {} communication parameter", receives ? "R" : "T", number), communication);
       std::vector<SheetEntry> mapping;
       for (unsigned entry = 1; entry <= mapping_entries; ++entry) {
         mapping.push_back(
             {static_cast<std::uint8_t>(entry), fmt::format("Mapped object {}", entry), unsigned32, "rw", "0"});
       }
-      sheet_.add_record(static_cast<std::uint16_t>((receives ? 0x1600 : 0x1A00) + i),
-                        fmt::format("{}PDO {} mapping parameter", receives ? "R" : "T", i + 1), mapping, "rw");
+      sheet_.add_record(indices.mapping, fmt::format("{}PDO {} mapping parameter", receives ? "R" : "T", number),
+                        mapping, "rw");
     }
   }
 

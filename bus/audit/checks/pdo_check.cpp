@@ -11,7 +11,8 @@ namespace edsc::audit {
 namespace {
 
 Subject subject_of(RuleId rule, std::uint8_t node_id, std::size_t number, bool transmit = true) {
-  return {rule, node_id, static_cast<std::uint16_t>((transmit ? 0x1800 : 0x1400) + number - 1)};
+  const PdoDirection direction = transmit ? PdoDirection::transmit : PdoDirection::receive;
+  return {rule, node_id, parameters_of(direction, static_cast<std::uint16_t>(number)).communication};
 }
 
 std::string after_syncs(std::uint32_t count) { return "after " + counted(count, "SYNC"); }
@@ -58,7 +59,7 @@ void PdoCheck::count_sync(const SeenMessage& seen, AuditState& audit) {
 void PdoCheck::judge_frame(const SeenMessage& seen, AuditState& audit) {
   const Message& message = seen.message;
   const bool transmit = message.service == Service::tpdo;
-  const unsigned bytes = message.pdo->multiplexed ? 8 : (message.pdo->bits + 7) / 8;
+  const std::size_t bytes = message.pdo->multiplexed ? classical_can.bytes : bytes_for(message.pdo->bits);
   if (transmit ? seen.frame.size != bytes : seen.frame.size < bytes) {
     const Subject subject = subject_of(RuleId::pdo_length, message.node_id, message.number, transmit);
     audit.findings.add(subject, seen.at, 0, [&] {

@@ -48,7 +48,7 @@ std::optional<ShortRpdo> find_rpdo(Dut& dut) {
     if (pdo->mapping == nullptr) continue;
     const CobId cob_id{static_cast<std::uint32_t>(dut.read_number(pdo->communication->index, 1))};
     const std::uint64_t mapped = dut.read_number(pdo->mapping->index);
-    if (!canopen::is_usable(cob_id.value()) || mapped == 0 || mapped > 64) continue;
+    if (!canopen::is_usable(cob_id.value()) || mapped == 0 || mapped > classical_can.objects) continue;
     const bool synchronous = dut.read_number(pdo->communication->index, 2) <= 240;
     if (!found || found->synchronous) found = ShortRpdo{cob_id.can_id(), synchronous};
   }

@@ -161,23 +161,20 @@ class CView {
       add_constant(constants, "COB_ID", entry->default_value, *entry->type);
     }
     pdos.push_back(json_object("pdo", pdo_label(pdo), "pdo_name", name, "pdo_macro", upper_case(name), "length",
-                               (pdo.bits() + 7) / 8, "pdo_constants", std::move(constants), "members",
-                               std::move(members)));
+                               pdo.bytes(), "pdo_constants", std::move(constants), "members", std::move(members)));
   }
 
   /// The objects of a PDO; dummy entries have no member.
   [[nodiscard]] ordered_json member_rows(const Pdo& pdo) const {
     IdentifierScope scope;
     ordered_json rows = ordered_json::array();
-    unsigned start = 0;
     for (const PdoEntry& mapped : pdo.entries) {
-      if (mapped.object != nullptr) rows.push_back(member_row(mapped, start, scope));
-      start += mapped.bits;
+      if (mapped.object != nullptr) rows.push_back(member_row(mapped, scope));
     }
     return rows;
   }
 
-  [[nodiscard]] ordered_json member_row(const PdoEntry& mapped, unsigned start, IdentifierScope& scope) const {
+  [[nodiscard]] ordered_json member_row(const PdoEntry& mapped, IdentifierScope& scope) const {
     const Entry& entry = *mapped.object;
     const std::string name = member_name(name_of(*device_.find(entry.index), entry));
     const DataTypeRow& type = *entry.type;
@@ -186,10 +183,10 @@ class CView {
     return json_object("member", scope.take(name, fmt::format("{}", mapped.position)), "member_type",
                        c_type.empty() ? "uint8_t" : c_type, "member_comment",
                        fmt::format("{} {}", entry_label(entry.index, entry.sub_index), cpp_comment(entry.name)),
-                       "start", start, "bits", mapped.bits, "first_byte", start / 8, "bytes", mapped.bits / 8,
-                       "is_boolean", type.kind == DataClass::boolean, "is_unsigned", is_unsigned, "is_signed",
-                       type.kind == DataClass::signed_integer, "is_real", type.kind == DataClass::real, "is_bytes",
-                       c_type.empty());
+                       "start", mapped.offset, "bits", mapped.bits, "first_byte", mapped.offset / 8, "bytes",
+                       mapped.bits / 8, "is_boolean", type.kind == DataClass::boolean, "is_unsigned", is_unsigned,
+                       "is_signed", type.kind == DataClass::signed_integer, "is_real", type.kind == DataClass::real,
+                       "is_bytes", c_type.empty());
   }
 
   const Device& device_;

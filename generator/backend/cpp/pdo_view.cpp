@@ -36,16 +36,14 @@ std::string entry_type(const NamedDevice& named, const PdoEntry& entry) {
 
 ordered_json entry_rows(const NamedDevice& named, const Pdo& pdo) {
   ordered_json rows = ordered_json::array();
-  unsigned at = 0;
   for (const PdoEntry& entry : pdo.entries) {
     const std::string name = entry.dummy != nullptr ? "(dummy)" : cpp_comment(entry.object->name);
     const auto* type = entry.dummy != nullptr ? entry.dummy : entry.object->type;
     rows.push_back(
         {{"object", entry_type(named, entry)},
          {"separator", rows.empty() ? "" : ", "},
-         {"bit_range", fmt::format("{:>2}..{:<2}", at, at + entry.bits - 1)},
+         {"bit_range", fmt::format("{:>2}..{:<2}", entry.offset, entry.end() - 1)},
          {"description", fmt::format("{}  {}  {}", entry_label(entry.index, entry.sub_index), type->name, name)}});
-    at += entry.bits;
   }
   return rows;
 }
@@ -94,7 +92,7 @@ void add_transmission(const Pdo& pdo, Provable& provable) {
 void add_granularity(const Device& device, const Pdo& pdo, Provable& provable) {
   const std::uint32_t granularity = device.information.capabilities.granularity.value_or(1);
   if (granularity <= 1) return;
-  if (std::ranges::any_of(pdo.entries, [&](const PdoEntry& entry) { return entry.bits % granularity != 0; })) {
+  if (std::ranges::any_of(pdo.entries, [&](const PdoEntry& entry) { return !entry.is_multiple_of(granularity); })) {
     return provable.left_out.push_back("Granularity");
   }
   provable.granularity = granularity;
@@ -161,14 +159,14 @@ ordered_json pdo_rows(const NamedDevice& named) {
   for (const Pdo& pdo : device.pdos) {
     if (pdo.mapping == nullptr) continue;
     const bool receive = is_receive(pdo);
-    const std::uint16_t offset = static_cast<std::uint16_t>(pdo.number - 1);
+    const PdoParameterIndices indices = parameters_of(pdo.direction, pdo.number);
     ordered_json row;
     row["label"] = pdo_label(pdo);
     row["type"] = type_name(pdo);
     row["number"] = pdo.number;
     row["template"] = receive ? "canopen::Rpdo" : "canopen::Tpdo";
-    row["communication"] = index_label(static_cast<std::uint16_t>((receive ? 0x1400 : 0x1800) + offset));
-    row["mapping"] = index_label(static_cast<std::uint16_t>((receive ? 0x1600 : 0x1A00) + offset));
+    row["communication"] = index_label(indices.communication);
+    row["mapping"] = index_label(indices.mapping);
     row["broken"] = is_left_out(pdo);
     row["bits"] = pdo.bits();
     row["entries"] = is_left_out(pdo) ? ordered_json::array() : entry_rows(named, pdo);

@@ -97,12 +97,9 @@ struct NodePdo {
 
 /// Whether the PDO maps an object to one of these bits.
 [[nodiscard]] bool uses_bits(const Pdo& pdo, unsigned first, unsigned bits) {
-  unsigned start = 0;
-  for (const PdoEntry& mapped : pdo.entries) {
-    if (mapped.object != nullptr && start < first + bits && first < start + mapped.bits) return true;
-    start += mapped.bits;
-  }
-  return false;
+  return std::ranges::any_of(pdo.entries, [&](const PdoEntry& mapped) {
+    return mapped.object != nullptr && mapped.offset < first + bits && first < mapped.end();
+  });
 }
 
 class DbcWriter {
@@ -198,8 +195,8 @@ class DbcWriter {
     const std::string suffix = fmt::format("_{}pdo_{}", one.transmits() ? 't' : 'r', pdo.number);
     const std::string long_name = device + suffix;
     const std::string name = message_names_.take(device.substr(0, max_dbc_name - suffix.size()) + suffix);
-    sections_.messages += fmt::format("\nBO_ {} {}: {} {}\n", id, name, (pdo.bits() + 7) / 8,
-                                      one.transmits() ? names_.at(one.node) : nobody);
+    sections_.messages +=
+        fmt::format("\nBO_ {} {}: {} {}\n", id, name, pdo.bytes(), one.transmits() ? names_.at(one.node) : nobody);
 
     const std::uint64_t type = communication_default(pdo, transmission_type_sub_index).value_or(0);
     sections_.comments += fmt::format("CM_ BO_ {} \"{}, transmission type {}\";\n", id, label(one), type);
@@ -211,10 +208,8 @@ class DbcWriter {
       sections_.attributes += fmt::format("BA_ \"GenMsgCycleTime\" BO_ {} {};\n", id, timer);
     }
     DbcNames signals;
-    unsigned start = 0;
     for (const PdoEntry& mapped : pdo.entries) {
-      if (mapped.object != nullptr) add_signal(id, one, mapped, start, signals);
-      start += mapped.bits;
+      if (mapped.object != nullptr) add_signal(id, one, mapped, signals);
     }
   }
 
@@ -233,7 +228,7 @@ class DbcWriter {
     return receivers.empty() ? nobody : receivers;
   }
 
-  void add_signal(std::uint32_t id, const NodePdo& message, const PdoEntry& mapped, unsigned start, DbcNames& names) {
+  void add_signal(std::uint32_t id, const NodePdo& message, const PdoEntry& mapped, DbcNames& names) {
     const Entry& entry = *mapped.object;
     const bool has_value = is_number(*entry.type);
     const std::string long_name = signal_name(*message.node, entry);
@@ -241,9 +236,9 @@ class DbcWriter {
     const double factor = has_value ? factor_of(entry) : 1;
     const Range range = has_value ? range_of(entry, factor) : Range{};
     const bool is_signed = entry.type->kind == canopen::DataClass::signed_integer;
-    sections_.messages +=
-        fmt::format(" SG_ {} : {}|{}@1{} ({},0) [{}|{}] {} {}\n", name, start, mapped.bits, is_signed ? '-' : '+',
-                    factor, range.min, range.max, dbc_string(entry.unit), receivers(message, start, mapped.bits));
+    sections_.messages += fmt::format(" SG_ {} : {}|{}@1{} ({},0) [{}|{}] {} {}\n", name, mapped.offset, mapped.bits,
+                                      is_signed ? '-' : '+', factor, range.min, range.max, dbc_string(entry.unit),
+                                      receivers(message, mapped.offset, mapped.bits));
     std::string comment = fmt::format("{} {}", entry_label(entry.index, entry.sub_index), entry.name);
     if (!has_value) comment += fmt::format(", {} as a number", entry.type->name);
     if (!entry.description.empty()) comment += ": " + entry.description;

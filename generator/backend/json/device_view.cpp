@@ -100,18 +100,16 @@ ordered_json pdo_view(const Pdo& pdo) {
   add_pdo_parameters(pdo, view);
   view["line"] = pdo.position.line;
   ordered_json entries = ordered_json::array();
-  unsigned offset = 0;
   for (const PdoEntry& entry : pdo.entries) {
     ordered_json row;
     row["index"] = entry.index;
     row["sub_index"] = entry.sub_index;
-    row["offset"] = offset;
+    row["offset"] = entry.offset;
     row["bits"] = entry.bits;
     row["name"] = entry.object != nullptr  ? entry.object->name
                   : entry.dummy != nullptr ? std::string{entry.dummy->name}
                                            : "";
     row["dummy"] = entry.dummy != nullptr;
-    offset += entry.bits;
     entries.push_back(std::move(row));
   }
   view["entries"] = std::move(entries);

@@ -8,7 +8,6 @@
 
 #include "device/cob_id_parameter.hpp"
 #include "device/complete_device.hpp"
-#include "device/limits.hpp"
 #include "device/resolve_information.hpp"
 
 namespace edsc {
@@ -21,13 +20,13 @@ constexpr std::uint32_t known_bits = 0x3F;
 
 struct Direction {
   std::string_view name;
-  std::uint16_t communication, mapping;
+  PdoDirection direction;
   Field DeviceInfo::*count;
 };
 
 constexpr Direction directions[] = {
-    {"RPDO", 0x1400, 0x1600, &DeviceInfo::nr_of_rx_pdo},
-    {"TPDO", 0x1800, 0x1A00, &DeviceInfo::nr_of_tx_pdo},
+    {"RPDO", PdoDirection::receive, &DeviceInfo::nr_of_rx_pdo},
+    {"TPDO", PdoDirection::transmit, &DeviceInfo::nr_of_tx_pdo},
 };
 
 struct CommunicationSub {
@@ -52,12 +51,13 @@ class CompactPdos {
   void add(const Direction& direction, std::uint32_t count) {
     const std::uint32_t described = count_described(direction);
     std::uint32_t missing = count > described ? count - described : 0;
-    for (std::uint32_t i = 0; i < max_pdos; ++i) {
-      const bool is_described = has(direction.communication + i) || has(direction.mapping + i);
+    for (std::uint16_t number = 1; number <= classical_can.pdos; ++number) {
+      const PdoParameterIndices indices = parameters_of(direction.direction, number);
+      const bool is_described = has_one_of(indices);
       if (!is_described && missing == 0) continue;
       if (!is_described) --missing;
-      if (!has(direction.communication + i)) added_.push_back(communication(direction, i));
-      if (!has(direction.mapping + i)) added_.push_back(mapping(direction, i));
+      if (!has(indices.communication)) added_.push_back(communication(direction, indices.communication, number));
+      if (!has(indices.mapping)) added_.push_back(mapping(direction, indices.mapping, number));
     }
   }
 
@@ -68,21 +68,23 @@ class CompactPdos {
   }
 
  private:
-  [[nodiscard]] bool has(std::uint32_t index) const {
-    return device_.find(static_cast<std::uint16_t>(index)) != nullptr;
+  [[nodiscard]] bool has(std::uint16_t index) const { return device_.find(index) != nullptr; }
+
+  [[nodiscard]] bool has_one_of(const PdoParameterIndices& indices) const {
+    return has(indices.communication) || has(indices.mapping);
   }
 
   [[nodiscard]] std::uint32_t count_described(const Direction& direction) const {
     std::uint32_t described = 0;
-    for (std::uint32_t i = 0; i < max_pdos; ++i) {
-      described += has(direction.communication + i) || has(direction.mapping + i) ? 1 : 0;
+    for (std::uint16_t number = 1; number <= classical_can.pdos; ++number) {
+      described += has_one_of(parameters_of(direction.direction, number)) ? 1 : 0;
     }
     return described;
   }
 
-  [[nodiscard]] Object record(std::uint32_t index, std::string name) const {
+  [[nodiscard]] Object record(std::uint16_t index, std::string name) const {
     Object object;
-    object.index = static_cast<std::uint16_t>(index);
+    object.index = index;
     object.type = ObjectType::record;
     object.name = std::move(name);
     object.position = position_;
@@ -102,9 +104,8 @@ class CompactPdos {
 
   [[nodiscard]] Value value(std::uint32_t bits) const { return {.bits = bits, .position = position_}; }
 
-  [[nodiscard]] Object communication(const Direction& direction, std::uint32_t i) const {
-    Object object =
-        record(direction.communication + i, fmt::format("{} communication parameter {}", direction.name, i + 1));
+  [[nodiscard]] Object communication(const Direction& direction, std::uint16_t index, std::uint16_t number) const {
+    Object object = record(index, fmt::format("{} communication parameter {}", direction.name, number));
     add_entry(object, 0, "Highest sub-index supported", DataType::unsigned8, Access::constant);
     std::uint8_t sub_index = 0;
     for (const CommunicationSub& row : communication_subs) {
@@ -122,11 +123,11 @@ class CompactPdos {
     return object;
   }
 
-  [[nodiscard]] Object mapping(const Direction& direction, std::uint32_t i) const {
-    Object object = record(direction.mapping + i, fmt::format("{} mapping parameter {}", direction.name, i + 1));
-    object.entries.reserve(max_mapped_objects + 1U);
+  [[nodiscard]] Object mapping(const Direction& direction, std::uint16_t index, std::uint16_t number) const {
+    Object object = record(index, fmt::format("{} mapping parameter {}", direction.name, number));
+    object.entries.reserve(classical_can.objects + 1U);
     add_entry(object, 0, "Number of mapped objects", DataType::unsigned8, Access::rw).default_value = value(0);
-    for (std::uint32_t sub_index = 1; sub_index <= max_mapped_objects; ++sub_index) {
+    for (std::uint32_t sub_index = 1; sub_index <= classical_can.objects; ++sub_index) {
       add_entry(object, sub_index, fmt::format("Mapped object {}", sub_index), DataType::unsigned32, Access::rw)
           .default_value = value(0);
     }
@@ -153,11 +154,11 @@ void add_compact_pdos(const DeviceInfo& info, Device& device, Diagnostics& diagn
     const bool receive = direction.count == &DeviceInfo::nr_of_rx_pdo;
     const Capabilities& capabilities = device.information.capabilities;
     const std::uint32_t count = (receive ? capabilities.nr_of_rx_pdo : capabilities.nr_of_tx_pdo).value_or(0);
-    if (count > max_pdos) {
+    if (count > classical_can.pdos) {
       diagnostics.warning("compact-pdo", (info.*direction.count).position,
-                          "a device can have at most 512 PDOs per direction");
+                          fmt::format("a device can have at most {} PDOs per direction", classical_can.pdos));
     }
-    compact.add(direction, std::min<std::uint32_t>(count, max_pdos));
+    compact.add(direction, std::min<std::uint32_t>(count, classical_can.pdos));
   }
   compact.finish();
 }

@@ -26,4 +26,10 @@ std::optional<std::uint32_t> mapped_string_capacity(const Entry& entry, const Op
   return static_cast<std::uint32_t>(entry.default_value->bytes.size());
 }
 
+MappableObject mappable_object(const Entry& entry, const Options& options) {
+  MappableObject object{entry.type, entry.mappable(), entry.pdo_mapping, {}};
+  if (entry.type->kind == canopen::DataClass::string) object.string_octets = mapped_string_capacity(entry, options);
+  return object;
+}
+
 }  // namespace edsc

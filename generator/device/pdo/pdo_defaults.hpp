@@ -6,6 +6,7 @@
 
 #include "device/device.hpp"
 #include "device/options/options.hpp"
+#include "pdo/mapping_fault.hpp"
 
 namespace edsc {
 
@@ -23,5 +24,8 @@ inline constexpr std::uint8_t event_timer_sub_index = 5;   ///< in ms
 /// Maximum bytes of a VISIBLE_STRING or OCTET_STRING in a PDO: its capacity in the options, else the length of its
 /// DEFTYPE or of its default value. Nothing if unknown.
 [[nodiscard]] std::optional<std::uint32_t> mapped_string_capacity(const Entry& entry, const Options& options);
+
+/// What a mapping needs to know of an entry.
+[[nodiscard]] MappableObject mappable_object(const Entry& entry, const Options& options);
 
 }  // namespace edsc

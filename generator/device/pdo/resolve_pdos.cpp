@@ -1,23 +1,9 @@
 #include "device/pdo/resolve_pdos.hpp"
 
 #include <algorithm>
-#include <canopen/pdo/pdo_mapping.hpp>
-
-#include "device/limits.hpp"
 
 namespace edsc {
 namespace {
-
-struct ParameterIndices {
-  PdoDirection direction;
-  std::uint16_t communication;
-  std::uint16_t mapping;
-};
-
-constexpr ParameterIndices parameter_indices[] = {
-    {PdoDirection::receive, 0x1400, 0x1600},
-    {PdoDirection::transmit, 0x1800, 0x1A00},
-};
 
 std::uint64_t default_of(const Entry* entry) {
   return entry != nullptr && entry->default_value ? entry->default_value->bits : 0;
@@ -27,20 +13,13 @@ std::uint64_t default_of(const Entry* entry) {
 std::vector<PdoEntry> default_mapping(const Device& device, const Object& mapping) {
   std::vector<PdoEntry> entries;
   const std::uint64_t count = default_of(mapping.find(0));
-  if (count >= canopen::source_multiplexed) return entries;
-  for (const Entry& parameter : mapping.entries) {
-    if (parameter.sub_index == 0 || parameter.sub_index > count) continue;
-    const auto value = static_cast<std::uint32_t>(default_of(&parameter));
-    if (value == 0) continue;
-    PdoEntry entry;
-    entry.position = parameter.sub_index;
-    entry.index = static_cast<std::uint16_t>(value >> 16);
-    entry.sub_index = static_cast<std::uint8_t>(value >> 8);
-    entry.bits = static_cast<std::uint8_t>(value);
-    entry.dummy = entry.index < 0x20 ? canopen::find_data_type(entry.index) : nullptr;
-    entry.object = device.find(entry.index, entry.sub_index);
-    entry.place = parameter.default_value ? parameter.default_value->position : parameter.position;
-    entries.push_back(entry);
+  if (is_multiplexed(count)) return entries;
+  const auto value_of = [&](std::uint8_t sub_index) {
+    return static_cast<std::uint32_t>(default_of(mapping.find(sub_index)));
+  };
+  for (const PlacedObject& mapped : read_mapping(static_cast<std::uint8_t>(count), value_of)) {
+    entries.push_back({mapped, device.find(mapped.index, mapped.sub_index), mapped.dummy_type(),
+                       default_place(*mapping.find(mapped.position))});
   }
   return entries;
 }
@@ -52,7 +31,7 @@ bool changes(const Entry& entry, const Options& options) {
 
 /// Whether the runtime can process a mapping: a count, followed by UNSIGNED32 entries.
 bool is_list_of_objects(const Object& mapping) {
-  if (mapping.entries.size() < 2 || mapping.entries.size() > max_mapped_objects + 1) return false;
+  if (mapping.entries.size() < 2 || mapping.entries.size() > classical_can.objects + 1U) return false;
   for (std::size_t i = 0; i < mapping.entries.size(); ++i) {
     const Entry& entry = mapping.entries[i];
     const auto type = i == 0 ? canopen::DataType::unsigned8 : canopen::DataType::unsigned32;
@@ -86,19 +65,20 @@ bool is_dynamic(const Pdo& pdo, const Options& options) {
 }  // namespace
 
 void resolve_pdos(Device& device, const Options& options) {
-  for (const ParameterIndices& indices : parameter_indices) {
-    for (std::uint16_t i = 0; i < max_pdos; ++i) {
-      const Object* communication = device.find(static_cast<std::uint16_t>(indices.communication + i));
-      const Object* mapping = device.find(static_cast<std::uint16_t>(indices.mapping + i));
+  for (const PdoDirection direction : {PdoDirection::receive, PdoDirection::transmit}) {
+    for (std::uint16_t number = 1; number <= classical_can.pdos; ++number) {
+      const PdoParameterIndices indices = parameters_of(direction, number);
+      const Object* communication = device.find(indices.communication);
+      const Object* mapping = device.find(indices.mapping);
       if (communication == nullptr && mapping == nullptr) continue;
       Pdo pdo;
-      pdo.direction = indices.direction;
-      pdo.number = static_cast<std::uint16_t>(i + 1);
+      pdo.direction = direction;
+      pdo.number = number;
       pdo.communication = communication;
       pdo.mapping = mapping;
       pdo.position = communication != nullptr ? communication->position : mapping->position;
       if (mapping != nullptr) pdo.entries = default_mapping(device, *mapping);
-      pdo.multiplexed = mapping != nullptr && default_of(mapping->find(0)) >= canopen::source_multiplexed;
+      pdo.multiplexed = mapping != nullptr && is_multiplexed(default_of(mapping->find(0)));
       pdo.dynamic = is_dynamic(pdo, options);
       device.pdos.push_back(std::move(pdo));
     }

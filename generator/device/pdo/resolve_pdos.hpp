@@ -1,8 +1,6 @@
 /// The default PDOs of a device (CiA 301, 7.5.2.35..38): compact form, mapping, validity.
 #pragma once
 
-#include <string_view>
-
 #include "device/device.hpp"
 #include "device/options/options.hpp"
 #include "eds/data_sheet.hpp"
@@ -20,8 +18,5 @@ void resolve_pdos(Device& device, const Options& options);
 /// Marks PDOs with an invalid mapping as broken and reports why: as an error, but as a warning if the PDO is disabled
 /// by default (bit 31 of its COB-ID). A BOOLEAN that is mapped as a byte is accepted with a warning.
 void mark_broken_pdos(Device& device, const Options& options, Diagnostics& diagnostics);
-
-/// Whether a diagnostic of this rule marks a PDO as broken.
-[[nodiscard]] bool is_broken_pdo_rule(std::string_view rule);
 
 }  // namespace edsc

@@ -12,23 +12,6 @@
 namespace edsc {
 namespace {
 
-/// An entry of a PDO, and its place in the frame.
-struct PlacedEntry {
-  const PdoEntry* entry = nullptr;
-  unsigned number = 1;
-  unsigned first_bit = 0;
-};
-
-std::vector<PlacedEntry> placed(const Pdo& pdo) {
-  std::vector<PlacedEntry> entries;
-  unsigned bit = 0;
-  for (const PdoEntry& entry : pdo.entries) {
-    entries.push_back({&entry, static_cast<unsigned>(entries.size() + 1), bit});
-    bit += entry.bits;
-  }
-  return entries;
-}
-
 std::string text(const PdoEntry& entry) {
   return entry.object != nullptr ? named(*entry.object) : entry_label(entry.index, entry.sub_index);
 }
@@ -37,7 +20,7 @@ std::string text(const PdoEntry& entry) {
 class PdoLink {
  public:
   PdoLink(const NetworkContext& context, const CobIdUse& sender, const CobIdUse& receiver)
-      : context_{context}, sender_{sender}, receiver_{receiver}, sent_{placed(*sender.pdo)} {}
+      : context_{context}, sender_{sender}, receiver_{receiver} {}
 
   void check() {
     const unsigned sent = sender_.pdo->bits();
@@ -47,8 +30,8 @@ class PdoLink {
           "network-pdo-length", place(*receiver_.pdo),
           fmt::format("{} expects {} bits, {} sends {}", named(receiver_), expected, named(sender_), sent), note());
     }
-    for (const PlacedEntry& entry : placed(*receiver_.pdo)) {
-      if (entry.entry->object != nullptr && entry.first_bit + entry.entry->bits <= sent) check(entry);
+    for (const PdoEntry& entry : receiver_.pdo->entries) {
+      if (entry.object != nullptr && entry.end() <= sent) check(entry);
     }
   }
 
@@ -59,46 +42,42 @@ class PdoLink {
 
   [[nodiscard]] std::vector<Note> note() const { return {{place(*sender_.pdo), named(sender_)}}; }
 
-  [[nodiscard]] std::string title(const PlacedEntry& entry) const {
-    return fmt::format("{} entry {}, {}", named(receiver_), entry.number, text(*entry.entry));
+  [[nodiscard]] std::string title(const PdoEntry& entry) const {
+    return fmt::format("{} entry {}, {}", named(receiver_), entry.position, text(entry));
   }
 
-  void check(const PlacedEntry& received) {
-    const auto same = std::ranges::find_if(sent_, [&](const PlacedEntry& one) {
-      return one.first_bit == received.first_bit && one.entry->bits == received.entry->bits;
-    });
-    const PdoEntry& entry = *received.entry;
-    if (same == sent_.end()) {
-      const unsigned last = received.first_bit + entry.bits - 1;
+  void check(const PdoEntry& entry) {
+    const std::vector<PdoEntry>& sent = sender_.pdo->entries;
+    const auto same = std::ranges::find_if(sent, [&](const PdoEntry& one) { return one.has_bits_of(entry); });
+    if (same == sent.end()) {
       context_.diagnostics.warning("network-pdo-layout", entry.place,
-                                   fmt::format("{}: bits {} to {} of {} are not one entry", title(received),
-                                               received.first_bit, last, named(sender_)),
+                                   fmt::format("{}: bits {} to {} of {} are not one entry", title(entry), entry.offset,
+                                               entry.end() - 1, named(sender_)),
                                    note());
       return;
     }
-    if (same->entry->object == nullptr) return;
-    const Entry& from = *same->entry->object;
+    if (same->object == nullptr) return;
+    const Entry& from = *same->object;
     const Entry& to = *entry.object;
     if (from.type != to.type) {
       context_.diagnostics.warning("network-pdo-type", entry.place,
-                                   fmt::format("{} is {}, but {} sends {} as {}", title(received), to.type->name,
+                                   fmt::format("{} is {}, but {} sends {} as {}", title(entry), to.type->name,
                                                named(sender_), named(from), from.type->name),
-                                   {{same->entry->place, named(sender_)}});
+                                   {{same->place, named(sender_)}});
     }
     const std::string sent_unit = physical_unit(from);
     const std::string unit = physical_unit(to);
     if (!from.unit.empty() && !to.unit.empty() && sent_unit != unit) {
-      context_.diagnostics.warning("network-pdo-unit", entry.place,
-                                   fmt::format("{} is in {}, but {} sends {} in {}", title(received), unit,
-                                               named(sender_), named(from), sent_unit),
-                                   {{same->entry->place, named(sender_)}});
+      context_.diagnostics.warning(
+          "network-pdo-unit", entry.place,
+          fmt::format("{} is in {}, but {} sends {} in {}", title(entry), unit, named(sender_), named(from), sent_unit),
+          {{same->place, named(sender_)}});
     }
   }
 
   const NetworkContext& context_;
   const CobIdUse& sender_;
   const CobIdUse& receiver_;
-  std::vector<PlacedEntry> sent_;
 };
 
 /// A master without a file may process PDOs that the network file does not list as signals.
@@ -152,7 +131,7 @@ void check_granularity(const NetworkContext& context, const CobIdUse& use) {
   const auto granularity = use.node->device().information.capabilities.granularity;
   if (!granularity || *granularity == 0) return;
   for (const PdoEntry& entry : use.pdo->entries) {
-    if (entry.place.file != context.network.source.get() || entry.bits % *granularity == 0) continue;
+    if (entry.place.file != context.network.source.get() || entry.is_multiple_of(*granularity)) continue;
     context.diagnostics.error("network-pdo-mapping", entry.place,
                               fmt::format("node {}: {} maps {} with {} bits, but the Granularity of the device is {}",
                                           use.node->name, use.what, text(entry), entry.bits, *granularity));

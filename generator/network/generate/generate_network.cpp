@@ -34,7 +34,7 @@ Dbc dbc_of(const Network& network) {
   std::vector<DbcNode> nodes;
   for (const NetworkNode& node : network.nodes) {
     const std::string name = to_snake_case(node.name);
-    nodes.push_back({name.empty() ? "node" : name, &node.device(), &node.named().identifiers()});
+    nodes.push_back({name.empty() ? "device" : name, &node.device(), &node.named().identifiers()});
   }
   return dbc_of(nodes);
 }

@@ -27,19 +27,15 @@ std::vector<PdoLink> pdo_links(const std::vector<CobIdUse>& uses) {
 
 std::vector<LinkedValue> linked_values(const PdoLink& link) {
   std::vector<LinkedValue> values;
-  unsigned taken_bit = 0;
   for (std::size_t taken = 0; taken < link.receiver->pdo->entries.size(); ++taken) {
     const PdoEntry& consumer = link.receiver->pdo->entries[taken];
-    unsigned sent_bit = 0;
     for (std::size_t sent = 0; sent < link.sender->pdo->entries.size(); ++sent) {
       const PdoEntry& producer = link.sender->pdo->entries[sent];
       const bool is_value = producer.object != nullptr && consumer.object != nullptr;
-      if (is_value && sent_bit == taken_bit && producer.bits == consumer.bits) {
-        values.push_back({sent, taken, sent_bit});
+      if (is_value && producer.has_bits_of(consumer)) {
+        values.push_back({sent, taken, producer.offset});
       }
-      sent_bit += producer.bits;
     }
-    taken_bit += consumer.bits;
   }
   return values;
 }

@@ -97,10 +97,8 @@ class ChangingPdoCollector {
   }
 
   void add_objects(Row& row) {
-    unsigned first_bit = 0;
     for (const PdoEntry& mapped : row.use->pdo->entries) {
-      if (mapped.object != nullptr && mapped.object->type != nullptr) add_object(row, *mapped.object, first_bit);
-      first_bit += mapped.bits;
+      if (mapped.object != nullptr && mapped.object->type != nullptr) add_object(row, *mapped.object, mapped.offset);
     }
   }
 
@@ -118,12 +116,8 @@ class ChangingPdoCollector {
   }
 
   static const Entry* entry_at(const Pdo& pdo, unsigned first_bit) {
-    unsigned bit = 0;
-    for (const PdoEntry& mapped : pdo.entries) {
-      if (bit == first_bit) return mapped.object;
-      bit += mapped.bits;
-    }
-    return nullptr;
+    const auto at = std::ranges::find(pdo.entries, first_bit, &PdoEntry::offset);
+    return at == pdo.entries.end() ? nullptr : at->object;
   }
 
   const NetworkNode& node_;

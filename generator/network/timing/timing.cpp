@@ -95,7 +95,7 @@ class MessageCollector {
 
   void add_pdo(const CobIdUse& use) {
     const auto type = communication_default(*use.pdo, transmission_type_sub_index).value_or(default_transmission_type);
-    const std::size_t size = use.pdo->multiplexed ? 8 : (use.pdo->bits() + 7) / 8;
+    const std::size_t size = use.pdo->multiplexed ? classical_can.bytes : use.pdo->bytes();
     switch (canopen::transmission_of(static_cast<std::uint32_t>(type))) {
       case canopen::Transmission::synchronous: return add_synchronous(use, size, std::max<std::uint64_t>(type, 1));
       case canopen::Transmission::event_driven: return add_event_driven(use, size);

@@ -3,7 +3,8 @@
 
     dbc_read_back_test.py SOURCE_DIR EDSC WORK_DIR
 
-Expected are the PDOs of the EDS files, which configparser reads. The parser is candied, which npm installs in WORK_DIR.
+Expected are the PDOs of the EDS files, which configparser reads, and the names of objects that are words of C++. The parser is
+candied, which npm installs in WORK_DIR.
 Exit code 77: skipped.
 """
 
@@ -24,6 +25,9 @@ SKIPPED = 77
 NODE_ID = 5
 EXTENDED, INVALID = 1 << 29, 1 << 31
 DUMMIES = range(1, 0x20)
+
+# Names of objects from 2000h on, and of their signals.
+WORDS = {"Switch": "switch", "Float": "float", "Class": "class", "int": "int", "Speed": "speed", "SPEED": "speed_2005"}
 
 
 def signal_of(sheet: DataSheet, word: int, start: int) -> dict:
@@ -56,6 +60,25 @@ def messages_of(sheet: DataSheet) -> dict[int, dict]:
     return messages
 
 
+def sheet_of_words() -> str:
+    """An EDS whose TPDO 1 maps the objects of WORDS."""
+    def section(name: str, **keys: object) -> str:
+        return f"[{name}]\n" + "".join(f"{key}={value}\n" for key, value in keys.items())
+
+    def record(index: str, values: list[tuple[str, str]]) -> str:
+        text = section(index, ParameterName="PDO parameter", ObjectType="0x9", SubNumber=len(values))
+        for sub, (data_type, value) in enumerate(values):
+            text += section(f"{index}sub{sub:X}", ParameterName=f"Entry {sub}", ObjectType="0x7", DataType=data_type,
+                            AccessType="ro", DefaultValue=value)
+        return text
+
+    text = "".join(section(f"{0x2000 + i:04X}", ParameterName=name, ObjectType="0x7", DataType="0x5", AccessType="ro", PDOMapping=1)
+                   for i, name in enumerate(WORDS))
+    mapped = [("0x7", f"0x{0x2000 + i:04X}0008") for i in range(len(WORDS))]
+    return (text + record("1800", [("0x5", "2"), ("0x7", "$NODEID+0x180"), ("0x5", "255")])
+            + record("1A00", [("0x5", str(len(WORDS))), *mapped]))
+
+
 def read_back(messages: list[dict]) -> dict[int, dict]:
     """The same, from the output of candied. Its description of a signal begins with the index."""
     found = {}
@@ -83,8 +106,16 @@ def main() -> int:
         for name, path in sheets.items():
             subprocess.run([edsc, "generate", path, "--options", path.with_suffix(".options.json"), "--node-id", str(NODE_ID),
                             "--dbc", f"{folder}/{name}.dbc"], check=True, stderr=subprocess.DEVNULL)
-        files = [f"{folder}/{name}.dbc" for name in sheets]
+        words = Path(folder, "words.eds")
+        words.write_text(sheet_of_words(), encoding="utf-8")
+        subprocess.run([edsc, "generate", words, "--node-id", str(NODE_ID), "--dbc", words.with_suffix(".dbc")], check=True,
+                       stderr=subprocess.DEVNULL)
+        files = [*(f"{folder}/{name}.dbc" for name in sheets), str(words.with_suffix(".dbc"))]
         output = subprocess.run(["node", work / "read_dbc.js", *files], check=True, capture_output=True, text=True).stdout
+        message, = json.loads(output)[files[-1]]
+        if list(message["signals"]) != list(WORDS.values()):
+            problems += 1
+            print(f"names of signals:\n  expected {list(WORDS.values())}\n  got      {list(message['signals'])}")
         for (name, path), file in zip(sheets.items(), files):
             expected, found = messages_of(DataSheet(path, NODE_ID)), read_back(json.loads(output)[file])
             count += len(expected)

@@ -13,10 +13,11 @@ namespace pdo_area {
 namespace {
 
 /// Expects a mapped object that exists and may be mapped. Fails because of the EDS if its default mapping is wrong.
-void expect_mapped_object(Dut& dut, const Pdo& pdo, std::uint16_t index, std::uint8_t position, const Mapped& mapped) {
+void expect_mapped_object(Dut& dut, const Pdo& pdo, std::uint16_t index, std::uint8_t position,
+                          const MappingValue& mapped) {
   const std::string where = label(index, position);
-  if (const auto fault = fault_of(dut, pdo.direction, mapped)) {
-    fail_value(dut, index, position, mapped.value(), fault->rule, where + " with " + fault->expected, fault->got);
+  if (const auto problem = problem_of(dut, pdo.direction, mapped)) {
+    fail_value(dut, index, position, mapped.value(), problem->rule, where + " with " + problem->expected, problem->got);
   }
   const Entry* const entry = dut.entry(mapped.index, mapped.sub_index);
   if (mapped.is_dummy() || !canopen::readable(entry->access)) return;
@@ -29,9 +30,9 @@ void expect_mapped_object(Dut& dut, const Pdo& pdo, std::uint16_t index, std::ui
 /// Sets the objects to distinct values, by a stimulus or, with the permission, by SDO.
 class DistinctValues {
  public:
-  DistinctValues(Dut& dut, const std::vector<Mapped>& mapping) : dut_{dut} {
+  DistinctValues(Dut& dut, const std::vector<MappingValue>& mapping) : dut_{dut} {
     std::uint64_t salt = 0;
-    for (const Mapped& mapped : mapping) {
+    for (const MappingValue& mapped : mapping) {
       if (mapped.index < 0x2000 || !dut.is_readable(mapped.index, mapped.sub_index)) continue;
       const Bytes present = dut.read(mapped.index, mapped.sub_index);
       const auto value = other_value(dut, mapped, number_of(present), ++salt);
@@ -52,7 +53,7 @@ class DistinctValues {
 
  private:
   Dut& dut_;
-  std::vector<std::pair<Mapped, Bytes>> set_;
+  std::vector<std::pair<MappingValue, Bytes>> set_;
 };
 
 /// Triggers the TPDO by its event timer or by SYNC; std::nullopt if it supports neither.
@@ -90,7 +91,7 @@ void expect_sent_as_mapped(Dut& dut, const Remapping& remapping) {
 
 /// A value that differs from the present one and that the device accepts by SDO: some objects, such as a mode of
 /// operation, do not accept every value within their limits. The present value if none is found.
-std::uint64_t value_taken(Dut& dut, const Mapped& mapped, std::uint64_t present, std::uint64_t salt) {
+std::uint64_t value_taken(Dut& dut, const MappingValue& mapped, std::uint64_t present, std::uint64_t salt) {
   constexpr std::uint64_t tries = 8;
   for (std::uint64_t i = 0; i != tries; ++i) {
     const auto value = other_value(dut, mapped, present, salt + i);
@@ -103,7 +104,7 @@ std::uint64_t value_taken(Dut& dut, const Mapped& mapped, std::uint64_t present,
 }
 
 /// Expects that the RPDO writes the newly mapped objects.
-void expect_received_as_mapped(Dut& dut, Remapping& remapping, const std::vector<Mapped>& mapping) {
+void expect_received_as_mapped(Dut& dut, Remapping& remapping, const std::vector<MappingValue>& mapping) {
   const std::uint16_t index = remapping.pdo().communication->index;
   const auto cob_id = static_cast<std::uint32_t>(dut.read_number(index, cob_id_parameter));
   if (dut.has(index, type_parameter) && dut.read_number(index, type_parameter) < 254) {
@@ -112,7 +113,7 @@ void expect_received_as_mapped(Dut& dut, Remapping& remapping, const std::vector
   }
   std::vector<std::uint64_t> values;
   std::uint64_t salt = 0;
-  for (const Mapped& mapped : mapping) {
+  for (const MappingValue& mapped : mapping) {
     if (mapped.index < 0x2000 || !dut.is_readable(mapped.index, mapped.sub_index)) return;
     if (!dut.is_writable(mapped.index, mapped.sub_index)) return;
     const std::uint64_t present = dut.read_number(mapped.index, mapped.sub_index);
@@ -121,7 +122,7 @@ void expect_received_as_mapped(Dut& dut, Remapping& remapping, const std::vector
   }
   const std::uint64_t data = pack(mapping, values);
   dut.enter(NmtState::operational);
-  dut.send(make_frame(cob_id, edsc::bytes_of(data, bytes_for(bits_of(mapping)))));
+  dut.send(make_frame(cob_id, edsc::bytes_of(data, bytes_for(total_bits(mapping)))));
   dut.pass_time(silence);
   for (std::size_t i = 0; i < mapping.size(); ++i) {
     dut.expect_equal(dut.read_number(mapping[i].index, mapping[i].sub_index), values[i],
@@ -135,7 +136,7 @@ void mapping_fits_dictionary(Dut& dut) {
   bool any = false;
   for (const PdoDirection direction : {PdoDirection::receive, PdoDirection::transmit}) {
     for (const Pdo* pdo : dut.pdos(direction)) {
-      const std::uint16_t index = mapping_of(pdo->communication->index);
+      const std::uint16_t index = mapping_parameter_of(pdo->communication->index);
       if (!dut.has(index)) continue;
       any = true;
       const auto mapping = read_mapping(dut, pdo->communication->index);
@@ -146,10 +147,11 @@ void mapping_fits_dictionary(Dut& dut) {
                    fmt::format("{} is at most {}", label(index, 0), highest), fmt::format("{}", mapping->size()));
       }
       std::uint8_t position = 0;
-      for (const Mapped& mapped : *mapping) expect_mapped_object(dut, *pdo, index, ++position, mapped);
-      if (const unsigned bits = bits_of(*mapping); bits > 64) {
+      for (const MappingValue& mapped : *mapping) expect_mapped_object(dut, *pdo, index, ++position, mapped);
+      if (const unsigned bits = total_bits(*mapping); bits > classical_can.bits()) {
         fail_value(dut, index, 0, pdo->bits() == bits ? mapping->size() : 0, "pdo-size",
-                   pdo_label(*pdo) + " with at most 64 bits", fmt::format("{} bits", bits));
+                   pdo_label(*pdo) + fmt::format(" with at most {} bits", classical_can.bits()),
+                   fmt::format("{} bits", bits));
       }
     }
   }
@@ -160,7 +162,7 @@ void takes_new_mapping(Dut& dut) {
   std::vector<Remapping> all = all_remappings(dut);
   bool any = false;
   for (Remapping& remapping : all) {
-    const std::vector<Mapped> mapping = new_mapping(dut, remapping);
+    const std::vector<MappingValue> mapping = new_mapping(dut, remapping);
     if (mapping.empty()) continue;
     any = true;
     remapping.remap(mapping);

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <canopen/od/access.hpp>
-#include <canopen/pdo/pdo_mapping.hpp>
+#include <limits>
+#include <utility>
 
 #include "conform/cases/shared/entry_values.hpp"
 #include "device/drive_modes.hpp"
+#include "device/pdo/pdo_defaults.hpp"
+#include "pdo/mapping_fault.hpp"
 
 namespace edsc::conform::pdo_area {
 namespace {
@@ -55,103 +58,96 @@ void fail_value(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint
   dut.fail(expected, got);
 }
 
-Mapped mapped_of(std::uint64_t value) {
-  return {static_cast<std::uint16_t>(value >> 16), static_cast<std::uint8_t>(value >> 8),
-          static_cast<std::uint8_t>(value)};
-}
-
-std::uint16_t mapping_of(std::uint16_t communication) { return static_cast<std::uint16_t>(communication + 0x200); }
-
-unsigned bits_of(const std::vector<Mapped>& mapping) {
-  unsigned bits = 0;
-  for (const Mapped& mapped : mapping) bits += mapped.bits;
-  return bits;
-}
-
-std::optional<std::vector<Mapped>> read_mapping(Dut& dut, std::uint16_t communication) {
-  const std::uint16_t index = mapping_of(communication);
-  std::vector<Mapped> mapping;
+std::optional<std::vector<MappingValue>> read_mapping(Dut& dut, std::uint16_t communication) {
+  const std::uint16_t index = mapping_parameter_of(communication);
+  std::vector<MappingValue> mapping;
   if (!dut.is_readable(index, 0)) return mapping;
   const std::uint64_t count = dut.read_number(index, 0);
-  if (count >= canopen::source_multiplexed) return std::nullopt;
+  if (is_multiplexed(count)) return std::nullopt;
   for (std::uint64_t i = 1; i <= count; ++i) {
     const auto sub_index = static_cast<std::uint8_t>(i);
-    mapping.push_back(dut.is_readable(index, sub_index) ? mapped_of(dut.read_number(index, sub_index)) : Mapped{});
+    const std::uint64_t value = dut.is_readable(index, sub_index) ? dut.read_number(index, sub_index) : 0;
+    mapping.push_back(MappingValue::of(static_cast<std::uint32_t>(value)));
   }
   return mapping;
 }
 
-bool may_carry(PdoDirection direction, const Entry& entry) {
-  const bool receives = direction == PdoDirection::receive;
-  return allows(entry.mappable(), receives ? canopen::Mappable::rpdo : canopen::Mappable::tpdo);
-}
+bool may_carry(PdoDirection direction, const Entry& entry) { return allows(entry.mappable(), mappable_in(direction)); }
 
-std::optional<MappingFault> fault_of(const Dut& dut, PdoDirection direction, const Mapped& mapped) {
+std::optional<MappingProblem> problem_of(const Dut& dut, PdoDirection direction, const MappingValue& mapped) {
   const bool receives = direction == PdoDirection::receive;
   const std::string got = fmt::format("{:08X}h", mapped.value());
-  if (mapped.value() == 0) return MappingFault{"pdo-mapping-gap", "a mapped object, as sub-index 0 counts it", got};
-  if (mapped.is_dummy()) {
-    const bool in_use = std::ranges::find(dut.sheet().dummies, mapped.index) != dut.sheet().dummies.end();
-    if (receives && in_use) return std::nullopt;
-    return MappingFault{"pdo-dummy", "an object, or in an RPDO a dummy of [DummyUsage]", got};
-  }
+  if (mapped.is_empty()) return MappingProblem{"pdo-mapping-gap", "a mapped object, as sub-index 0 counts it", got};
   const Entry* const entry = dut.entry(mapped.index, mapped.sub_index);
-  if (entry == nullptr) return MappingFault{"pdo-object", "an object of the EDS", got};
-  if (!may_carry(direction, *entry)) {
-    return MappingFault{entry->pdo_mapping ? "pdo-direction" : "pdo-mappable",
-                        receives ? "an object with PDOMapping=1 that is rw, rww or wo"
-                                 : "an object with PDOMapping=1 that is rw, rwr, ro or const",
-                        fmt::format("{}, which is {} with PDOMapping={}", got, canopen::row_of(entry->access).name,
-                                    entry->pdo_mapping ? 1 : 0)};
+  std::optional<MappableObject> object;
+  if (entry != nullptr) object = mappable_object(*entry, Options{});
+  // The options of the device, which can state a length, are not known.
+  if (object && !object->string_octets) object->string_octets = std::numeric_limits<std::uint32_t>::max();
+  const auto fault = fault_of(direction, mapped, object ? &*object : nullptr, dut.sheet().dummies);
+  if (!fault) return std::nullopt;
+  const auto problem = [&](std::string expected, std::string found) {
+    return MappingProblem{rule_of(*fault).id(), std::move(expected), std::move(found)};
+  };
+  switch (*fault) {
+    case MappingFault::dummy_in_tpdo:
+    case MappingFault::dummy_not_allowed: return problem("an object, or in an RPDO a dummy of [DummyUsage]", got);
+    case MappingFault::unknown_object: return problem("an object of the EDS", got);
+    case MappingFault::not_mappable:
+    case MappingFault::wrong_direction:
+      return problem(receives ? "an object with PDOMapping=1 that is rw, rww or wo"
+                              : "an object with PDOMapping=1 that is rw, rwr, ro or const",
+                     fmt::format("{}, which is {} with PDOMapping={}", got, canopen::row_of(entry->access).name,
+                                 entry->pdo_mapping ? 1 : 0));
+    case MappingFault::variable_length: return problem("an object of a data type with a fixed length", got);
+    case MappingFault::part_of_a_byte: return problem("a string of whole bytes", got);
+    default: break;
   }
-  const bool is_boolean_byte = entry->type->kind == DataClass::boolean && mapped.bits == 8;
-  if (entry->type->bits == 0 || entry->type->bits == mapped.bits || is_boolean_byte) return std::nullopt;
-  return MappingFault{
-      "pdo-length",
-      fmt::format("{} with the {} bits of its data type", label(mapped.index, mapped.sub_index), entry->type->bits),
-      got};
+  const canopen::DataTypeRow& type = entry != nullptr ? *entry->type : *mapped.dummy_type();
+  if (type.bits == 0) return problem("a string with at most its length in the EDS", got);
+  return problem(fmt::format("{} with the {} bits of its data type", label(mapped.index, mapped.sub_index), type.bits),
+                 got);
 }
 
-std::optional<std::string> reason_against(const Dut& dut, const Pdo& pdo, const std::vector<Mapped>& mapping) {
-  for (const Mapped& mapped : mapping) {
-    if (const auto fault = fault_of(dut, pdo.direction, mapped)) {
-      return fmt::format("{} maps {}, which the EDS does not allow", pdo_label(pdo), fault->got);
+std::optional<std::string> reason_against(const Dut& dut, const Pdo& pdo, const std::vector<MappingValue>& mapping) {
+  for (const MappingValue& mapped : mapping) {
+    if (const auto problem = problem_of(dut, pdo.direction, mapped)) {
+      return fmt::format("{} maps {}, which the EDS does not allow", pdo_label(pdo), problem->got);
     }
   }
-  if (bits_of(mapping) > 64) return pdo_label(pdo) + " maps more than 64 bits";
+  if (total_bits(mapping) > classical_can.bits()) {
+    return fmt::format("{} maps more than {} bits", pdo_label(pdo), classical_can.bits());
+  }
   return std::nullopt;
 }
 
-std::string objects_text(const std::vector<Mapped>& mapping) {
+std::string objects_text(const std::vector<MappingValue>& mapping) {
   std::string text;
-  for (const Mapped& mapped : mapping) {
+  for (const MappingValue& mapped : mapping) {
     if (!text.empty()) text += &mapped == &mapping.back() ? " and " : ", ";
     text += label(mapped.index, mapped.sub_index);
   }
   return text;
 }
 
-Image read_image(Dut& dut, const std::vector<Mapped>& mapping) {
+Image read_image(Dut& dut, const std::vector<MappingValue>& mapping) {
   Image image;
-  unsigned at = 0;
-  for (const Mapped& mapped : mapping) {
-    if (at < 64 && dut.is_readable(mapped.index, mapped.sub_index)) {
+  for (const PlacedObject& mapped : placed(mapping)) {
+    if (mapped.offset < classical_can.bits() && dut.is_readable(mapped.index, mapped.sub_index)) {
       const SdoOutcome outcome = dut.upload(mapped.index, mapped.sub_index);
       if (outcome.done()) {
-        image.bits |= (number_of(outcome.bytes) & low_bits(mapped.bits)) << at;
-        image.known |= low_bits(mapped.bits) << at;
+        image.bits |= (number_of(outcome.bytes) & low_bits(mapped.bits)) << mapped.offset;
+        image.known |= low_bits(mapped.bits) << mapped.offset;
       }
     }
-    at += mapped.bits;
   }
   return image;
 }
 
-std::uint64_t pack(const std::vector<Mapped>& mapping, std::span<const std::uint64_t> values) {
+std::uint64_t pack(const std::vector<MappingValue>& mapping, std::span<const std::uint64_t> values) {
   std::uint64_t bits = 0;
-  unsigned at = 0;
-  for (std::size_t i = 0; i < mapping.size() && at < 64; at += mapping[i++].bits) {
-    bits |= (values[i] & low_bits(mapping[i].bits)) << at;
+  for (const PlacedObject& mapped : placed(mapping)) {
+    if (mapped.offset >= classical_can.bits()) break;
+    bits |= (values[mapped.position - 1U] & low_bits(mapped.bits)) << mapped.offset;
   }
   return bits;
 }
@@ -166,7 +162,7 @@ std::uint64_t within_limits(const Dut& dut, std::uint16_t index, std::uint8_t su
   return (is_below ? range.low : range.low + range.span) & low_bits(entry->type->bits);
 }
 
-std::optional<std::uint64_t> other_value(const Dut& dut, const Mapped& mapped, std::uint64_t present,
+std::optional<std::uint64_t> other_value(const Dut& dut, const MappingValue& mapped, std::uint64_t present,
                                          std::uint64_t salt) {
   const Entry* const entry = dut.entry(mapped.index, mapped.sub_index);
   if (entry == nullptr || entry->type == nullptr || entry->type->bits != mapped.bits) return std::nullopt;

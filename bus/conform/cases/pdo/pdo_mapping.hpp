@@ -11,6 +11,7 @@
 
 #include "conform/case.hpp"
 #include "conform/dut/dut.hpp"
+#include "pdo/mapping.hpp"
 
 namespace edsc::conform::pdo_area {
 
@@ -30,39 +31,23 @@ inline constexpr std::uint8_t cob_id_parameter = 1, type_parameter = 2, inhibit_
 [[noreturn]] void fail_value(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value,
                              std::string_view rule, const std::string& expected, const std::string& got);
 
-/// An entry of a mapping parameter.
-struct Mapped {
-  std::uint16_t index = 0;
-  std::uint8_t sub_index = 0;
-  std::uint8_t bits = 0;
-
-  [[nodiscard]] std::uint32_t value() const {
-    return std::uint32_t{index} << 16 | std::uint32_t{sub_index} << 8 | bits;
-  }
-  [[nodiscard]] bool is_dummy() const { return index < 0x20; }
-  friend bool operator==(const Mapped&, const Mapped&) = default;
-};
-
-[[nodiscard]] Mapped mapped_of(std::uint64_t value);
-/// Returns 1600h for 1400h, and 1A00h for 1800h.
-[[nodiscard]] std::uint16_t mapping_of(std::uint16_t communication);
-[[nodiscard]] unsigned bits_of(const std::vector<Mapped>& mapping);
 /// Reads the present mapping; std::nullopt for an MPDO.
-[[nodiscard]] std::optional<std::vector<Mapped>> read_mapping(Dut& dut, std::uint16_t communication);
+[[nodiscard]] std::optional<std::vector<MappingValue>> read_mapping(Dut& dut, std::uint16_t communication);
 /// `2000h:00 and 2001h:00`
-[[nodiscard]] std::string objects_text(const std::vector<Mapped>& mapping);
+[[nodiscard]] std::string objects_text(const std::vector<MappingValue>& mapping);
 
 /// Why the EDS does not allow an entry of a mapping.
-struct MappingFault {
+struct MappingProblem {
   std::string_view rule;  ///< of `edsc check`
   std::string expected;
   std::string got;
 };
-[[nodiscard]] std::optional<MappingFault> fault_of(const Dut& dut, PdoDirection direction, const Mapped& mapped);
+[[nodiscard]] std::optional<MappingProblem> problem_of(const Dut& dut, PdoDirection direction,
+                                                       const MappingValue& mapped);
 /// Returns why a mapping is not valid: `TPDO 1 maps 6041h:00, ...`; std::nullopt if it is valid. An empty mapping is
 /// valid.
 [[nodiscard]] std::optional<std::string> reason_against(const Dut& dut, const Pdo& pdo,
-                                                        const std::vector<Mapped>& mapping);
+                                                        const std::vector<MappingValue>& mapping);
 /// Whether PDOMapping and AccessType of an entry allow a PDO of this direction to map it.
 [[nodiscard]] bool may_carry(PdoDirection direction, const Entry& entry);
 
@@ -71,15 +56,15 @@ struct Image {
   std::uint64_t bits = 0;
   std::uint64_t known = 0;
 };
-[[nodiscard]] Image read_image(Dut& dut, const std::vector<Mapped>& mapping);
+[[nodiscard]] Image read_image(Dut& dut, const std::vector<MappingValue>& mapping);
 
 /// Packs values into PDO data, the first object in the least significant bits (CiA 301, 7.5.2.36).
-[[nodiscard]] std::uint64_t pack(const std::vector<Mapped>& mapping, std::span<const std::uint64_t> values);
+[[nodiscard]] std::uint64_t pack(const std::vector<MappingValue>& mapping, std::span<const std::uint64_t> values);
 
 /// A value within the limits of an entry that differs from the present one; std::nullopt if none is known. Another
 /// `salt` gives another value.
-[[nodiscard]] std::optional<std::uint64_t> other_value(const Dut& dut, const Mapped& mapped, std::uint64_t present,
-                                                       std::uint64_t salt = 1);
+[[nodiscard]] std::optional<std::uint64_t> other_value(const Dut& dut, const MappingValue& mapped,
+                                                       std::uint64_t present, std::uint64_t salt = 1);
 
 /// Returns the value nearest to `value` within the limits of the EDS.
 [[nodiscard]] std::uint64_t within_limits(const Dut& dut, std::uint16_t index, std::uint8_t sub_index,

@@ -18,8 +18,8 @@ struct ParameterRange {
   std::uint16_t first;
   std::uint16_t count;
 };
-constexpr ParameterRange receive_range{PdoDirection::receive, 0x1400, 512};
-constexpr ParameterRange transmit_range{PdoDirection::transmit, 0x1800, 512};
+constexpr ParameterRange receive_range{PdoDirection::receive, 0x1400, classical_can.pdos};
+constexpr ParameterRange transmit_range{PdoDirection::transmit, 0x1800, classical_can.pdos};
 
 /// A valid PDO must have a CAN-ID that CiA 301, 7.3.5 does not restrict.
 void expect_legal_cob_id(Dut& dut, std::uint16_t index, std::uint32_t cob_id) {

@@ -32,7 +32,7 @@ void for_each_active(Dut& dut, Check check) {
   for (Remapping& remapping : all) {
     if (remapping.found_count() == 0 || !remapping.can_be_valid() || remapping.found_count() > remapping.capacity())
       continue;
-    const std::vector<Mapped> mapping = new_mapping(dut, remapping);
+    const std::vector<MappingValue> mapping = new_mapping(dut, remapping);
     if (mapping.empty()) continue;
     any = true;
     if (!remapping.is_valid()) remapping.enable();
@@ -44,11 +44,11 @@ void for_each_active(Dut& dut, Check check) {
 
 /// The fewest objects with more than 64 bits in total; repeats objects if there are not enough. Empty if the PDO cannot
 /// map that number.
-std::vector<Mapped> too_long_mapping(const Dut& dut, const Remapping& remapping) {
-  std::vector<Mapped> objects = mappable_objects(dut, remapping.pdo().direction);
-  std::ranges::stable_sort(objects, std::ranges::greater{}, &Mapped::bits);
-  std::vector<Mapped> mapping;
-  for (std::size_t i = 0; !objects.empty() && bits_of(mapping) <= 64; ++i) {
+std::vector<MappingValue> too_long_mapping(const Dut& dut, const Remapping& remapping) {
+  std::vector<MappingValue> objects = mappable_objects(dut, remapping.pdo().direction);
+  std::ranges::stable_sort(objects, std::ranges::greater{}, &MappingValue::bits);
+  std::vector<MappingValue> mapping;
+  for (std::size_t i = 0; !objects.empty() && total_bits(mapping) <= classical_can.bits(); ++i) {
     if (mapping.size() == remapping.capacity()) return {};
     mapping.push_back(objects[i % objects.size()]);
   }
@@ -56,28 +56,28 @@ std::vector<Mapped> too_long_mapping(const Dut& dut, const Remapping& remapping)
 }
 
 /// A random selection, different for each PDO and the same in each run with the same seed.
-std::vector<Mapped> some_of(Dut& dut, const std::vector<Mapped>& objects) {
+std::vector<MappingValue> some_of(Dut& dut, const std::vector<MappingValue>& objects) {
   constexpr std::size_t most = 4;
-  std::vector<Mapped> chosen;
+  std::vector<MappingValue> chosen;
   std::ranges::sample(objects, std::back_inserter(chosen), most, dut.random());
   return chosen;
 }
 
-void takes_objects(Dut& dut, PdoDirection direction, const std::vector<Mapped>& objects, const char* none) {
+void takes_objects(Dut& dut, PdoDirection direction, const std::vector<MappingValue>& objects, const char* none) {
   std::vector<Remapping> all = remappings(dut, {direction});
   if (objects.empty()) dut.not_applicable(none);
   for (Remapping& remapping : all) {
-    for (const Mapped& mapped : some_of(dut, objects)) remapping.remap({mapped});
+    for (const MappingValue& mapped : some_of(dut, objects)) remapping.remap({mapped});
     remapping.put_back();
   }
 }
 
 /// The device refuses the entry or, at the latest, the mapping as a whole.
-void refuses_objects(Dut& dut, PdoDirection direction, const std::vector<Mapped>& objects, const char* none) {
+void refuses_objects(Dut& dut, PdoDirection direction, const std::vector<MappingValue>& objects, const char* none) {
   std::vector<Remapping> all = remappings(dut, {direction});
   if (objects.empty()) dut.not_applicable(none);
   for (Remapping& remapping : all) {
-    for (const Mapped& mapped : some_of(dut, objects)) {
+    for (const MappingValue& mapped : some_of(dut, objects)) {
       remapping.begin();
       const SdoOutcome outcome = remapping.map(1, mapped);
       if (outcome.done()) {
@@ -92,14 +92,16 @@ void refuses_objects(Dut& dut, PdoDirection direction, const std::vector<Mapped>
   }
 }
 
-std::vector<Mapped> with_access(const Dut& dut, canopen::Access first, canopen::Access second) {
+std::vector<MappingValue> with_access(const Dut& dut, canopen::Access first, canopen::Access second) {
   return objects_where(
       dut, [=](const Entry& entry) { return entry.pdo_mapping && (entry.access == first || entry.access == second); });
 }
 
-std::vector<Mapped> outputs(const Dut& dut) { return with_access(dut, canopen::Access::rww, canopen::Access::wo); }
-std::vector<Mapped> inputs(const Dut& dut) { return with_access(dut, canopen::Access::rwr, canopen::Access::ro); }
-std::vector<Mapped> unmappable(const Dut& dut) {
+std::vector<MappingValue> outputs(const Dut& dut) {
+  return with_access(dut, canopen::Access::rww, canopen::Access::wo);
+}
+std::vector<MappingValue> inputs(const Dut& dut) { return with_access(dut, canopen::Access::rwr, canopen::Access::ro); }
+std::vector<MappingValue> unmappable(const Dut& dut) {
   return objects_where(dut, [](const Entry& entry) { return !entry.pdo_mapping; });
 }
 
@@ -110,7 +112,7 @@ constexpr const char* no_unmappable = "the EDS has no object with PDOMapping=0";
 // ---- without the procedure ----
 
 void refuses_entry_of_active_mapping(Dut& dut) {
-  for_each_active(dut, [&](Remapping& remapping, const std::vector<Mapped>& mapping) {
+  for_each_active(dut, [&](Remapping& remapping, const std::vector<MappingValue>& mapping) {
     const SdoOutcome outcome = remapping.map(1, mapping.front());
     dut.expect_abort(outcome, abort_rule::mapping_in_use,
                      remapping.mapping_text(1, mapping.front()) + " while the PDO is valid");
@@ -119,7 +121,7 @@ void refuses_entry_of_active_mapping(Dut& dut) {
 }
 
 void refuses_mapping_of_valid_pdo(Dut& dut) {
-  for_each_active(dut, [&](Remapping& remapping, const std::vector<Mapped>& mapping) {
+  for_each_active(dut, [&](Remapping& remapping, const std::vector<MappingValue>& mapping) {
     SdoOutcome outcome = remapping.set_count(0);
     std::string what = "0 written to " + remapping.entry_name(0);
     for (std::uint8_t i = 1; outcome.done() && i <= mapping.size(); ++i) {
@@ -152,7 +154,7 @@ void refuses_too_many_bits(Dut& dut) {
   std::string reason = "the EDS does not allow a mapping of more than 64 bits";
   bool any = false;
   for (Remapping& remapping : all_remappings(dut)) {
-    const std::vector<Mapped> mapping = too_long_mapping(dut, remapping);
+    const std::vector<MappingValue> mapping = too_long_mapping(dut, remapping);
     if (mapping.empty()) continue;
     remapping.begin();
     std::uint8_t count = 0;
@@ -169,7 +171,7 @@ void refuses_too_many_bits(Dut& dut) {
                  outcome_text(outcome));
       if (outcome.done()) outcome = remapping.set_count(count);
       dut.expect_abort(outcome, wrong_mapping,
-                       fmt::format("{} with {} bits", pdo_label(remapping.pdo()), bits_of(mapping)));
+                       fmt::format("{} with {} bits", pdo_label(remapping.pdo()), total_bits(mapping)));
       remapping.expect_unchanged(0, 0);
       any = true;
     }
@@ -192,7 +194,7 @@ void refuses_unmappable_in_tpdo(Dut& dut) {
 }
 
 void takes_dummy_in_rpdo(Dut& dut) {
-  std::vector<Mapped> dummies;
+  std::vector<MappingValue> dummies;
   const unsigned granularity = dut.sheet().information.capabilities.granularity.value_or(8);
   for (const std::uint16_t index : dut.sheet().dummies) {
     if (index >= std::size(canopen::dummy_bits)) continue;

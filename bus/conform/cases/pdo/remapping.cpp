@@ -15,14 +15,14 @@ bool is_read_and_written(const Dut& dut, std::uint16_t index, std::uint8_t sub_i
 /// The maximum number of mapped objects; 0 if the mapping cannot be changed.
 std::uint8_t capacity_of(const Dut& dut, const Pdo& pdo) {
   const std::uint16_t communication = pdo.communication->index;
-  const std::uint16_t mapping = mapping_of(communication);
+  const std::uint16_t mapping = mapping_parameter_of(communication);
   if (!is_read_and_written(dut, communication, cob_id_parameter) || !is_read_and_written(dut, mapping, 0)) return 0;
   std::uint8_t capacity = 0;
   while (capacity < canopen::source_multiplexed - 1 &&
          is_read_and_written(dut, mapping, static_cast<std::uint8_t>(capacity + 1))) {
     ++capacity;
   }
-  return std::min<std::uint8_t>(capacity, 64);
+  return std::min(capacity, classical_can.objects);
 }
 
 std::string_view name_of(PdoDirection direction) { return direction == PdoDirection::receive ? "RPDO" : "TPDO"; }
@@ -33,7 +33,8 @@ std::string_view name_of(PdoDirection direction) { return direction == PdoDirect
 std::uint8_t mapped_bits(const Dut& dut, const Entry& entry) {
   const unsigned bits = entry.type == nullptr ? 0 : entry.type->bits;
   const unsigned granularity = dut.sheet().information.capabilities.granularity.value_or(8);
-  return bits > 64 || (granularity != 0 && bits % granularity != 0) ? std::uint8_t{0} : static_cast<std::uint8_t>(bits);
+  return bits > classical_can.bits() || (granularity != 0 && bits % granularity != 0) ? std::uint8_t{0}
+                                                                                      : static_cast<std::uint8_t>(bits);
 }
 
 }  // namespace
@@ -42,23 +43,23 @@ Remapping::Remapping(Dut& dut, const Pdo& pdo, std::uint8_t capacity)
     : dut_{dut},
       pdo_{pdo},
       communication_{pdo.communication->index},
-      mapping_{mapping_of(communication_)},
+      mapping_{mapping_parameter_of(communication_)},
       capacity_{capacity},
       cob_id_{static_cast<std::uint32_t>(dut.read_number(communication_, cob_id_parameter))},
       count_{static_cast<std::uint8_t>(dut.read_number(mapping_, 0))} {
   for (std::uint8_t i = 1; i <= capacity; ++i) found_.push_back(dut.read_number(mapping_, i));
 }
 
-std::vector<Mapped> Remapping::found() const {
-  std::vector<Mapped> mapping;
+std::vector<MappingValue> Remapping::found() const {
+  std::vector<MappingValue> mapping;
   for (std::size_t i = 0; i < std::min<std::size_t>(count_, found_.size()); ++i)
-    mapping.push_back(mapped_of(found_[i]));
+    mapping.push_back(MappingValue::of(static_cast<std::uint32_t>(found_[i])));
   return mapping;
 }
-void Remapping::remap(const std::vector<Mapped>& mapping) {
+void Remapping::remap(const std::vector<MappingValue>& mapping) {
   begin();
   std::uint8_t position = 0;
-  for (const Mapped& mapped : mapping) {
+  for (const MappingValue& mapped : mapping) {
     ++position;
     dut_.expect_done(map(position, mapped), mapping_text(position, mapped));
   }
@@ -80,7 +81,7 @@ void Remapping::put_back() {
   dut_.write(communication_, cob_id_parameter, cob_id_);
 }
 
-std::string Remapping::mapping_text(std::uint8_t position, const Mapped& mapped) const {
+std::string Remapping::mapping_text(std::uint8_t position, const MappingValue& mapped) const {
   return fmt::format("{}: {} with {} bits written to {}", pdo_label(pdo_), label(mapped.index, mapped.sub_index),
                      mapped.bits, label(mapping_, position));
 }
@@ -116,8 +117,8 @@ std::vector<Remapping> all_remappings(Dut& dut) {
   return remappings(dut, {PdoDirection::receive, PdoDirection::transmit});
 }
 
-std::vector<Mapped> objects_where(const Dut& dut, const std::function<bool(const Entry&)>& condition) {
-  std::vector<Mapped> found;
+std::vector<MappingValue> objects_where(const Dut& dut, const std::function<bool(const Entry&)>& condition) {
+  std::vector<MappingValue> found;
   for (const Object& object : dut.sheet().objects) {
     for (const Entry& entry : object.entries) {
       const std::uint8_t bits = mapped_bits(dut, entry);
@@ -128,17 +129,17 @@ std::vector<Mapped> objects_where(const Dut& dut, const std::function<bool(const
   return found;
 }
 
-std::vector<Mapped> mappable_objects(const Dut& dut, PdoDirection direction) {
+std::vector<MappingValue> mappable_objects(const Dut& dut, PdoDirection direction) {
   return objects_where(dut, [direction](const Entry& entry) {
     return entry.access != canopen::Access::constant && may_carry(direction, entry);
   });
 }
 
-std::vector<Mapped> new_mapping(const Dut& dut, const Remapping& remapping) {
-  const std::vector<Mapped> present = remapping.found();
-  std::vector<Mapped> reversed{present.rbegin(), present.rend()};
+std::vector<MappingValue> new_mapping(const Dut& dut, const Remapping& remapping) {
+  const std::vector<MappingValue> present = remapping.found();
+  std::vector<MappingValue> reversed{present.rbegin(), present.rend()};
   if (reversed != present) return reversed;
-  for (const Mapped& mapped : mappable_objects(dut, remapping.pdo().direction)) {
+  for (const MappingValue& mapped : mappable_objects(dut, remapping.pdo().direction)) {
     if (std::ranges::find(present, mapped) == present.end()) return {mapped};
   }
   return reversed;

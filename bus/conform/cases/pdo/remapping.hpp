@@ -25,14 +25,14 @@ class Remapping {
   [[nodiscard]] bool can_be_valid() const {
     return canopen::may_be_written(canopen::CobId{cob_id_ & ~canopen::CobId::invalid_bit}, true, true);
   }
-  [[nodiscard]] std::vector<Mapped> found() const;
+  [[nodiscard]] std::vector<MappingValue> found() const;
   [[nodiscard]] std::string entry_name(std::uint8_t position) const { return label(mapping_, position); }
 
   // ---- the five steps ----
 
   void disable() { dut_.write(communication_, cob_id_parameter, cob_id_ | canopen::CobId::invalid_bit); }
   void clear() { dut_.write(mapping_, 0, 0); }
-  [[nodiscard]] SdoOutcome map(std::uint8_t position, const Mapped& mapped) {
+  [[nodiscard]] SdoOutcome map(std::uint8_t position, const MappingValue& mapped) {
     return dut_.download(mapping_, position, mapped.value());
   }
   [[nodiscard]] SdoOutcome set_count(std::uint8_t count) { return dut_.download(mapping_, 0, count); }
@@ -44,10 +44,10 @@ class Remapping {
   }
 
   /// Steps 1 to 4. The device must accept them, and reads must return the new mapping.
-  void remap(const std::vector<Mapped>& mapping);
+  void remap(const std::vector<MappingValue>& mapping);
   void put_back();
 
-  [[nodiscard]] std::string mapping_text(std::uint8_t position, const Mapped& mapped) const;
+  [[nodiscard]] std::string mapping_text(std::uint8_t position, const MappingValue& mapped) const;
   void expect_unchanged(std::uint8_t sub_index, std::uint64_t value);
 
  private:
@@ -65,12 +65,13 @@ class Remapping {
 [[nodiscard]] std::vector<Remapping> all_remappings(Dut& dut);
 
 /// The entries of the EDS that satisfy a condition and have a length that the device can map.
-[[nodiscard]] std::vector<Mapped> objects_where(const Dut& dut, const std::function<bool(const Entry&)>& condition);
+[[nodiscard]] std::vector<MappingValue> objects_where(const Dut& dut,
+                                                      const std::function<bool(const Entry&)>& condition);
 /// The objects that a PDO of this direction can map, except constants.
-[[nodiscard]] std::vector<Mapped> mappable_objects(const Dut& dut, PdoDirection direction);
+[[nodiscard]] std::vector<MappingValue> mappable_objects(const Dut& dut, PdoDirection direction);
 
 /// A mapping that differs from the present one, of objects that the EDS allows: the present ones in reverse order, or
 /// one that is not yet mapped.
-[[nodiscard]] std::vector<Mapped> new_mapping(const Dut& dut, const Remapping& remapping);
+[[nodiscard]] std::vector<MappingValue> new_mapping(const Dut& dut, const Remapping& remapping);
 
 }  // namespace edsc::conform::pdo_area

@@ -181,9 +181,10 @@ std::string frames_text(const std::vector<SeenFrame>& frames) {
 }
 
 void expect_data(Dut& dut, const Tpdo& tpdo, const SeenFrame& seen, const Image& image) {
-  dut.expect(seen.frame.size == tpdo.size(),
-             fmt::format("{} with {} data bytes for {} mapped bits", tpdo.name(), tpdo.size(), bits_of(tpdo.mapping)),
-             frame_text(seen.frame));
+  dut.expect(
+      seen.frame.size == tpdo.size(),
+      fmt::format("{} with {} data bytes for {} mapped bits", tpdo.name(), tpdo.size(), total_bits(tpdo.mapping)),
+      frame_text(seen.frame));
   const std::uint64_t data = number_of(data_of(seen.frame));
   if (((data ^ image.bits) & image.known) == 0) return;
   canopen::Frame expected = seen.frame;

@@ -28,11 +28,11 @@ struct Tpdo {
   std::uint16_t index = 0;  ///< 1800h..
   std::uint32_t found_cob_id = 0;
   std::uint32_t cob_id = 0;  ///< without bit 31
-  std::vector<Mapped> mapping;
+  std::vector<MappingValue> mapping;
   std::map<std::uint8_t, std::uint64_t> found;  ///< sub-indices 2 and above of the communication parameter
 
   [[nodiscard]] bool was_valid() const { return canopen::CobId{found_cob_id}.valid(); }
-  [[nodiscard]] std::uint8_t size() const { return static_cast<std::uint8_t>(bytes_for(bits_of(mapping))); }
+  [[nodiscard]] std::uint8_t size() const { return static_cast<std::uint8_t>(bytes_for(total_bits(mapping))); }
   [[nodiscard]] Dut::Match frames() const { return Dut::with_cob_id(cob_id); }
   [[nodiscard]] std::string name() const;  ///< `TPDO 1 (1800h, CAN-ID 181h)`
 };

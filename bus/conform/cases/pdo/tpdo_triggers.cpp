@@ -61,8 +61,8 @@ std::vector<SeenFrame> SyncSource::send_and_collect(const Dut::Match& match) {
   return dut_.received_since(since, match);
 }
 
-Event::Event(Dut& dut, const std::vector<Mapped>& mapping) : stimuli_{dut.stimuli()} {
-  for (const Mapped& mapped : mapping) {
+Event::Event(Dut& dut, const std::vector<MappingValue>& mapping) : stimuli_{dut.stimuli()} {
+  for (const MappingValue& mapped : mapping) {
     if (mapped.index < 0x2000 || !dut.is_readable(mapped.index, mapped.sub_index)) continue;
     const SdoOutcome outcome = dut.upload(mapped.index, mapped.sub_index);
     if (!outcome.done()) continue;

@@ -44,7 +44,7 @@ class SyncSource {
 /// state in which the device answers SDO requests.
 class Event {
  public:
-  Event(Dut& dut, const std::vector<Mapped>& mapping);
+  Event(Dut& dut, const std::vector<MappingValue>& mapping);
   Event(const Event&) = delete;
   Event& operator=(const Event&) = delete;
   ~Event();
@@ -58,7 +58,7 @@ class Event {
 
  private:
   struct Candidate {
-    Mapped mapped;
+    MappingValue mapped;
     Bytes present, changed;
   };
 

@@ -35,8 +35,8 @@ bool anything(const Frame&) { return true; }
 /// Whether the first entries of a mapping parameter map objects of the EDS.
 bool maps_objects(Dut& dut, std::uint16_t index, std::uint8_t count) {
   for (std::uint8_t i = 1; i <= count; ++i) {
-    const std::uint64_t mapped = dut.read_number(index, i);
-    if (!dut.has(static_cast<std::uint16_t>(mapped >> 16), static_cast<std::uint8_t>(mapped >> 8))) return false;
+    const auto mapped = MappingValue::of(static_cast<std::uint32_t>(dut.read_number(index, i)));
+    if (!dut.has(mapped.index, mapped.sub_index)) return false;
   }
   return true;
 }
@@ -132,7 +132,7 @@ std::optional<std::uint32_t> set_up_tpdo(Dut& dut, std::uint8_t transmission_typ
     if (!dut.has(index, parameter::transmission_type)) continue;
     const CobId cob_id{static_cast<std::uint32_t>(dut.read_number(index, parameter::cob_id))};
     const std::uint64_t mapped = dut.read_number(pdo->mapping->index);
-    if (!canopen::is_usable(cob_id.value()) || mapped == 0 || mapped > 64) continue;
+    if (!canopen::is_usable(cob_id.value()) || mapped == 0 || mapped > classical_can.objects) continue;
     if (!maps_objects(dut, pdo->mapping->index, static_cast<std::uint8_t>(mapped))) continue;
     if (shares_can_id(dut, *pdo, cob_id)) continue;
 
