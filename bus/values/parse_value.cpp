@@ -179,12 +179,8 @@ ParsedValue parse_string(const DataTypeRow& type, std::string_view text) {
   const std::string plain = unquoted(text);
   if (type.type == DataType::visible_string) return {{plain.begin(), plain.end()}, ""};
   if (!is_utf8(plain)) return problem("a UNICODE_STRING must be given in UTF-8");
-  ParsedValue result;
-  for (const char16_t unit : to_utf16(plain)) {
-    result.bytes.push_back(static_cast<std::uint8_t>(unit & 0xFF));
-    result.bytes.push_back(static_cast<std::uint8_t>(unit >> 8));
-  }
-  return result;
+  const std::string units = to_utf16_bytes(plain);
+  return {{units.begin(), units.end()}, ""};
 }
 
 /// Why a value is rejected; empty if it is valid. A limit with an unknown node-ID is not checked.

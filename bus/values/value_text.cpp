@@ -48,26 +48,7 @@ void append_time(std::string& text, DataType type, std::uint64_t number) {
   append_clock(text, milliseconds % milliseconds_per_day);
 }
 
-/// UTF-16, low byte first; half a surrogate pair and a last odd byte become U+FFFD.
-std::string utf8_of(Bytes bytes) {
-  std::string text;
-  const auto unit = [&](std::size_t at) { return static_cast<char32_t>(bytes[at] | bytes[at + 1] << 8); };
-  std::size_t at = 0;
-  while (at + 1 < bytes.size()) {
-    char32_t c = unit(at);
-    at += 2;
-    const bool high = c >= 0xD800 && c < 0xDC00;
-    if (high && at + 1 < bytes.size() && unit(at) >= 0xDC00 && unit(at) < 0xE000) {
-      c = 0x10000 + ((c - 0xD800) << 10) + (unit(at) - 0xDC00);
-      at += 2;
-    } else if (c >= 0xD800 && c < 0xE000) {
-      c = replacement_character;
-    }
-    append_utf8(text, c);
-  }
-  if (at < bytes.size()) append_utf8(text, replacement_character);
-  return text;
-}
+std::string_view text_of(Bytes bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
 std::string_view without_trailing_zeros(std::string_view text) {
   while (text.ends_with('\0')) text.remove_suffix(1);
@@ -76,8 +57,10 @@ std::string_view without_trailing_zeros(std::string_view text) {
 
 void append_string(std::string& text, DataType type, Bytes bytes) {
   if (type == DataType::octet_string) return append_hex_bytes(text, bytes);
-  if (type == DataType::unicode_string) return append_quoted(text, without_trailing_zeros(utf8_of(bytes)));
-  append_quoted(text, without_trailing_zeros({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
+  if (type == DataType::unicode_string) {
+    return append_quoted(text, without_trailing_zeros(from_utf16_bytes(text_of(bytes), ByteOrder::low_first)));
+  }
+  append_quoted(text, without_trailing_zeros(text_of(bytes)));
 }
 
 void append_domain(std::string& text, Bytes bytes) {

@@ -12,6 +12,7 @@
 #include "text/ascii.hpp"
 #include "text/number_text.hpp"
 #include "text/snake_case.hpp"
+#include "text/suggestion.hpp"
 
 namespace edsc {
 namespace {
@@ -69,21 +70,6 @@ std::string entry_title(const Object& object, const Entry& entry, const Identifi
 
 // Suggestions
 
-/// The number of letters to insert, delete or change, at most `most` + 1.
-std::size_t distance(std::string_view a, std::string_view b, std::size_t most) {
-  if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > most) return most + 1;
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, changed}));
-    }
-  }
-  return std::min(row[b.size()], most + 1);
-}
-
 /// Suggestions for a name: the fewest different letters first, then names that contain it.
 class Suggestions {
  public:
@@ -92,7 +78,7 @@ class Suggestions {
 
   void consider(std::string_view identifier, std::string label) {
     if (wanted_.empty() || identifier.size() > max_name_length) return;
-    std::size_t cost = distance(wanted_, identifier, most_);
+    std::size_t cost = edit_distance(wanted_, identifier, most_);
     const bool inside = wanted_.size() >= 3 && identifier.find(wanted_) != std::string_view::npos;
     if (cost > most_ && !inside) return;
     if (cost > most_) cost = most_ + identifier.size();

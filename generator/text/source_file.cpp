@@ -22,27 +22,8 @@ constexpr std::string_view utf16_be_mark = "\xFE\xFF";
 
 constexpr std::string_view too_large = "larger than 1 GiB";
 
-/// A surrogate without its partner, and an odd byte at the end, become U+FFFD.
-std::string from_utf16(std::string_view bytes, Encoding encoding) {
-  const std::size_t high = encoding == Encoding::utf16_be ? 0 : 1;  // position of the high byte in a pair
-  const auto byte = [&](std::size_t at) { return static_cast<char32_t>(static_cast<unsigned char>(bytes[at])); };
-  const auto unit = [&](std::size_t at) {
-    return at + 1 < bytes.size() ? byte(at + high) << 8U | byte(at + 1 - high) : char32_t{0};
-  };
-  std::string text;
-  text.reserve(bytes.size() / 2 + bytes.size() / 16);
-  for (std::size_t at = 0; at + 1 < bytes.size(); at += 2) {
-    char32_t code_point = unit(at);
-    if ((code_point & 0xFC00) == 0xD800 && (unit(at + 2) & 0xFC00) == 0xDC00) {
-      code_point = 0x10000 + ((code_point & 0x3FF) << 10U) + (unit(at + 2) & 0x3FF);
-      at += 2;
-    } else if ((code_point & 0xF800) == 0xD800) {
-      code_point = replacement_character;
-    }
-    append_utf8(text, code_point);
-  }
-  if (bytes.size() % 2 != 0) append_utf8(text, replacement_character);
-  return text;
+ByteOrder order_of(Encoding encoding) {
+  return encoding == Encoding::utf16_be ? ByteOrder::high_first : ByteOrder::low_first;
 }
 
 /// Detects UTF-16 without a byte order mark: at the start of the text, exactly every second byte is NUL.
@@ -119,10 +100,10 @@ void SourceFile::decode(std::string bytes) {
   const std::string_view view = bytes;
   if (view.starts_with(utf16_le_mark) || view.starts_with(utf16_be_mark)) {
     encoding_ = view.starts_with(utf16_le_mark) ? Encoding::utf16_le : Encoding::utf16_be;
-    text_ = from_utf16(view.substr(2), encoding_);
+    text_ = from_utf16_bytes(view.substr(2), order_of(encoding_));
   } else if (has_nul_as_every_second_byte(view, 1) || has_nul_as_every_second_byte(view, 0)) {
     encoding_ = view[1] == '\0' ? Encoding::utf16_le : Encoding::utf16_be;
-    text_ = from_utf16(view, encoding_);
+    text_ = from_utf16_bytes(view, order_of(encoding_));
   } else if (view.starts_with(utf8_mark) && is_utf8(view)) {
     encoding_ = Encoding::utf8;
     text_ = bytes.substr(utf8_mark.size());

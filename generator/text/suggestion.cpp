@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cstddef>
 #include <tuple>
 #include <utility>
 
@@ -20,9 +18,12 @@ std::size_t max_distance(std::size_t length) {
   return length <= 4 ? 1 : 2;
 }
 
-/// Optimal string alignment; both texts have at most `max_length` characters.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::array<std::size_t, max_length + 1> before{}, last{}, row{};
+}  // namespace
+
+/// Optimal string alignment.
+std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most) {
+  if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > most) return most + 1;
+  std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
     row[0] = i;
@@ -33,22 +34,19 @@ std::size_t distance(std::string_view a, std::string_view b) {
           i > 1 && j > 1 && to_lower(a[i - 1]) == to_lower(b[j - 2]) && to_lower(a[i - 2]) == to_lower(b[j - 1]);
       if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
     }
-    before = last;
-    last = row;
+    before.swap(last);
+    last.swap(row);
   }
-  return last[b.size()];
+  return std::min(last[b.size()], most + 1);
 }
-
-}  // namespace
 
 std::string_view most_similar(std::string_view word, std::span<const std::string_view> candidates) {
   const std::size_t limit = max_distance(word.size());
   std::string_view best;
   std::size_t best_distance = limit + 1;
   for (const std::string_view candidate : candidates) {
-    const std::size_t difference = std::max(word.size(), candidate.size()) - std::min(word.size(), candidate.size());
-    if (difference >= best_distance || word.size() > max_length || candidate.size() > max_length) continue;
-    const std::size_t found = distance(word, candidate);
+    if (best_distance == 0 || word.size() > max_length || candidate.size() > max_length) continue;
+    const std::size_t found = edit_distance(word, candidate, best_distance - 1);
     if (found < best_distance) std::tie(best, best_distance) = std::pair{candidate, found};
   }
   return best;

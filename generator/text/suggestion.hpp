@@ -1,12 +1,17 @@
 /// Suggestions for an unknown word.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace edsc {
+
+/// The number of characters to add, remove, replace or swap with the next one that make `a` to `b`, ignoring letter
+/// case; at most `most` + 1.
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t most);
 
 /// Returns the candidate that differs from `word` by the fewest characters (added, missing, replaced, or two swapped),
 /// ignoring letter case; the first of several. Empty if none is similar: words of up to four characters may have one

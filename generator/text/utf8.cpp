@@ -114,6 +114,37 @@ std::u16string to_utf16(std::string_view text) {
   return out;
 }
 
+std::string to_utf16_bytes(std::string_view text) {
+  std::string bytes;
+  for (const char16_t unit : to_utf16(text)) {
+    bytes += static_cast<char>(unit & 0xFF);
+    bytes += static_cast<char>(unit >> 8);
+  }
+  return bytes;
+}
+
+std::string from_utf16_bytes(std::string_view bytes, ByteOrder order) {
+  const std::size_t high = order == ByteOrder::high_first ? 0 : 1;  // position of the high byte in a pair
+  const auto byte = [&](std::size_t at) { return static_cast<char32_t>(static_cast<unsigned char>(bytes[at])); };
+  const auto unit = [&](std::size_t at) {
+    return at + 1 < bytes.size() ? byte(at + high) << 8U | byte(at + 1 - high) : char32_t{0};
+  };
+  std::string text;
+  text.reserve(bytes.size() / 2 + bytes.size() / 16);
+  for (std::size_t at = 0; at + 1 < bytes.size(); at += 2) {
+    char32_t code_point = unit(at);
+    if ((code_point & 0xFC00) == 0xD800 && (unit(at + 2) & 0xFC00) == 0xDC00) {
+      code_point = 0x10000 + ((code_point & 0x3FF) << 10U) + (unit(at + 2) & 0x3FF);
+      at += 2;
+    } else if ((code_point & 0xF800) == 0xD800) {
+      code_point = replacement_character;
+    }
+    append_utf8(text, code_point);
+  }
+  if (bytes.size() % 2 != 0) append_utf8(text, replacement_character);
+  return text;
+}
+
 std::size_t count_code_points(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return !is_utf8_continuation(c); }));

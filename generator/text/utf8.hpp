@@ -1,7 +1,8 @@
-/// UTF-8, the encoding of all texts in the generator.
+/// UTF-8, the encoding of all texts in the generator, and its conversion from and to UTF-16.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -35,6 +36,12 @@ void for_each_code_point(std::string_view text, Use use) {
 
 /// Code points beyond FFFFh as two surrogates.
 [[nodiscard]] std::u16string to_utf16(std::string_view text);
+/// The bytes of a UNICODE_STRING: UTF-16, low byte first.
+[[nodiscard]] std::string to_utf16_bytes(std::string_view text);
+
+enum class ByteOrder : std::uint8_t { low_first, high_first };
+/// A surrogate without its partner, and an odd byte at the end, become U+FFFD.
+[[nodiscard]] std::string from_utf16_bytes(std::string_view bytes, ByteOrder order);
 
 [[nodiscard]] std::size_t count_code_points(std::string_view text);
 

@@ -14,13 +14,10 @@ void append_bytes(std::string& bytes, std::uint64_t number, unsigned count) {
 }
 
 std::string bytes_of(const Value& value, const canopen::DataTypeRow& type) {
-  if (type.kind == canopen::DataClass::string && type.type != canopen::DataType::unicode_string) return value.bytes;
+  if (type.type == canopen::DataType::unicode_string) return to_utf16_bytes(value.bytes);
+  if (type.kind == canopen::DataClass::string) return value.bytes;
   std::string bytes;
-  if (type.type == canopen::DataType::unicode_string) {
-    for (const char16_t unit : to_utf16(value.bytes)) append_bytes(bytes, unit, 2);
-  } else {
-    append_bytes(bytes, value.bits, (type.bits + 7U) / 8U);
-  }
+  append_bytes(bytes, value.bits, (type.bits + 7U) / 8U);
   return bytes;
 }
 

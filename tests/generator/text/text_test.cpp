@@ -5,6 +5,7 @@
 
 #include "text/counted.hpp"
 #include "text/suggestion.hpp"
+#include "text/utf8.hpp"
 
 namespace edsc {
 namespace {
@@ -36,6 +37,30 @@ TEST(Suggestion, IsNothingForAnotherWord) {
   EXPECT_EQ(most_similar(std::string(100'000, 'x'), words), "");
   EXPECT_EQ(did_you_mean("Unit", words), "");
   EXPECT_EQ(did_you_mean("chek", words), "; did you mean \"check\"?");
+}
+
+TEST(EditDistance, CountsCharactersThatDiffer) {
+  EXPECT_EQ(edit_distance("speed", "speed", 2), 0U);
+  EXPECT_EQ(edit_distance("Speed", "sped", 2), 1U);
+  EXPECT_EQ(edit_distance("speed", "spede", 2), 1U) << "two characters swapped";
+  EXPECT_EQ(edit_distance("speed", "torque", 2), 3U) << "more than 2";
+  EXPECT_EQ(edit_distance("", "ab", 2), 2U);
+}
+
+TEST(Utf16, IsTheSameTextInBothDirections) {
+  const std::string text = "a\u00B5\U0001F600";
+  EXPECT_EQ(to_utf16_bytes(text), std::string("a\0\xB5\0\x3D\xD8\0\xDE", 8));
+  EXPECT_EQ(from_utf16_bytes(to_utf16_bytes(text), ByteOrder::low_first), text);
+  EXPECT_EQ(from_utf16_bytes(std::string("\0a", 2), ByteOrder::high_first), "a");
+}
+
+TEST(Utf16, OfHalfACharacterIsTheReplacementCharacter) {
+  EXPECT_EQ(from_utf16_bytes(std::string("\x3D\xD8"
+                                         "a\0",
+                                         4),
+                             ByteOrder::low_first),
+            "\uFFFDa");
+  EXPECT_EQ(from_utf16_bytes(std::string("a\0b", 3), ByteOrder::low_first), "a\uFFFD");
 }
 
 }  // namespace

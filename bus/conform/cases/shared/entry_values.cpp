@@ -102,12 +102,8 @@ std::optional<Bytes> default_bytes(const Dut& dut, const Entry& entry) {
   if (!entry.default_value || !entry.default_value->clause.empty()) return std::nullopt;
   const Value& value = *entry.default_value;
   if (entry.type->type == DataType::unicode_string) {
-    Bytes bytes;
-    for (const char16_t unit : to_utf16(value.bytes)) {
-      bytes.push_back(static_cast<std::uint8_t>(unit & 0xFF));
-      bytes.push_back(static_cast<std::uint8_t>(unit >> 8));
-    }
-    return bytes;
+    const std::string units = to_utf16_bytes(value.bytes);
+    return Bytes(units.begin(), units.end());
   }
   if (entry.type->kind == DataClass::string) return Bytes(value.bytes.begin(), value.bytes.end());
   return edsc::bytes_of(bits_of(dut, value), bytes_for(entry.type->bits));
