@@ -1,8 +1,13 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "commands/commands.hpp"
+#include "device/bit_rates.hpp"
 #include "online/lss_session.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
@@ -232,15 +237,26 @@ void add_address_options(Command command, Settings& settings, bool required) {
   for (const Option& option : {vendor, product, revision, serial}) option.required(required);
 }
 
+/// Highest first.
+std::vector<std::string> bit_rate_words() {
+  std::vector<std::string> words;
+  for (auto rate = bit_rates.rbegin(); rate != bit_rates.rend(); ++rate) words.push_back(fmt::format("{}", *rate));
+  return words;
+}
+
 void add_bit_rate(Command command, const std::string& name, Settings& settings, bool required) {
+  std::vector<std::string> words = bit_rate_words();
+  const std::string description =
+      fmt::format("{} or {} kbit/s, or auto", fmt::join(std::span{words}.first(words.size() - 1), ", "), words.back());
+  words.emplace_back("auto");
   command
       .add_text_option(
           name,
           [&settings](const std::string& text) {
             settings.kbit = text == "auto" ? automatic : parse_count(text).value_or(automatic);
           },
-          "1000, 800, 500, 250, 125, 50, 20 or 10 kbit/s, or auto")
-      .one_of({"1000", "800", "500", "250", "125", "50", "20", "10", "auto"})
+          description)
+      .one_of(words)
       .required(required);
 }
 

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <optional>
 
+#include "device/bit_rates.hpp"
 #include "document/views.hpp"
 #include "system/path.hpp"
 
 namespace edsc::document {
 namespace {
-
-/// The bit rates of CiA 301, table 1, in kbit/s.
-constexpr std::uint16_t canopen_bit_rates[] = {10, 20, 50, 125, 250, 500, 800, 1000};
 
 std::string yes_or_no(const std::optional<bool>& flag) { return !flag ? "" : *flag ? "yes" : "no"; }
 
@@ -121,7 +119,7 @@ Json commissioning_rows(const std::optional<Commissioning>& commissioning) {
 
 Json bit_rate_rows(const Device& device) {
   const std::vector<std::uint16_t>& supported = device.information.capabilities.baud_rates;
-  std::vector<std::uint16_t> all{std::begin(canopen_bit_rates), std::end(canopen_bit_rates)};
+  std::vector<std::uint16_t> all{bit_rates.begin(), bit_rates.end()};
   all.insert(all.end(), supported.begin(), supported.end());
   std::ranges::sort(all);
   all.erase(std::unique(all.begin(), all.end()), all.end());

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <string_view>
 
+#include "device/bit_rates.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
-#include "lint/baud_rates.hpp"
 #include "lint/rule_groups.hpp"
 
 namespace edsc {
@@ -44,7 +44,7 @@ void check_baud_rates(const RuleContext& context) {
   bool any = false;
   for (const DeviceInfo::BaudRate& rate : info.baud_rates) {
     any = any || number_of(rate.field).value_or(0) != 0;
-    if (std::ranges::find(standard_baud_rates, rate.kbit_per_second) != std::end(standard_baud_rates)) continue;
+    if (is_bit_rate(rate.kbit_per_second)) continue;
     context.report("baud-rate-key", rate.field.position,
                    fmt::format("CiA 306 does not define a key BaudRate_{}", rate.kbit_per_second));
   }

@@ -1,12 +1,14 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <span>
 #include <string_view>
 
+#include "device/bit_rates.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/ini.hpp"
 #include "eds/number.hpp"
-#include "lint/baud_rates.hpp"
 #include "lint/rule_groups.hpp"
 #include "system/path.hpp"
 #include "text/ascii.hpp"
@@ -129,10 +131,11 @@ void check_commissioned_baud_rate(const RuleContext& context) {
   const Field& field = context.sheet.commissioning.baudrate;
   const auto rate = number_of(field);
   if (field.empty() || rate == 0) return;
-  if (!rate || std::ranges::find(standard_baud_rates, *rate) == std::end(standard_baud_rates)) {
-    context.report(
-        "commissioned-baud-rate", field.position,
-        fmt::format("Baudrate must be 10, 20, 50, 125, 250, 500, 800 or 1000 kbit/s, not {}", quote(field.text)));
+  if (!rate || !is_bit_rate(*rate)) {
+    context.report("commissioned-baud-rate", field.position,
+                   fmt::format("Baudrate must be {} or {} kbit/s, not {}",
+                               fmt::join(std::span{bit_rates}.first(bit_rates.size() - 1), ", "), bit_rates.back(),
+                               quote(field.text)));
     return;
   }
   for (const DeviceInfo::BaudRate& row : context.sheet.device_info.baud_rates) {

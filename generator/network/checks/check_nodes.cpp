@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <tuple>
 
+#include "device/bit_rates.hpp"
 #include "eds/number.hpp"
 #include "network/checks/check_groups.hpp"
 #include "network/communication_objects.hpp"
@@ -12,14 +14,9 @@
 namespace edsc {
 namespace {
 
-/// The maximum length of a bus in m (CiA 303-1, table 3), by bit rate in kbit/s.
-struct MaxLength {
-  std::uint32_t bit_rate;
-  std::uint32_t metres;
-};
-
-constexpr MaxLength max_lengths[] = {{1000, 25}, {800, 50},  {500, 100}, {250, 250},
-                                     {125, 500}, {50, 1000}, {20, 2500}, {10, 5000}};
+/// The maximum length of a bus in m (CiA 303-1, table 3), for each of `bit_rates`.
+constexpr std::uint32_t max_lengths[] = {5000, 2500, 1000, 500, 250, 100, 50, 25};
+static_assert(std::size(max_lengths) == bit_rates.size());
 
 /// The NodeID of a DCF is that of the network file.
 void check_commissioned_node_ids(const NetworkContext& context) {
@@ -41,17 +38,18 @@ void check_commissioned_node_ids(const NetworkContext& context) {
 void check_bit_rate(const NetworkContext& context) {
   const WrittenNumber& bit_rate = context.network.description.bit_rate;
   if (!bit_rate) return;
-  const auto row = std::ranges::find(max_lengths, bit_rate->value, &MaxLength::bit_rate);
-  if (row == std::end(max_lengths)) {
+  const auto rate = std::ranges::find(bit_rates, bit_rate->value);
+  if (rate == bit_rates.end()) {
     context.diagnostics.error("network-bit-rate", bit_rate->position,
                               fmt::format("{} kbit/s is not a bit rate of CANopen", bit_rate->value));
     return;
   }
   const WrittenNumber& length = context.network.description.length_m;
-  if (length && length->value > row->metres) {
+  const std::uint32_t max_length = max_lengths[rate - bit_rates.begin()];
+  if (length && length->value > max_length) {
     context.diagnostics.warning("network-length", length->position,
                                 fmt::format("a bus of {} m is too long for {} kbit/s: the maximum is {} m",
-                                            length->value, bit_rate->value, row->metres));
+                                            length->value, bit_rate->value, max_length));
   }
   for (const NetworkNode& node : context.network.nodes) {
     const std::vector<std::uint16_t>& supported = node.device().information.capabilities.baud_rates;
