@@ -9,30 +9,31 @@
 namespace edsc {
 namespace {
 
-struct Spelling {
+struct Transliteration {
   char32_t code_point;
   std::string_view text;
 };
 
-constexpr std::array spellings = {
-    Spelling{0x00B0, "deg"}, Spelling{0x00B2, "2"},  Spelling{0x00B3, "3"},   Spelling{0x00B5, "u"},
-    Spelling{0x00C4, "Ae"},  Spelling{0x00D6, "Oe"}, Spelling{0x00DC, "Ue"},  Spelling{0x00DF, "ss"},
-    Spelling{0x00E0, "a"},   Spelling{0x00E1, "a"},  Spelling{0x00E4, "ae"},  Spelling{0x00E8, "e"},
-    Spelling{0x00E9, "e"},   Spelling{0x00EA, "e"},  Spelling{0x00F1, "n"},   Spelling{0x00F3, "o"},
-    Spelling{0x00F6, "oe"},  Spelling{0x00FC, "ue"}, Spelling{0x03A9, "ohm"}, Spelling{0x03BC, "u"},
-    Spelling{0x2126, "ohm"},
+constexpr std::array transliterations = {
+    Transliteration{0x00B0, "deg"}, Transliteration{0x00B2, "2"},  Transliteration{0x00B3, "3"},
+    Transliteration{0x00B5, "u"},   Transliteration{0x00C4, "Ae"}, Transliteration{0x00D6, "Oe"},
+    Transliteration{0x00DC, "Ue"},  Transliteration{0x00DF, "ss"}, Transliteration{0x00E0, "a"},
+    Transliteration{0x00E1, "a"},   Transliteration{0x00E4, "ae"}, Transliteration{0x00E8, "e"},
+    Transliteration{0x00E9, "e"},   Transliteration{0x00EA, "e"},  Transliteration{0x00F1, "n"},
+    Transliteration{0x00F3, "o"},   Transliteration{0x00F6, "oe"}, Transliteration{0x00FC, "ue"},
+    Transliteration{0x03A9, "ohm"}, Transliteration{0x03BC, "u"},  Transliteration{0x2126, "ohm"},
 };
 
-/// Keeps ASCII letters and digits, transliterates code points with a usual spelling, and replaces others by a blank.
+/// Keeps ASCII letters and digits, replaces code points that have a transliteration, and replaces others by a blank.
 std::string to_ascii(std::string_view name) {
   if (is_ascii(name)) return std::string{name};
   std::string out;
   for_each_code_point(name, [&](char32_t code_point) {
-    const auto at = std::ranges::find(spellings, code_point, &Spelling::code_point);
+    const auto at = std::ranges::find(transliterations, code_point, &Transliteration::code_point);
     if (code_point < 0x80) {
       out += static_cast<char>(code_point);
     } else {
-      out += at == spellings.end() ? " " : at->text;
+      out += at == transliterations.end() ? " " : at->text;
     }
   });
   return out;

@@ -19,7 +19,7 @@ constexpr std::string_view node_id_spellings[] = {"$NODEID", "$NODE_ID", "$MY_NO
 
 bool is_decimal(std::string_view text) { return !text.empty() && std::ranges::all_of(text, is_digit); }
 
-Spelling unchanged(std::string_view text) { return {std::string{text}, {}}; }
+ValueSpelling unchanged(std::string_view text) { return {std::string{text}, {}}; }
 
 std::optional<std::string> spell_magnitude(std::string_view digits, unsigned hex_digits) {
   const auto number = parse_unsigned(digits);
@@ -101,27 +101,27 @@ std::string_view inline_comment(std::string_view text) {
 
 unsigned hex_digits_of(const canopen::DataTypeRow& type) { return (type.bits + 3U) / 4U; }
 
-Spelling spell_number(std::string_view text, unsigned hex_digits) {
+ValueSpelling spell_number(std::string_view text, unsigned hex_digits) {
   const auto number = spell_magnitude(strip_inline_comment(text), hex_digits);
-  return number ? Spelling{*number, inline_comment(text)} : unchanged(text);
+  return number ? ValueSpelling{*number, inline_comment(text)} : unchanged(text);
 }
 
-Spelling spell_value(std::string_view text, const canopen::DataTypeRow& type) {
+ValueSpelling spell_value(std::string_view text, const canopen::DataTypeRow& type) {
   const auto value = spell_by_type(strip_inline_comment(text), type);
-  return value ? Spelling{*value, inline_comment(text)} : unchanged(text);
+  return value ? ValueSpelling{*value, inline_comment(text)} : unchanged(text);
 }
 
-Spelling spell_index_range(std::string_view text, unsigned hex_digits) {
+ValueSpelling spell_index_range(std::string_view text, unsigned hex_digits) {
   const auto range = spell_pair(strip_inline_comment(text), '-', hex_digits);
-  return range ? Spelling{*range, inline_comment(text)} : unchanged(text);
+  return range ? ValueSpelling{*range, inline_comment(text)} : unchanged(text);
 }
 
-Spelling spell_module_count(std::string_view text) {
+ValueSpelling spell_module_count(std::string_view text) {
   const auto count = spell_pair(text, ';', 1);
-  return count ? Spelling{*count, {}} : unchanged(text);
+  return count ? ValueSpelling{*count, {}} : unchanged(text);
 }
 
-Spelling spell_access(std::string_view text) {
+ValueSpelling spell_access(std::string_view text) {
   const std::string_view word = strip_inline_comment(text);
   for (const canopen::AccessRow& row : canopen::access_rows) {
     if (equal_ignoring_case(word, row.name)) return {std::string{row.name}, inline_comment(text)};

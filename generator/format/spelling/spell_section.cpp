@@ -50,12 +50,12 @@ class SectionSpeller {
 
   void spell_entry(SpelledEntry& spelled) {
     DocumentEntry& entry = spelled.entry;
-    const Spelling value = spell(spelled.key, entry.value);
+    const ValueSpelling value = spell(spelled.key, entry.value);
     if (!value.remark.empty()) entry.remarks.push_back(remark_line(value.remark));
     entry.value = value.text;
   }
 
-  [[nodiscard]] Spelling spell(const KeySpelling& key, const std::string& value) const {
+  [[nodiscard]] ValueSpelling spell(const KeySpelling& key, const std::string& value) const {
     switch (key.value) {
       case ValueKind::text: break;
       case ValueKind::access: return spell_access(value);
@@ -94,8 +94,8 @@ class SectionSpeller {
   }
 
   /// The number of described sub-objects, in the base of the old number, which remains for a compact form.
-  [[nodiscard]] Spelling sub_number(const std::string& value) const {
-    Spelling spelling = spell_number(value, 1);
+  [[nodiscard]] ValueSpelling sub_number(const std::string& value) const {
+    ValueSpelling spelling = spell_number(value, 1);
     const ObjectDescription* const object = described_object();
     if (object == nullptr || number_of(object->compact_sub_obj).value_or(0) > 0) {
       return spelling;
