@@ -108,14 +108,14 @@ class Resolver {
     for (const auto& [key, name] : options_.names) check(key, "names");
     for (const auto& [key, capacity] : options_.string_capacity) check(key, "string_capacity");
     for (const EntryKey& key : options_.settable) check(key, "settable");
-    for (const EntrySelector& entry : options_.no_event) {
+    for (const EntryAddress& entry : options_.no_event) {
       if (entry.sub_index) {
         check({entry.index, *entry.sub_index}, "pdo.no_event");
       } else {
         check_object(entry.index, "pdo.no_event");
       }
     }
-    const auto check_stored = [&](const EntrySelector& entry, std::string_view option) {
+    const auto check_stored = [&](const EntryAddress& entry, std::string_view option) {
       entry.sub_index ? check({entry.index, *entry.sub_index}, option) : check_object(entry.index, option);
     };
     for (const auto& [entry, sub_index] : options_.stored_by) check_stored(entry, "storage.sub_indices");

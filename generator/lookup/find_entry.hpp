@@ -12,16 +12,9 @@
 #include <vector>
 
 #include "backend/cpp/cpp_names.hpp"
+#include "device/entry_address.hpp"
 
 namespace edsc {
-
-/// An index, with an optional sub-index.
-struct EntryAddress {
-  std::uint16_t index = 0;
-  std::optional<std::uint8_t> sub_index;
-
-  friend bool operator==(const EntryAddress&, const EntryAddress&) = default;
-};
 
 /// Parses `6064h`, `1018h:02`, `0x6064`, `0x1018:2`, `6064`. After an index with h the sub-index is hexadecimal, as
 /// edsc writes it; after 0x it is decimal unless it has a 0x itself. Nothing if the text is not an address.

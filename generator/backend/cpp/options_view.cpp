@@ -19,7 +19,7 @@ using nlohmann::ordered_json;
 
 /// Ascending; an entry comes before its object, so that it can differ from the other entries.
 ordered_json storing_rows(const Options& options) {
-  std::vector<std::pair<EntrySelector, std::string>> storing;
+  std::vector<std::pair<EntryAddress, std::string>> storing;
   for (const auto& [entry, how] : options.storing) storing.emplace_back(entry, fmt::format("Storing::{}", how));
   for (const auto& [entry, sub_index] : options.stored_by) {
     storing.emplace_back(entry, fmt::format("stored_by({})", sub_index));
@@ -39,7 +39,7 @@ ordered_json storing_rows(const Options& options) {
 /// The condition for entries that trigger an event: not in the option pdo.no_event.
 ordered_json event_conditions(const Options& options) {
   ordered_json rows = json_array(options.no_event.size());
-  for (const EntrySelector& entry : options.no_event) {
+  for (const EntryAddress& entry : options.no_event) {
     std::string condition = fmt::format("index != 0x{:04X}", entry.index);
     if (entry.sub_index) condition = fmt::format("({} || sub_index != 0x{:02X})", condition, *entry.sub_index);
     rows.push_back(json_object("condition", std::move(condition), "separator", rows.empty() ? "" : " &&\n           "));

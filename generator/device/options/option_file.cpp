@@ -13,18 +13,18 @@ std::optional<std::uint16_t> parse_index(std::string_view text) {
   return index && *index <= 0xFFFF ? std::optional{static_cast<std::uint16_t>(*index)} : std::nullopt;
 }
 
-std::optional<EntrySelector> parse_entry_selector(std::string_view text) {
+std::optional<EntryAddress> parse_option_address(std::string_view text) {
   const std::size_t colon = text.find(':');
   const auto index = parse_index(text.substr(0, colon));
   if (!index) return std::nullopt;
-  if (colon == std::string_view::npos) return EntrySelector{*index, std::nullopt};
+  if (colon == std::string_view::npos) return EntryAddress{*index, std::nullopt};
   const auto sub_index = parse_unsigned(fmt::format("0x{}", text.substr(colon + 1)));
   if (!sub_index || *sub_index > 0xFF) return std::nullopt;
-  return EntrySelector{*index, static_cast<std::uint8_t>(*sub_index)};
+  return EntryAddress{*index, static_cast<std::uint8_t>(*sub_index)};
 }
 
-std::optional<EntryKey> parse_entry_key(std::string_view text) {
-  const auto entry = parse_entry_selector(text);
+std::optional<EntryKey> parse_option_entry(std::string_view text) {
+  const auto entry = parse_option_address(text);
   return entry ? std::optional{EntryKey{entry->index, entry->sub_index.value_or(0)}} : std::nullopt;
 }
 

@@ -15,10 +15,10 @@ namespace edsc {
 [[nodiscard]] std::optional<std::uint16_t> parse_index(std::string_view text);
 
 /// `6401h:03`, or `6401h` for the whole object.
-[[nodiscard]] std::optional<EntrySelector> parse_entry_selector(std::string_view text);
+[[nodiscard]] std::optional<EntryAddress> parse_option_address(std::string_view text);
 
 /// `1018h:04`, `1018:4` or `1018h`: an entry of the dictionary.
-[[nodiscard]] std::optional<EntryKey> parse_entry_key(std::string_view text);
+[[nodiscard]] std::optional<EntryKey> parse_option_entry(std::string_view text);
 
 class OptionFile {
  public:

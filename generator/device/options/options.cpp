@@ -82,36 +82,36 @@ std::string expected(const OptionRow& row) {
 std::string in_its_group(const OptionRow& row) { return fmt::format("\"{}\" in \"{}\"", row.name, row.group.name); }
 
 /// What a user may have written, and what edsc suggests for it.
-struct Spelling {
+struct WrittenName {
   std::string_view text;
   std::string suggestion;
 };
 
 /// The options of a group; with an empty name all members of the file.
-std::vector<Spelling> spellings_in(std::string_view group) {
-  std::vector<Spelling> spellings;
-  if (group.empty()) spellings.push_back({"$schema", "\"$schema\""});
+std::vector<WrittenName> written_names_in(std::string_view group) {
+  std::vector<WrittenName> names;
+  if (group.empty()) names.push_back({"$schema", "\"$schema\""});
   for (const OptionRow& row : options_table) {
-    if (row.group.name == group) spellings.push_back({row.name, fmt::format("\"{}\"", row.name)});
+    if (row.group.name == group) names.push_back({row.name, fmt::format("\"{}\"", row.name)});
     if (group.empty() && !row.group.name.empty()) {
-      spellings.push_back({row.group.name, fmt::format("\"{}\"", row.group.name)});
-      spellings.push_back({row.flat_name, in_its_group(row)});
+      names.push_back({row.group.name, fmt::format("\"{}\"", row.group.name)});
+      names.push_back({row.flat_name, in_its_group(row)});
     } else if (row.group.name == group) {
-      spellings.push_back({row.flat_name, fmt::format("\"{}\"", row.name)});
+      names.push_back({row.flat_name, fmt::format("\"{}\"", row.name)});
     }
   }
-  return spellings;
+  return names;
 }
 
 std::string unknown_option(std::string_view group, std::string_view name) {
-  const std::vector<Spelling> spellings = spellings_in(group);
+  const std::vector<WrittenName> names = written_names_in(group);
   std::vector<std::string_view> texts;
-  texts.reserve(spellings.size());
-  for (const Spelling& spelling : spellings) texts.push_back(spelling.text);
+  texts.reserve(names.size());
+  for (const WrittenName& one : names) texts.push_back(one.text);
   const std::string_view similar = most_similar(name, texts);
   if (similar.empty()) return "unknown option";
   return fmt::format("unknown option; did you mean {}?",
-                     std::ranges::find(spellings, similar, &Spelling::text)->suggestion);
+                     std::ranges::find(names, similar, &WrittenName::text)->suggestion);
 }
 
 /// Reads the members of an options file.

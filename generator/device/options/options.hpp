@@ -11,20 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "device/entry_address.hpp"
 #include "diagnostics/diagnostics.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {
-
-using EntryKey = std::pair<std::uint16_t, std::uint8_t>;
-
-/// One entry, or the whole object without a sub-index.
-struct EntrySelector {
-  std::uint16_t index = 0;
-  std::optional<std::uint8_t> sub_index;
-
-  friend bool operator==(const EntrySelector&, const EntrySelector&) = default;
-};
 
 /// Mapping parameters that are constants regardless of their access type in the EDS.
 struct StaticMapping {
@@ -59,7 +50,7 @@ struct SilencedRule {
 /// Expected findings of a rule, with a reason: for one object or entry, or for the whole EDS.
 struct AllowedFindings {
   std::string rule;
-  std::optional<EntrySelector> object;
+  std::optional<EntryAddress> object;
   std::string reason;
   Position position;
 };
@@ -100,13 +91,13 @@ struct Options {
   bool zero_terminated_strings = false;
   StaticMapping static_mapping;
   /// Entries whose new value does not trigger event-driven TPDOs.
-  std::vector<EntrySelector> no_event;
+  std::vector<EntryAddress> no_event;
   /// The manufacturer-specific bytes of EMCY messages that the services send themselves, by emergency error code.
   std::map<std::uint16_t, EmergencyInfo> emergency_info;
   /// Entries for which 1010h does not follow the access type, with their enumerator of canopen::Storing.
-  std::vector<std::pair<EntrySelector, std::string>> storing;
+  std::vector<std::pair<EntryAddress, std::string>> storing;
   /// Entries that a sub-index of 1010h from 05h on stores.
-  std::vector<std::pair<EntrySelector, std::uint8_t>> stored_by;
+  std::vector<std::pair<EntryAddress, std::uint8_t>> stored_by;
   /// Sub-indices of 1010h whose parameters the application stores by itself.
   std::vector<std::uint8_t> autonomous_storage;
   /// Set if the options file has the group `lss`: the device then supports LSS regardless of the EDS.

@@ -105,7 +105,7 @@ class StructuredOptions {
     if (!value.is_object()) return error("expected an object with one member per entry, such as \"1018h:04\"");
     std::map<EntryKey, const json*> first_of;
     for (const auto& [entry, v] : file_.json().members(value)) {
-      const auto key = parse_entry_key(entry);
+      const auto key = parse_option_entry(entry);
       if (!key) {
         error_in(entry, *v, "not an entry such as \"1018h:04\"");
       } else if (is_first(first_of, *key, entry, *v) && !take(*key, *v)) {
@@ -160,7 +160,7 @@ class StructuredOptions {
   }
 
   void settable(const json& value) {
-    append_each(value, "expected an array of entries such as \"1018h:04\"", options_.settable, parse_entry_key,
+    append_each(value, "expected an array of entries such as \"1018h:04\"", options_.settable, parse_option_entry,
                 "not an entry such as \"1018h:04\"");
     sort_unique(options_.settable);
   }
@@ -182,7 +182,7 @@ class StructuredOptions {
     AllowedFindings allowed;
     for (const auto& [name, v] : item.items()) {
       const std::string text = v.is_string() ? v.get<std::string>() : std::string{};
-      const auto object = name == "object" ? parse_entry_selector(text) : std::nullopt;
+      const auto object = name == "object" ? parse_option_address(text) : std::nullopt;
       if (name == "rule" && !text.empty()) {
         allowed.rule = text;
       } else if (name == "reason" && text.find_first_not_of(" \t\r\n") != std::string::npos) {
@@ -227,7 +227,7 @@ class StructuredOptions {
 
   void no_event(const json& value) {
     append_each(value, "expected an array of objects or entries such as \"6401h\" or \"6401h:03\"", options_.no_event,
-                parse_entry_selector);
+                parse_option_address);
   }
 
   void emergency_info(const json& value) {
@@ -254,7 +254,7 @@ class StructuredOptions {
     }
     report_same_selectors(value);
     for (const auto& [text, how] : value.items()) {
-      const auto entry = parse_entry_selector(text);
+      const auto entry = parse_option_address(text);
       const bool known =
           std::ranges::any_of(storing_names, [&spelling = how](const char* name) { return spelling == name; });
       if (entry && how == "with_node_id" && (entry->index < 0x1000 || entry->index > 0x1FFF)) {
@@ -271,7 +271,7 @@ class StructuredOptions {
   void report_same_selectors(const json& object) {
     std::map<std::pair<std::uint16_t, std::optional<std::uint8_t>>, const json*> first_of;
     for (const auto& [text, value] : file_.json().members(object)) {
-      if (const auto entry = parse_entry_selector(text))
+      if (const auto entry = parse_option_address(text))
         is_first(first_of, {entry->index, entry->sub_index}, text, *value);
     }
   }
@@ -287,7 +287,7 @@ class StructuredOptions {
         continue;
       }
       const auto take = [&, &key = text](const json& item) {
-        const auto entry = parsed(item, parse_entry_selector);
+        const auto entry = parsed(item, parse_option_address);
         if (!entry) {
           error_in(key, item, "expected an array of objects or entries such as \"2111h\" or \"2111h:01\"");
         } else if (entry->index < 0x2000) {

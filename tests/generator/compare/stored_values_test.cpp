@@ -57,7 +57,7 @@ struct ComparedStorage {
 
 Options storing(std::uint16_t index, std::string how) {
   Options options;
-  options.storing.emplace_back(EntrySelector{index, {}}, std::move(how));
+  options.storing.emplace_back(EntryAddress{index, {}}, std::move(how));
   return options;
 }
 

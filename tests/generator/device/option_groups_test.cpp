@@ -38,7 +38,7 @@ TEST(OptionGroups, KeepTheOldNameOfAnOption) {
   const ReadOptions read("{\n  \"sdo_timeout\": 500,\n  \"no_event\": [\"6401h\"]\n}");
   EXPECT_EQ(messages(read.diagnostics), Messages{});
   EXPECT_EQ(read.runtime(), (ReadOptions::Runtime{{"sdo_timeout", "500"}}));
-  EXPECT_EQ(read.options.no_event, (std::vector<EntrySelector>{{0x6401, {}}}));
+  EXPECT_EQ(read.options.no_event, (std::vector<EntryAddress>{{0x6401, {}}}));
   ASSERT_EQ(read.options.deprecated.size(), 2U);
   EXPECT_EQ(read.options.deprecated[0].message, "\"no_event\" is deprecated; use \"no_event\" in \"pdo\"");
   EXPECT_EQ(read.options.deprecated[0].position.line, 3U);
