@@ -32,7 +32,7 @@ std::string subject_text(const Finding& finding, const Report& report) {
       text += fmt::format(" {}", name);
   }
   const auto separate = [&text] { text += text.empty() ? "" : ", "; };
-  const bool has_can_id = subject.can_id != 0 && subject.rule != RuleId::sdo_abort;
+  const bool has_can_id = subject.can_id != 0 && subject.rule != AuditRule{"sdo-abort"};
   if (has_can_id) {
     separate();
     text += fmt::format("CAN-ID {:0{}X}h", subject.can_id, subject.extended ? 8 : 3);
@@ -104,9 +104,9 @@ json moment_object(const Moment& moment) {
 }
 
 json finding_object(const Finding& finding, const Report& report) {
-  const Rule& rule = row_of(finding.subject.rule);
+  const Rule& rule = finding.subject.rule.row();
   const Subject& subject = finding.subject;
-  const bool has_can_id = subject.can_id != 0 && subject.rule != RuleId::sdo_abort;
+  const bool has_can_id = subject.can_id != 0 && subject.rule != AuditRule{"sdo-abort"};
   const auto or_null = [](bool has, auto value) { return has ? json(value) : json(nullptr); };
   return {{"rule", rule.id},
           {"severity", to_string(rule.severity)},
@@ -114,9 +114,9 @@ json finding_object(const Finding& finding, const Report& report) {
           {"index", or_null(subject.index != 0, subject.index)},
           {"sub_index", or_null(subject.index != 0, unsigned{subject.sub_index})},
           {"can_id", or_null(has_can_id, subject.can_id)},
-          {"abort_code", or_null(subject.rule == RuleId::sdo_abort, subject.can_id)},
+          {"abort_code", or_null(subject.rule == AuditRule{"sdo-abort"}, subject.can_id)},
           {"subject", printable(subject_text(finding, report))},
-          {"meaning", rule.meaning},
+          {"meaning", rule.title},
           {"source", rule.source},
           {"expected", printable(finding.expected)},
           {"seen", printable(finding.seen)},
@@ -134,12 +134,12 @@ bool Report::is_clean() const {
 std::string text_report(const Report& report, bool color) {
   std::string text;
   for (const Finding* const finding : report.findings->in_order()) {
-    const Rule& rule = row_of(finding->subject.rule);
+    const Rule& rule = finding->subject.rule.row();
     const std::string_view begin = color ? color_of(rule.severity) : std::string_view{};
     text +=
         fmt::format("{}:{}: {}{}:{} {}: {} [{}]\n    expected {}; seen: {}", printable(report.log), finding->first.line,
                     begin, to_string(rule.severity), color ? "\033[0m" : "", printable(subject_text(*finding, report)),
-                    rule.meaning, rule.id, printable(finding->expected), printable(finding->seen));
+                    rule.title, rule.id, printable(finding->expected), printable(finding->seen));
     if (const std::string occurrence = occurrence_text(*finding); !occurrence.empty()) text += "; " + occurrence;
     text += '\n';
   }
@@ -176,11 +176,11 @@ std::string json_report(const Report& report) {
 std::string html_report(const Report& report) {
   json findings = json::array();
   for (const Finding* const finding : report.findings->in_order()) {
-    const Rule& rule = row_of(finding->subject.rule);
+    const Rule& rule = finding->subject.rule.row();
     findings.push_back({{"severity", to_string(rule.severity)},
                         {"subject", subject_text(*finding, report)},
-                        {"meaning", rule.meaning},
-                        {"advice", rule.advice},
+                        {"meaning", rule.title},
+                        {"advice", rule.explanation},
                         {"rule", rule.id},
                         {"source", rule.source},
                         {"expected", finding->expected},

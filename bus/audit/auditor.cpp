@@ -29,7 +29,7 @@ Moment Auditor::moment_of(const LogLine& line) {
 /// No time is compared with one before. What happened in between is not known.
 void Auditor::restart_times(const Moment& now, std::int64_t back_us) {
   audit_.times_since = now.us;
-  audit_.findings.add({RuleId::log_time}, now, back_us, [&] {
+  audit_.findings.add({"log-time"}, now, back_us, [&] {
     return std::pair<std::string, std::string>{"times in order", milliseconds(back_us) + " back"};
   });
   for (std::size_t id = 1; id < AuditState::node_ids; ++id) {
@@ -47,7 +47,7 @@ void Auditor::judge_interface(const LogLine& line) {
     interface_ = line.interface;
     return;
   }
-  audit_.findings.add({RuleId::log_interface}, now_, 0, [&] {
+  audit_.findings.add({"log-interface"}, now_, 0, [&] {
     return std::pair{"frames of " + interface_ + " only", "frames of " + std::string{line.interface} + ", too"};
   });
 }

@@ -11,13 +11,11 @@ Finding* Findings::count(const Subject& subject, const Moment& moment, std::int6
     ++not_listed_;
     return nullptr;
   }
-  Finding& finding = found != findings_.end() ? found->second : findings_[subject];
+  Finding& finding =
+      found != findings_.end() ? found->second : findings_.emplace(subject, Finding{subject}).first->second;
   const bool is_first = finding.count++ == 0;
   if (!is_first && badness <= finding.badness) return nullptr;
-  if (is_first) {
-    finding.subject = subject;
-    finding.first = moment;
-  }
+  if (is_first) finding.first = moment;
   finding.worst = moment;
   finding.badness = badness;
   return &finding;
@@ -31,7 +29,7 @@ std::vector<const Finding*> Findings::in_order() const {
 }
 
 std::size_t Findings::count(Severity severity) const {
-  const auto has_severity = [severity](const auto& one) { return row_of(one.first.rule).severity == severity; };
+  const auto has_severity = [severity](const auto& one) { return one.first.rule.row().severity == severity; };
   return static_cast<std::size_t>(std::ranges::count_if(findings_, has_severity));
 }
 

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "audit/audit_rule.hpp"
+#include "audit/audit_rules.hpp"
 
 namespace edsc::audit {
 
@@ -23,7 +23,7 @@ struct Moment {
 
 /// What a finding is about; members that do not apply are 0.
 struct Subject {
-  RuleId rule{};
+  AuditRule rule;
   std::uint8_t node_id = 0;
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
@@ -34,10 +34,10 @@ struct Subject {
 
 struct Finding {
   Subject subject;
-  Moment first, worst;
+  Moment first = {}, worst = {};
   std::size_t count = 0;
   std::int64_t badness = 0;
-  std::string expected, seen;  ///< of the worst occurrence
+  std::string expected = {}, seen = {};  ///< of the worst occurrence
 };
 
 class Findings {

@@ -41,7 +41,7 @@ CaseResult run_case(const CaseRow& row, Dut& dut) {
     result.reason = std::move(end.reason);
     result.expected = std::move(end.expected);
     result.got = std::move(end.got);
-    result.rule = std::move(end.rule);
+    result.rule = end.rule;
     result.failed_entries = std::move(end.failed_entries);
   }
   dut.end_case(result);

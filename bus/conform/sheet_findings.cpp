@@ -9,7 +9,7 @@ namespace {
 
 std::string line_of(const Diagnostic& finding) {
   const Place place = place_of(finding.position);
-  return fmt::format("{}:{}:{}: {} [{}]", place.file, place.line, place.column, finding.message, finding.rule);
+  return fmt::format("{}:{}:{}: {} [{}]", place.file, place.line, place.column, finding.message, finding.rule.text());
 }
 
 }  // namespace

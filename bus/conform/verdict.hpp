@@ -13,6 +13,7 @@
 #include "conform/case.hpp"
 #include "lookup/find_entry.hpp"
 #include "online/simulated_port.hpp"
+#include "rules/rule.hpp"
 
 namespace edsc::conform {
 
@@ -54,10 +55,10 @@ struct SeenFrame {
 struct CaseResult {
   const CaseRow* row = nullptr;
   Verdict verdict = Verdict::passed;
-  std::string reason;    ///< why it neither passed nor failed: `1017h:00 does not exist in the EDS`
-  std::string expected;  ///< of a failure: `0609 0011h, sub-index does not exist`
-  std::string got;       ///< of a failure: `no answer within 500 ms`
-  std::string rule;      ///< of `edsc check`, if an error in the EDS is the cause of the failure; empty: none
+  std::string reason;                        ///< why it neither passed nor failed: `1017h:00 does not exist in the EDS`
+  std::string expected;                      ///< of a failure: `0609 0011h, sub-index does not exist`
+  std::string got;                           ///< of a failure: `no answer within 500 ms`
+  RuleId rule;                               ///< of `edsc check`, if an error in the EDS is the cause of the failure
   std::vector<EntryAddress> failed_entries;  ///< all that failed, of a case that tries many; else empty
   std::vector<std::string> warnings;         ///< accepted differences from CiA 301
   std::vector<SeenFrame> frames;

@@ -6,6 +6,7 @@
 #include "audit/audit_report.hpp"
 #include "commands/commands.hpp"
 #include "decode/log/log_decoder.hpp"
+#include "diagnostics/unknown_rule.hpp"
 #include "monitor/progress_line.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -13,12 +14,9 @@
 #include "shared/output.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
-#include "text/suggestion.hpp"
 
 namespace edsc {
 namespace {
-
-using audit::RuleId;
 
 constexpr const char* examples = R"(Examples:
   edsc audit can0.log --node 5=drive.eds --node 6=axis2.dcf       exit code 1 if there are errors or warnings
@@ -42,15 +40,15 @@ struct Settings : LogSettings {
 
 int list_rules(const Settings& settings) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const audit::Rule& rule : audit::rule_table::rows) {
+  for (const Rule& rule : audit::audit_rules) {
     if (settings.format == "text") {
-      fmt::print("{:<20} {:<8} {} ({})\n", rule.id, to_string(rule.severity), rule.meaning, rule.source);
+      fmt::print("{:<20} {:<8} {} ({})\n", rule.id, to_string(rule.severity), rule.title, rule.source);
     }
     rows.push_back({{"id", rule.id},
                     {"severity", to_string(rule.severity)},
-                    {"meaning", rule.meaning},
+                    {"meaning", rule.title},
                     {"source", rule.source},
-                    {"advice", rule.advice}});
+                    {"advice", rule.explanation}});
   }
   if (settings.format != "text") fmt::print("{}\n", json_text(rows));
   return exit_fine;
@@ -73,7 +71,7 @@ int audit_log(const Settings& given) {
       nodes.known(), nodes.labels, {settings.log_name(), settings.interface, LogOutput::text, false, {}}};
   audit::Auditor auditor{decoder.decoder(), settings.limits};
   auditor.set_nmt_master(settings.nmt_master);
-  for (const std::string& id : settings.silence) auditor.silence(audit::find_rule(id)->rule);
+  for (const std::string& id : settings.silence) auditor.silence(*find_rule(audit::audit_rules, id));
 
   std::uint64_t frames = 0;
   std::string complaints;
@@ -109,10 +107,8 @@ int audit_log(const Settings& given) {
 
 /// In the format of CLI11: an error message, or nothing.
 std::string check_audit_rule(const std::string& id) {
-  if (audit::find_rule(id) != nullptr) return {};
-  std::vector<std::string_view> ids;
-  for (const audit::Rule& rule : audit::rule_table::rows) ids.push_back(rule.id);
-  return fmt::format("unknown rule \"{}\"{} (see --list-rules)", printable(id), did_you_mean(id, ids));
+  if (find_rule(audit::audit_rules, id)) return {};
+  return fmt::format("{} (see --list-rules)", unknown_rule(id, audit::audit_rules));
 }
 
 }  // namespace

@@ -7,9 +7,9 @@
 
 #include "commands/commands.hpp"
 #include "device/options/option_table.hpp"
-#include "diagnostics/rule.hpp"
 #include "diagnostics/unknown_rule.hpp"
 #include "load/load_device.hpp"
+#include "rules/check_rules.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -48,7 +48,7 @@ nlohmann::ordered_json to_json(const Rule& rule) {
   return {{"id", rule.id},
           {"severity", to_string(rule.severity)},
           {"severities", severities},
-          {"meaning", rule.meaning},
+          {"meaning", rule.title},
           {"source", rule.source},
           {"url", url_of(rule)}};
 }
@@ -56,7 +56,7 @@ nlohmann::ordered_json to_json(const Rule& rule) {
 int explain(const Rule& rule, const std::string& format) {
   if (format == "text") {
     fmt::print("{}: {}\n{}\nSource: {}\nDocumentation, with examples: {}\n", rule.id, to_string(rule.severity),
-               rule.meaning, rule.source, url_of(rule));
+               rule.title, rule.source, url_of(rule));
   } else {
     fmt::print("{}\n", json_text(to_json(rule)));
   }
@@ -64,7 +64,7 @@ int explain(const Rule& rule, const std::string& format) {
 }
 
 std::string to_line(const Rule& rule) {
-  return fmt::format("{:<28} {:<8} {} ({})", rule.id, to_string(rule.severity), rule.meaning, rule.source);
+  return fmt::format("{:<28} {:<8} {} ({})", rule.id, to_string(rule.severity), rule.title, rule.source);
 }
 
 nlohmann::ordered_json to_json(const OptionRow& row) {
@@ -97,9 +97,10 @@ int list(const Rows& table, const std::string& format) {
 }
 
 int check(const Settings& settings) {
-  if (settings.list_rules) return list(all_rules(), settings.format);
+  if (settings.list_rules) return list(check_rules, settings.format);
   if (settings.list_options) return list(options_table, settings.format);
-  if (!settings.explained_rule.empty()) return explain(*find_rule(settings.explained_rule), settings.format);
+  if (!settings.explained_rule.empty())
+    return explain(find_rule(check_rules, settings.explained_rule)->row(), settings.format);
   if (settings.paths.empty()) {
     print_visibly(stderr, "edsc check: FILE is required\n");
     return exit_wrong_usage;
@@ -110,7 +111,7 @@ int check(const Settings& settings) {
     Diagnostics diagnostics;
     if (settings.strict) diagnostics.treat_warnings_as_errors();
     diagnostics.silence_errors();
-    for (const std::string& rule : settings.silence) diagnostics.silence(rule);
+    for (const std::string& rule : settings.silence) diagnostics.silence(*find_rule(check_rules, rule));
     LoadSettings load{path, settings.options_path, "", settings.node_id};
     load.keep_going = settings.keep_going;
     const auto loaded = load_device(load, diagnostics);
@@ -126,8 +127,8 @@ int check(const Settings& settings) {
 
 /// In the format of CLI11: an error message, or nothing.
 std::string check_rule(const std::string& id) {
-  if (find_rule(id) != nullptr) return {};
-  return fmt::format("{} (see --list-rules)", unknown_rule(id));
+  if (find_rule(check_rules, id)) return {};
+  return fmt::format("{} (see --list-rules)", unknown_rule(id, check_rules));
 }
 
 }  // namespace

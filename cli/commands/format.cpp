@@ -14,6 +14,7 @@
 #include "format/dcf/move_values.hpp"
 #include "format/sheet_document.hpp"
 #include "format/storage_locations.hpp"
+#include "rules/check_rules.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -53,7 +54,7 @@ struct Settings {
 };
 
 /// These rules report parts as left out that remain in the text.
-constexpr std::string_view rules_of_what_stays[] = {"unknown-key", "unknown-section"};
+constexpr AnyRule rules_of_what_stays[] = {"unknown-key", "unknown-section"};
 
 /// A data sheet with its lines. Values are not checked here, but by `edsc check`.
 struct Input {
@@ -68,7 +69,7 @@ struct Input {
 };
 
 void read(const Settings& settings, Input& input, Diagnostics& diagnostics) {
-  for (const std::string_view rule : rules_of_what_stays) diagnostics.silence(std::string{rule});
+  for (const AnyRule rule : rules_of_what_stays) diagnostics.silence(rule);
   input.ini = parse_ini(input.text(), diagnostics);
   if (input.ini.sections.empty()) return;
   input.sheet = read_data_sheet(input.ini, diagnostics);

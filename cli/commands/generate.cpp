@@ -146,7 +146,7 @@ constexpr const char* keep_going_hint =
 
 /// Whether each finding is listed with its place.
 bool lists_all(const Diagnostics& diagnostics) {
-  return diagnostics.suppressed().empty() &&
+  return diagnostics.omitted().empty() &&
          std::ranges::none_of(diagnostics.all(), [](const Diagnostic& one) { return one.unnamed > 0; });
 }
 

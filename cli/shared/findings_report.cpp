@@ -6,29 +6,18 @@
 
 #include "diagnostics/place.hpp"
 #include "diagnostics/print.hpp"
-#include "diagnostics/rule.hpp"
+#include "rules/check_rules.hpp"
 #include "shared/left_out_text.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
-namespace {
-
-std::vector<SarifRule> sarif_rules() {
-  std::vector<SarifRule> rules;
-  for (const Rule& rule : all_rules()) {
-    rules.push_back({rule.id, rule.severity, rule.meaning, rule.source, url_of(rule)});
-  }
-  return rules;
-}
-
-}  // namespace
 
 std::string url_of(const Rule& rule) { return fmt::format("{}rules.md#{}", EDSC_DOCS_URL, rule.id); }
 
 FindingsReport::FindingsReport(std::string format, const ColorOption& color)
     : format_{std::move(format)},
       color_{color},
-      sarif_{EDSC_VERSION, sarif_rules()},
+      sarif_{EDSC_VERSION, check_rules, url_of},
       json_{{"version", 1},
             {"diagnostics", nlohmann::json::array()},
             {"allowed_diagnostics", nlohmann::json::array()},

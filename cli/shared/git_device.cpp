@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "backend/cpp/identifier.hpp"
-#include "diagnostics/rule.hpp"
 #include "system/path.hpp"
 
 namespace edsc {
@@ -12,7 +11,7 @@ std::unique_ptr<LoadedDevice> load_git_device(GitFile committed, const std::stri
                                               const LoadSettings& settings, Diagnostics& diagnostics) {
   auto loaded = std::make_unique<LoadedDevice>();
   loaded->source = std::move(committed.source);
-  if (settings.keep_going) diagnostics.keep_going(loaded->source.get(), fatal_rules());
+  if (settings.keep_going) diagnostics.keep_going(loaded->source.get());
   const std::string options_path = from_native(to_native(settings.path).replace_extension(".options.json"));
   loaded->options_source = read_git_file(revision, options_path).source;
   if (loaded->options_source) loaded->options = read_options(*loaded->options_source, is_identifier, diagnostics);

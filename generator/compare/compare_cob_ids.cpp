@@ -20,21 +20,16 @@ constexpr std::uint32_t can_id_bits = 0x1FFF'FFFF;
 struct FlagRow {
   CobIdService service;
   std::uint32_t bit;
-  ChangeId when_set;
-  ChangeId when_cleared;
+  ChangeRule when_set;
+  ChangeRule when_cleared;
 };
 
 constexpr FlagRow flags[] = {
-    {sync, bit_31, ChangeId::cob_id_flag, ChangeId::cob_id_flag},
-    {sync, bit_30, ChangeId::sync_started, ChangeId::sync_stopped},
-    {time, bit_31, ChangeId::time_consumed, ChangeId::time_ignored},
-    {time, bit_30, ChangeId::time_started, ChangeId::time_stopped},
-    {emcy, bit_30, ChangeId::cob_id_flag, ChangeId::cob_id_flag},
-    {emcy_consumer, bit_30, ChangeId::cob_id_flag, ChangeId::cob_id_flag},
-    {sdo_server, bit_30, ChangeId::sdo_dynamic, ChangeId::sdo_dynamic},
-    {sdo_client, bit_30, ChangeId::sdo_dynamic, ChangeId::sdo_dynamic},
-    {rpdo, bit_30, ChangeId::cob_id_flag, ChangeId::cob_id_flag},
-    {tpdo, bit_30, ChangeId::rtr_disabled, ChangeId::rtr_enabled},
+    {sync, bit_31, "cob-id-flag", "cob-id-flag"},       {sync, bit_30, "sync-started", "sync-stopped"},
+    {time, bit_31, "time-consumed", "time-ignored"},    {time, bit_30, "time-started", "time-stopped"},
+    {emcy, bit_30, "cob-id-flag", "cob-id-flag"},       {emcy_consumer, bit_30, "cob-id-flag", "cob-id-flag"},
+    {sdo_server, bit_30, "sdo-dynamic", "sdo-dynamic"}, {sdo_client, bit_30, "sdo-dynamic", "sdo-dynamic"},
+    {rpdo, bit_30, "cob-id-flag", "cob-id-flag"},       {tpdo, bit_30, "rtr-disabled", "rtr-enabled"},
 };
 
 bool is_pdo(CobIdService service) { return service == rpdo || service == tpdo; }
@@ -54,10 +49,10 @@ class CobIdComparison {
   std::vector<CobIdChange> compare() {
     const bool existed = exists(before_);
     if (!is_pdo(service_) && existed != exists(after_)) {
-      add(existed ? ChangeId::service_disabled : ChangeId::service_enabled);
+      add(existed ? ChangeRule{"service-disabled"} : ChangeRule{"service-enabled"});
     } else if (!existed) {
       if (((before_.bits ^ after_.bits) & ~std::uint64_t{bit_31}) != 0 || before_.plus_node_id != after_.plus_node_id) {
-        add(ChangeId::default_value);
+        add("default-value");
       }
     } else {
       compare_can_ids();
@@ -74,20 +69,20 @@ class CobIdComparison {
   void compare_can_ids() {
     const bool same_number = ((before_.bits ^ after_.bits) & can_id_bits) == 0;
     if (same_number && before_.plus_node_id == after_.plus_node_id) return;
-    changes_.push_back({is_pdo(service_) ? ChangeId::pdo_cob_id : ChangeId::service_cob_id, can_id_text(before_),
-                        can_id_text(after_)});
+    changes_.push_back({is_pdo(service_) ? ChangeRule{"pdo-cob-id"} : ChangeRule{"service-cob-id"},
+                        can_id_text(before_), can_id_text(after_)});
   }
 
   void compare_flags() {
     const std::uint64_t changed = before_.bits ^ after_.bits;
-    if ((changed & bit_29) != 0) add(ChangeId::frame_format);
+    if ((changed & bit_29) != 0) add("frame-format");
     for (const FlagRow& row : flags) {
       if (row.service != service_ || (changed & row.bit) == 0) continue;
       add((after_.bits & row.bit) != 0 ? row.when_set : row.when_cleared);
     }
   }
 
-  void add(ChangeId id) { changes_.push_back({id, value_text(before_, type_), value_text(after_, type_)}); }
+  void add(ChangeRule rule) { changes_.push_back({rule, value_text(before_, type_), value_text(after_, type_)}); }
 
   const Value& before_;
   const Value& after_;
@@ -101,7 +96,7 @@ class CobIdComparison {
 std::vector<CobIdChange> compare_cob_ids(const std::optional<Value>& before, const std::optional<Value>& after,
                                          const canopen::DataTypeRow& type, CobIdService service) {
   if (before && after) return CobIdComparison{*before, *after, type, service}.compare();
-  return {{is_pdo(service) ? ChangeId::pdo_cob_id : ChangeId::service_cob_id, value_text(before, type),
+  return {{is_pdo(service) ? ChangeRule{"pdo-cob-id"} : ChangeRule{"service-cob-id"}, value_text(before, type),
            value_text(after, type)}};
 }
 

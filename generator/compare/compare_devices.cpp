@@ -52,30 +52,30 @@ class DeviceComparison {
   }
 
  private:
-  Change& add_device_change(ChangeId id, std::string old_value, std::string new_value) {
-    Change& change = changes_.add(id, "device", "", {before_.source}, {after_.source});
+  Change& add_device_change(ChangeRule rule, std::string old_value, std::string new_value) {
+    Change& change = changes_.add(rule, "device", "", {before_.source}, {after_.source});
     change.old_value = std::move(old_value);
     change.new_value = std::move(new_value);
     return change;
   }
 
   void compare_identity() {
-    const auto compare = [&](ChangeId id, std::string_view what, const auto& old_value, const auto& new_value,
+    const auto compare = [&](ChangeRule rule, std::string_view what, const auto& old_value, const auto& new_value,
                              std::string_view format) {
       if (old_value == new_value) return;
       const auto text = [&](const auto& value) { return fmt::format(fmt::runtime(format), value); };
-      add_device_change(id, fmt::format("{} {}", what, text(old_value)), text(new_value));
+      add_device_change(rule, fmt::format("{} {}", what, text(old_value)), text(new_value));
     };
-    compare(ChangeId::device_name, "vendor", before_.vendor_name, after_.vendor_name, "\"{}\"");
-    compare(ChangeId::device_name, "product", before_.product_name, after_.product_name, "\"{}\"");
-    compare(ChangeId::identity, "VendorNumber", before_.vendor_number, after_.vendor_number, "0x{:08X}");
-    compare(ChangeId::identity, "ProductNumber", before_.product_number, after_.product_number, "0x{:08X}");
+    compare("device-name", "vendor", before_.vendor_name, after_.vendor_name, "\"{}\"");
+    compare("device-name", "product", before_.product_name, after_.product_name, "\"{}\"");
+    compare("identity", "VendorNumber", before_.vendor_number, after_.vendor_number, "0x{:08X}");
+    compare("identity", "ProductNumber", before_.product_number, after_.product_number, "0x{:08X}");
     const bool major = before_.revision_number >> 16 != after_.revision_number >> 16;
-    compare(major ? ChangeId::revision_major : ChangeId::revision_minor, "RevisionNumber", before_.revision_number,
-            after_.revision_number, "0x{:08X}");
+    compare(major ? ChangeRule{"revision-major"} : ChangeRule{"revision-minor"}, "RevisionNumber",
+            before_.revision_number, after_.revision_number, "0x{:08X}");
     if (before_.node_id != after_.node_id) {
       const auto text = [](const auto& id) { return id ? fmt::format("{}", *id) : std::string{"none"}; };
-      add_device_change(ChangeId::node_id, text(before_.node_id), text(after_.node_id));
+      add_device_change("node-id", text(before_.node_id), text(after_.node_id));
     }
   }
 
@@ -89,14 +89,14 @@ class DeviceComparison {
     const std::uint64_t new_revision = identity_number(after_, revision_sub_index);
     const bool is_known = old_revision != 0 || new_revision != 0;
     if (!is_known || new_revision >> 16 > old_revision >> 16) return;
-    const auto breaks_wire = [](const Change& change) { return change.breaks_master || change.breaks_pdo; };
+    const auto breaks_wire = [](const Change& change) { return change.breaks.master || change.breaks.pdo; };
     if (std::ranges::none_of(changes_.all(), breaks_wire)) return;
     const auto revision_position = [](const Device& device) {
       const Entry* const entry = device.find(identity_object, revision_sub_index);
       if (entry == nullptr) return Position{device.source};
       return entry->default_value ? entry->default_value->position : entry->position;
     };
-    Change& change = changes_.add(ChangeId::revision_unchanged, entry_label(identity_object, revision_sub_index), "",
+    Change& change = changes_.add("revision-unchanged", entry_label(identity_object, revision_sub_index), "",
                                   revision_position(before_), revision_position(after_));
     change.old_value = fmt::format("{}", old_revision >> 16);
     if (new_revision >> 16 != old_revision >> 16) change.new_value = fmt::format("{}", new_revision >> 16);
@@ -110,29 +110,29 @@ class DeviceComparison {
   }
 
   void compare_dummies() {
-    const auto compare = [&](const Device& one, const Device& other, ChangeId id) {
+    const auto compare = [&](const Device& one, const Device& other, ChangeRule rule) {
       for (const std::uint16_t dummy : one.dummies) {
         if (std::ranges::find(other.dummies, dummy) == other.dummies.end()) {
           const canopen::DataTypeRow* const type = canopen::find_data_type(dummy);
-          add_device_change(id, type != nullptr ? std::string{type->name} : index_label(dummy), "");
+          add_device_change(rule, type != nullptr ? std::string{type->name} : index_label(dummy), "");
         }
       }
     };
-    compare(before_, after_, ChangeId::dummy_removed);
-    compare(after_, before_, ChangeId::dummy_added);
+    compare(before_, after_, "dummy-removed");
+    compare(after_, before_, "dummy-added");
   }
 
   void compare_objects(const Object* a, const Object* b) {
     if (a == nullptr || b == nullptr) {
       const Object& there = a != nullptr ? *a : *b;
-      changes_.add(a != nullptr ? ChangeId::object_removed : ChangeId::object_added, index_label(there.index),
+      changes_.add(a != nullptr ? ChangeRule{"object-removed"} : ChangeRule{"object-added"}, index_label(there.index),
                    there.name, a != nullptr ? a->position : Position{before_.source},
                    b != nullptr ? b->position : Position{after_.source});
       return;
     }
     compare_names(index_label(b->index), *a, *b);
     if (a->type != b->type) {
-      Change& change = changes_.add(ChangeId::object_type, index_label(b->index), b->name, a->position, b->position);
+      Change& change = changes_.add("object-type", index_label(b->index), b->name, a->position, b->position);
       change.old_value = to_string(a->type);
       change.new_value = to_string(b->type);
     }
@@ -148,7 +148,7 @@ class DeviceComparison {
                      bool has_sub_indices) {
     if (a == nullptr || b == nullptr) {
       const Entry& there = a != nullptr ? *a : *b;
-      changes_.add(a != nullptr ? ChangeId::entry_removed : ChangeId::entry_added,
+      changes_.add(a != nullptr ? ChangeRule{"entry-removed"} : ChangeRule{"entry-added"},
                    entry_label(there.index, there.sub_index), there.name,
                    a != nullptr ? a->position : old_object.position, b != nullptr ? b->position : new_object.position);
       return;
@@ -165,7 +165,7 @@ class DeviceComparison {
     const bool compiles = old_name == new_name;
     if (compiles && a.name == b.name) return;
     Change& change =
-        changes_.add(compiles ? ChangeId::name : ChangeId::identifier, label, b.name, a.position, b.position);
+        changes_.add(compiles ? ChangeRule{"name"} : ChangeRule{"identifier"}, label, b.name, a.position, b.position);
     change.old_value = compiles ? fmt::format("\"{}\"", a.name) : old_name;
     change.new_value = compiles ? fmt::format("\"{}\"", b.name) : new_name;
   }

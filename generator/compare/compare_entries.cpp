@@ -21,12 +21,12 @@ using canopen::Mappable;
 struct SpecialDefault {
   std::uint16_t first, last;
   std::uint8_t first_sub_index, last_sub_index;
-  ChangeId change;
+  ChangeRule change;
 };
 
 constexpr SpecialDefault special_defaults[] = {
-    {0x1000, 0x1000, 0, 0, ChangeId::identity},  // device type
-    {0x1018, 0x1018, 1, 2, ChangeId::identity},  // vendor-ID, product code
+    {0x1000, 0x1000, 0, 0, "identity"},  // device type
+    {0x1018, 0x1018, 1, 2, "identity"},  // vendor-ID, product code
 };
 
 constexpr std::uint16_t producer_heartbeat_time = 0x1017;
@@ -83,12 +83,12 @@ class EntryComparison {
     compare_access();
     compare_mapping();
     if (before_.type != after_.type) {
-      add(ChangeId::data_type, before_.position, after_.position, std::string{before_.type->name},
+      add("data-type", before_.position, after_.position, std::string{before_.type->name},
           std::string{after_.type->name});
       return;  // values of different types are not compared
     }
     if (before_.octets != after_.octets) {
-      add(ChangeId::data_type, before_.position, after_.position, sized_type(before_), sized_type(after_));
+      add("data-type", before_.position, after_.position, sized_type(before_), sized_type(after_));
     }
     if (is_number(*before_.type)) {
       compare_limit("low", before_.low_limit, after_.low_limit, lowest(*before_.type), true);
@@ -98,10 +98,10 @@ class EntryComparison {
   }
 
  private:
-  Change& add(ChangeId id, const Position& old_position, const Position& new_position, std::string old_value,
+  Change& add(ChangeRule rule, const Position& old_position, const Position& new_position, std::string old_value,
               std::string new_value) {
     Change& change =
-        changes_.add(id, entry_label(after_.index, after_.sub_index), after_.name, old_position, new_position);
+        changes_.add(rule, entry_label(after_.index, after_.sub_index), after_.name, old_position, new_position);
     change.old_value = std::move(old_value);
     change.new_value = std::move(new_value);
     return change;
@@ -113,9 +113,9 @@ class EntryComparison {
     const canopen::AccessRow& new_row = canopen::row_of(after_.access);
     const bool loses = (old_row.readable && !new_row.readable) || (old_row.writable && !new_row.writable);
     const bool gains = (!old_row.readable && new_row.readable) || (!old_row.writable && new_row.writable);
-    add(loses   ? ChangeId::access_reduced
-        : gains ? ChangeId::access_extended
-                : ChangeId::access_other,
+    add(loses   ? ChangeRule{"access-reduced"}
+        : gains ? ChangeRule{"access-extended"}
+                : ChangeRule{"access-other"},
         before_.access_position, after_.access_position, std::string{old_row.name}, std::string{new_row.name});
   }
 
@@ -125,7 +125,7 @@ class EntryComparison {
       return canopen::allows(before_.mappable(), direction) && !canopen::allows(after_.mappable(), direction);
     };
     const bool reduced = loses(Mappable::tpdo) || loses(Mappable::rpdo);
-    add(reduced ? ChangeId::mapping_reduced : ChangeId::mapping_extended, before_.mapping_position,
+    add(reduced ? ChangeRule{"mapping-reduced"} : ChangeRule{"mapping-extended"}, before_.mapping_position,
         after_.mapping_position, mappable_text(before_), mappable_text(after_));
   }
 
@@ -139,13 +139,13 @@ class EntryComparison {
     if (old_number == new_number && !follows_node_id) return;
     const bool narrowed = follows_node_id || (is_low ? new_number > old_number : new_number < old_number);
     const bool written = canopen::writable(before_.access) || in_rpdo_;
-    const ChangeId id = !written   ? ChangeId::limit_read_only
-                        : narrowed ? ChangeId::limit_narrowed
-                                   : ChangeId::limit_widened;
+    const ChangeRule rule = !written   ? ChangeRule{"limit-read-only"}
+                            : narrowed ? ChangeRule{"limit-narrowed"}
+                                       : ChangeRule{"limit-widened"};
     Change& change =
-        add(id, place_of(old_limit, before_), place_of(new_limit, after_),
+        add(rule, place_of(old_limit, before_), place_of(new_limit, after_),
             fmt::format("{} {}", which, value_text(old_limit, *before_.type)), value_text(new_limit, *after_.type));
-    change.breaks_pdo = id == ChangeId::limit_narrowed && in_rpdo_;
+    change.breaks.pdo = rule == ChangeRule{"limit-narrowed"} && in_rpdo_;
   }
 
   void compare_default() {
@@ -163,12 +163,12 @@ class EntryComparison {
     const Position& new_place = place_of(after_.default_value, after_);
     for (CobIdChange& change :
          compare_cob_ids(before_.default_value, after_.default_value, *before_.type, parameter.service)) {
-      Change& added = add(change.id, old_place, new_place, std::move(change.old_value), std::move(change.new_value));
-      if (change.id == ChangeId::frame_format) added.breaks_pdo = false;
+      Change& added = add(change.rule, old_place, new_place, std::move(change.old_value), std::move(change.new_value));
+      if (change.rule == ChangeRule{"frame-format"}) added.breaks.pdo = false;
     }
   }
 
-  [[nodiscard]] ChangeId default_change() const {
+  [[nodiscard]] ChangeRule default_change() const {
     for (const SpecialDefault& row : special_defaults) {
       if (before_.index >= row.first && before_.index <= row.last && before_.sub_index >= row.first_sub_index &&
           before_.sub_index <= row.last_sub_index) {
@@ -177,9 +177,9 @@ class EntryComparison {
     }
     if (before_.index == producer_heartbeat_time && before_.default_value && before_.default_value->bits != 0) {
       const std::uint64_t time = after_.default_value ? after_.default_value->bits : 0;
-      if (time == 0 || time > before_.default_value->bits) return ChangeId::heartbeat_slowed;
+      if (time == 0 || time > before_.default_value->bits) return ChangeRule{"heartbeat-slowed"};
     }
-    return ChangeId::default_value;
+    return ChangeRule{"default-value"};
   }
 
   [[nodiscard]] bool is_revision() const { return before_.index == 0x1018 && before_.sub_index == 3; }
@@ -187,8 +187,8 @@ class EntryComparison {
   /// CiA 301, 7.5.2.21: the high word counts the changes of the CANopen behaviour.
   void compare_revision() {
     const auto major = [](const std::optional<Value>& value) { return value ? value->bits >> 16 : 0; };
-    add(major(before_.default_value) != major(after_.default_value) ? ChangeId::revision_major
-                                                                    : ChangeId::revision_minor,
+    add(major(before_.default_value) != major(after_.default_value) ? ChangeRule{"revision-major"}
+                                                                    : ChangeRule{"revision-minor"},
         place_of(before_.default_value, before_), place_of(after_.default_value, after_),
         value_text(before_.default_value, *before_.type), value_text(after_.default_value, *after_.type));
   }

@@ -13,7 +13,7 @@
 namespace edsc {
 
 struct CobIdChange {
-  ChangeId id;
+  ChangeRule rule;
   std::string old_value;  ///< the CAN-ID if it changed, else the whole COB-ID
   std::string new_value;
 };

@@ -61,20 +61,21 @@ class PdoComparison {
   void compare() {
     compare_state();
     compare_cob_id();
-    compare_parameter(transmission_type_sub_index, is_used_ ? ChangeId::pdo_transmission : ChangeId::default_value);
+    compare_parameter(transmission_type_sub_index,
+                      is_used_ ? ChangeRule{"pdo-transmission"} : ChangeRule{"default-value"});
     compare_timing();
     compare_layout();
   }
 
  private:
-  Change& add(ChangeId id, const Position& old_position, const Position& new_position) {
-    return changes_.add(id, pdo_label(after_), after_.communication != nullptr ? after_.communication->name : "",
+  Change& add(ChangeRule rule, const Position& old_position, const Position& new_position) {
+    return changes_.add(rule, pdo_label(after_), after_.communication != nullptr ? after_.communication->name : "",
                         old_position, new_position);
   }
 
   void compare_state() {
     if (on_by_default(before_) == on_by_default(after_)) return;
-    report(cob_id_sub_index, on_by_default(before_) ? ChangeId::pdo_disabled : ChangeId::pdo_enabled);
+    report(cob_id_sub_index, on_by_default(before_) ? ChangeRule{"pdo-disabled"} : ChangeRule{"pdo-enabled"});
   }
 
   /// CAN-ID and flags, except for the valid bit of the PDO.
@@ -87,10 +88,11 @@ class PdoComparison {
     const canopen::DataTypeRow& type = old_entry != nullptr ? *old_entry->type : *new_entry->type;
     const CobIdService service = after_.direction == PdoDirection::receive ? CobIdService::rpdo : CobIdService::tpdo;
     for (CobIdChange& found : compare_cob_ids(old_id, new_id, type, service)) {
-      const ChangeId id = found.id == ChangeId::pdo_cob_id && !is_used_ ? ChangeId::default_value : found.id;
+      const ChangeRule rule =
+          found.rule == ChangeRule{"pdo-cob-id"} && !is_used_ ? ChangeRule{"default-value"} : found.rule;
       Change& change =
-          add(id, old_id ? old_id->position : before_.position, new_id ? new_id->position : after_.position);
-      if (id == ChangeId::default_value && new_entry != nullptr) change.name = new_entry->name;
+          add(rule, old_id ? old_id->position : before_.position, new_id ? new_id->position : after_.position);
+      if (rule == ChangeRule{"default-value"} && new_entry != nullptr) change.name = new_entry->name;
       change.old_value = std::move(found.old_value);
       change.new_value = std::move(found.new_value);
     }
@@ -104,17 +106,17 @@ class PdoComparison {
     };
     const unsigned last = std::max(count(before_), count(after_));
     for (unsigned sub_index = first_timing_sub_index; sub_index <= last; ++sub_index) {
-      compare_parameter(static_cast<std::uint8_t>(sub_index), ChangeId::pdo_timing);
+      compare_parameter(static_cast<std::uint8_t>(sub_index), "pdo-timing");
     }
   }
 
-  void compare_parameter(std::uint8_t sub_index, ChangeId id) {
+  void compare_parameter(std::uint8_t sub_index, ChangeRule rule) {
     const auto old_value = default_of(parameter(before_, sub_index));
     const auto new_value = default_of(parameter(after_, sub_index));
-    if (!same_value(old_value, new_value)) report(sub_index, id);
+    if (!same_value(old_value, new_value)) report(sub_index, rule);
   }
 
-  void report(std::uint8_t sub_index, ChangeId id) {
+  void report(std::uint8_t sub_index, ChangeRule rule) {
     const auto text = [&](const Pdo& pdo) {
       const Entry* const entry = parameter(pdo, sub_index);
       return entry != nullptr ? value_text(entry->default_value, *entry->type) : std::string{"none"};
@@ -123,9 +125,9 @@ class PdoComparison {
       const auto value = default_of(parameter(pdo, sub_index));
       return value ? value->position : pdo.position;
     };
-    const bool has_own_name = id == ChangeId::pdo_timing || id == ChangeId::default_value;
+    const bool has_own_name = rule == ChangeRule{"pdo-timing"} || rule == ChangeRule{"default-value"};
     const Entry* const entry = parameter(after_, sub_index);
-    Change& change = add(id, place(before_), place(after_));
+    Change& change = add(rule, place(before_), place(after_));
     if (has_own_name && entry != nullptr) change.name = entry->name;
     change.old_value = text(before_);
     change.new_value = text(after_);
@@ -140,9 +142,9 @@ class PdoComparison {
     const bool ignores_more = after_.direction == PdoDirection::transmit || old_layout.empty();
     const bool extended = old_end == old_layout.end() && ignores_more;
     const auto first = static_cast<std::size_t>(old_end - old_layout.begin());
-    Change& change = add(extended ? ChangeId::pdo_layout_extended : ChangeId::pdo_layout,
+    Change& change = add(extended ? ChangeRule{"pdo-layout-extended"} : ChangeRule{"pdo-layout"},
                          mapping_position(before_, first), mapping_position(after_, first));
-    change.breaks_pdo = change.breaks_pdo && is_used_;
+    change.breaks.pdo = change.breaks.pdo && is_used_;
     change.old_value = layout_text(old_layout);
     change.new_value = layout_text(new_layout);
   }
@@ -166,13 +168,11 @@ void compare_pdos(const Device& before, const Device& after, Changes& changes) {
     if (const Pdo* const same = find(after, pdo)) {
       PdoComparison{pdo, *same, changes}.compare();
     } else {
-      changes.add(ChangeId::pdo_removed, pdo_label(pdo), "", pdo.position, {after.source}).breaks_pdo =
-          on_by_default(pdo);
+      changes.add("pdo-removed", pdo_label(pdo), "", pdo.position, {after.source}).breaks.pdo = on_by_default(pdo);
     }
   }
   for (const Pdo& pdo : after.pdos) {
-    if (find(before, pdo) == nullptr)
-      changes.add(ChangeId::pdo_added, pdo_label(pdo), "", {before.source}, pdo.position);
+    if (find(before, pdo) == nullptr) changes.add("pdo-added", pdo_label(pdo), "", {before.source}, pdo.position);
   }
 }
 

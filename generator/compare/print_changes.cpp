@@ -15,10 +15,10 @@ namespace {
 
 std::vector<std::string_view> broken_by(const Change& change) {
   std::vector<std::string_view> broken;
-  if (change.breaks_master) broken.push_back("master");
-  if (change.breaks_pdo) broken.push_back("PDO partner");
-  if (change.breaks_source) broken.push_back("source code");
-  if (change.breaks_storage) broken.push_back("stored values");
+  if (change.breaks.master) broken.push_back("master");
+  if (change.breaks.pdo) broken.push_back("PDO partner");
+  if (change.breaks.source) broken.push_back("source code");
+  if (change.breaks.storage) broken.push_back("stored values");
   return broken;
 }
 
@@ -27,7 +27,7 @@ std::string markdown_row(const Change& change) {
   const std::string line = change.new_position.line == 0 ? "-" : fmt::format("{}", change.new_position.line);
   const std::vector<std::string_view> broken = broken_by(change);
   return fmt::format("| {}{} | {} | {} | {} | `{}` |\n", change.entry, name, markdown_text(message_of(change)),
-                     broken.empty() ? "-" : fmt::format("{}", fmt::join(broken, ", ")), line, kind_of(change.id).name);
+                     broken.empty() ? "-" : fmt::format("{}", fmt::join(broken, ", ")), line, change.rule.text());
 }
 
 std::string markdown_table(const Changes& changes, bool breaking) {
@@ -44,11 +44,11 @@ nlohmann::ordered_json text_or_null(const std::string& text) {
 
 nlohmann::ordered_json change_json(const Change& change) {
   nlohmann::ordered_json breaks = nlohmann::ordered_json::array();
-  if (change.breaks_master) breaks.push_back("master");
-  if (change.breaks_pdo) breaks.push_back("pdo");
-  if (change.breaks_source) breaks.push_back("source");
-  if (change.breaks_storage) breaks.push_back("storage");
-  return {{"kind", kind_of(change.id).name},
+  if (change.breaks.master) breaks.push_back("master");
+  if (change.breaks.pdo) breaks.push_back("pdo");
+  if (change.breaks.source) breaks.push_back("source");
+  if (change.breaks.storage) breaks.push_back("storage");
+  return {{"kind", change.rule.text()},
           {"entry", change.entry},
           {"name", change.name},
           {"old", text_or_null(change.old_value)},
@@ -88,10 +88,10 @@ std::string changes_as_text(const Changes& changes, bool colour) {
   for (const Change& change : changes.all()) {
     const std::string_view start = !colour ? "" : change.is_breaking() ? "\x1B[1;31m" : "\x1B[1;32m";
     const std::string name = change.name.empty() ? "" : fmt::format(" \"{}\"", change.name);
-    text += fmt::format("{}: {}{}{}: {}{}: {} [{}] (was {})\n", printable(text_of_place(change.new_position)), start,
-                        verdict_text(change), colour ? "\x1B[0m" : "", change.entry, printable(name),
-                        printable(message_of(change)), kind_of(change.id).name,
-                        printable(text_of_place(change.old_position)));
+    text +=
+        fmt::format("{}: {}{}{}: {}{}: {} [{}] (was {})\n", printable(text_of_place(change.new_position)), start,
+                    verdict_text(change), colour ? "\x1B[0m" : "", change.entry, printable(name),
+                    printable(message_of(change)), change.rule.text(), printable(text_of_place(change.old_position)));
   }
   return text +
          fmt::format("{} breaking, {} compatible\n", changes.breaking(), changes.all().size() - changes.breaking());

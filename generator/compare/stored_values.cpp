@@ -127,8 +127,7 @@ std::vector<StoredValueChange> compare_stored_values(const StoringDevice& before
 void add_lost_values(const std::vector<StoredValueChange>& values, Changes& changes) {
   for (const StoredValueChange& value : values) {
     if (value.fate == StoredFate::kept) continue;
-    Change& change =
-        changes.add(ChangeId::stored_value_lost, value.entry, value.name, value.old_position, value.new_position);
+    Change& change = changes.add("stored-value-lost", value.entry, value.name, value.old_position, value.new_position);
     change.old_value = fmt::format("({})", value.why);
   }
 }

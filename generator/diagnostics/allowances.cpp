@@ -26,7 +26,7 @@ void Allowances::add(Allowance allowance) {
   all_.push_back(std::move(allowance));
 }
 
-std::optional<std::size_t> Allowances::find(std::string_view rule, const Position& position) const {
+std::optional<std::size_t> Allowances::find(RuleId rule, const Position& position) const {
   if (all_.empty() || position.file != outline_.file) return std::nullopt;
   if (position.line != 0) {
     if (const auto found = find(rule, AllowanceScope{Kind::line, position.line})) return found;
@@ -44,12 +44,12 @@ std::optional<std::size_t> Allowances::find(std::string_view rule, const Positio
   return find(rule, AllowanceScope{});
 }
 
-std::optional<std::size_t> Allowances::find(std::string_view rule, const AllowanceScope& scope) const {
-  const auto found = places_.find(Key{std::string{rule}, scope});
+std::optional<std::size_t> Allowances::find(RuleId rule, const AllowanceScope& scope) const {
+  const auto found = places_.find(Key{rule, scope});
   return found == places_.end() ? std::nullopt : std::optional{found->second};
 }
 
-std::optional<std::size_t> Allowances::find_object(std::string_view rule, const SheetPart& part) const {
+std::optional<std::size_t> Allowances::find_object(RuleId rule, const SheetPart& part) const {
   if (!part.index) return std::nullopt;
   if (part.sub_index) {
     if (const auto found = find(rule, AllowanceScope{Kind::entry, 0, *part.index, *part.sub_index})) return found;

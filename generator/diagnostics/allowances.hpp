@@ -7,10 +7,10 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "diagnostics/position.hpp"
+#include "rules/rule.hpp"
 
 namespace edsc {
 
@@ -42,7 +42,7 @@ struct AllowanceScope {
 };
 
 struct Allowance {
-  std::string rule;
+  RuleId rule;
   std::string reason;
   Position position;       ///< of the allowance itself
   bool in_source = false;  ///< a comment in the EDS; otherwise a member of the options file
@@ -57,20 +57,20 @@ class Allowances {
   void add(Allowance allowance);
 
   /// The index in `all()` of the first allowance of `rule` that applies to `position`, narrowest scope first.
-  [[nodiscard]] std::optional<std::size_t> find(std::string_view rule, const Position& position) const;
+  [[nodiscard]] std::optional<std::size_t> find(RuleId rule, const Position& position) const;
   void count_finding(std::size_t allowance) { ++all_[allowance].findings; }
 
   [[nodiscard]] const std::vector<Allowance>& all() const { return all_; }
 
  private:
   struct Key {
-    std::string rule;
+    RuleId rule;
     AllowanceScope scope;
     auto operator<=>(const Key&) const = default;
   };
 
-  [[nodiscard]] std::optional<std::size_t> find(std::string_view rule, const AllowanceScope& scope) const;
-  [[nodiscard]] std::optional<std::size_t> find_object(std::string_view rule, const SheetPart& part) const;
+  [[nodiscard]] std::optional<std::size_t> find(RuleId rule, const AllowanceScope& scope) const;
+  [[nodiscard]] std::optional<std::size_t> find_object(RuleId rule, const SheetPart& part) const;
 
   SheetOutline outline_;
   std::vector<Allowance> all_;

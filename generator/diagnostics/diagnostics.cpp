@@ -6,11 +6,6 @@
 
 namespace edsc {
 
-std::string_view to_string(Severity severity) {
-  constexpr std::string_view words[] = {"note", "warning", "error"};
-  return words[static_cast<std::size_t>(severity)];
-}
-
 void Diagnostic::add_place(const Position& place, std::string text) {
   ++places;
   if (places > max_places) {
@@ -44,10 +39,10 @@ void Diagnostics::report(Diagnostic diagnostic) {
     return;
   }
   if (tally.found == max_per_rule + 1) {
-    tally.suppressed_row = suppressed_.size();
-    suppressed_.push_back({kind.file, kind.rule, kind.severity, 0, tally.last_listed});
+    tally.omitted_row = omitted_.size();
+    omitted_.push_back({kind.file, kind.rule, kind.severity, 0, tally.last_listed});
   }
-  ++suppressed_[tally.suppressed_row].count;
+  ++omitted_[tally.omitted_row].count;
 }
 
 bool Diagnostics::join(const Kind& kind, Diagnostic& diagnostic) {
@@ -61,16 +56,16 @@ bool Diagnostics::join(const Kind& kind, Diagnostic& diagnostic) {
   return true;
 }
 
-void Diagnostics::silence(std::string rule) {
+void Diagnostics::silence(RuleId rule) {
   const bool is_new = std::ranges::find(silenced_, rule, &Silenced::rule) == silenced_.end();
-  if (is_new) silenced_.push_back({std::move(rule)});
+  if (is_new) silenced_.push_back({rule});
 }
 
-bool Diagnostics::has_silenced(std::string_view rule) const {
+bool Diagnostics::has_silenced(RuleId rule) const {
   return std::ranges::any_of(silenced_, [&](const Silenced& one) { return one.rule == rule && one.has_fired; });
 }
 
-bool Diagnostics::counts_only(std::string_view rule, Severity severity, const SourceFile* file) const {
+bool Diagnostics::counts_only(AnyRule rule, Severity severity, const SourceFile* file) const {
   const Severity listed_as = strict_ && severity == Severity::warning ? Severity::error : severity;
   const auto found = tallies_.find(Kind{file, rule, listed_as});
   return found != tallies_.end() && found->second.found >= max_per_rule;
@@ -78,8 +73,7 @@ bool Diagnostics::counts_only(std::string_view rule, Severity severity, const So
 
 bool Diagnostics::is_tolerated(const Diagnostic& diagnostic) const {
   return foreign_file_ != nullptr && diagnostic.severity == Severity::error &&
-         diagnostic.position.file == foreign_file_ &&
-         std::ranges::find(fatal_rules_, diagnostic.rule) == fatal_rules_.end();
+         diagnostic.position.file == foreign_file_ && !diagnostic.rule.row().is_fatal;
 }
 
 bool Diagnostics::drop_silenced(const Diagnostic& diagnostic) {
@@ -95,8 +89,9 @@ bool Diagnostics::set_aside(Diagnostic& diagnostic) {
   const auto allowance = allowances_.find(diagnostic.rule, diagnostic.position);
   if (!allowance) return false;
   allowances_.count_finding(*allowance);
-  ++allowed_findings_;
-  if (allowances_.all()[*allowance].findings <= max_per_rule) allowed_.push_back({std::move(diagnostic), *allowance});
+  ++suppressed_findings_;
+  if (allowances_.all()[*allowance].findings <= max_per_rule)
+    suppressed_.push_back({std::move(diagnostic), *allowance});
   return true;
 }
 

@@ -6,19 +6,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <span>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "diagnostics/allowances.hpp"
 #include "diagnostics/position.hpp"
-#include "diagnostics/rule.hpp"
+#include "rules/check_rules.hpp"
 
 namespace edsc {
-
-[[nodiscard]] std::string_view to_string(Severity severity);
 
 struct Note {
   Position position;
@@ -27,7 +23,7 @@ struct Note {
 
 struct Diagnostic {
   Severity severity = Severity::error;
-  std::string_view rule;  ///< id in the rule table; static
+  RuleId rule;
   Position position;
   std::string message;
   std::vector<Note> notes;  ///< related positions
@@ -56,26 +52,26 @@ class Diagnostics {
  public:
   void error(ErrorRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
              std::string cause = {}) {
-    report({Severity::error, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
+    report({Severity::error, rule, position, std::move(message), std::move(notes), std::move(cause)});
   }
   void warning(WarningRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
                std::string cause = {}) {
-    report({Severity::warning, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
+    report({Severity::warning, rule, position, std::move(message), std::move(notes), std::move(cause)});
   }
   void note(NoteRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
             std::string cause = {}) {
-    report({Severity::note, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
+    report({Severity::note, rule, position, std::move(message), std::move(notes), std::move(cause)});
   }
   /// Reports a finding with the usual severity of the rule.
   void usual(AnyRule rule, const Position& position, std::string message, std::vector<Note> notes = {},
              std::string cause = {}) {
-    report({rule.row().severity, rule.id(), position, std::move(message), std::move(notes), std::move(cause)});
+    report({rule.row().severity, rule, position, std::move(message), std::move(notes), std::move(cause)});
   }
   /// Adds a finding of another collection.
   void report(Diagnostic diagnostic);
 
   /// Drops the warnings and notes of a rule; its errors remain, since they cause parts of the device to be left out.
-  void silence(std::string rule);
+  void silence(RuleId rule);
   /// Sets aside the findings to which an allowance applies: warnings and notes, but not errors, as in silence().
   void set_outline(SheetOutline outline) { allowances_.set_outline(std::move(outline)); }
   void allow(Allowance allowance) { allowances_.add(std::move(allowance)); }
@@ -84,45 +80,43 @@ class Diagnostics {
   /// Whether a warning or an error was dropped or set aside.
   [[nodiscard]] bool any_silenced() const { return any_silenced_; }
   /// Whether silence() of this rule has dropped a finding.
-  [[nodiscard]] bool has_silenced(std::string_view rule) const;
+  [[nodiscard]] bool has_silenced(RuleId rule) const;
   /// From now on, errors at positions in `file` become warnings (`--keep-going`), for files that the user cannot
-  /// change, except errors of the rules in `fatal`. Such a warning can still be silenced.
-  void keep_going(const SourceFile* file, std::span<const std::string_view> fatal) {
-    foreign_file_ = file;
-    fatal_rules_ = fatal;
-  }
+  /// change, except errors of fatal rules. Such a warning can still be silenced.
+  void keep_going(const SourceFile* file) { foreign_file_ = file; }
   /// From now on, warnings count as errors (`--strict`); notes do not.
   void treat_warnings_as_errors() { strict_ = true; }
 
   /// From now on, notes are dropped: only `edsc check` prints them.
   void drop_notes() { drop_notes_ = true; }
 
-  /// The listed findings. `errors()`, `warnings()` and `notes()` also count the suppressed ones.
+  /// The listed findings. `errors()`, `warnings()` and `notes()` also count the omitted ones.
   [[nodiscard]] const std::vector<Diagnostic>& all() const { return all_; }
   [[nodiscard]] std::size_t errors() const { return counts_[Severity::error]; }
   [[nodiscard]] std::size_t warnings() const { return counts_[Severity::warning]; }
   [[nodiscard]] std::size_t notes() const { return counts_[Severity::note]; }
   /// The number of findings of `rule` in `file` after the first `max_per_rule`, which are counted only.
-  struct Suppressed {
+  struct Omitted {
     const SourceFile* file;
-    std::string_view rule;
+    RuleId rule;
     Severity severity;
     std::size_t count;
     std::size_t last_listed;  ///< index in `all()` of the last listed one of this kind
   };
-  [[nodiscard]] const std::vector<Suppressed>& suppressed() const { return suppressed_; }
+  [[nodiscard]] const std::vector<Omitted>& omitted() const { return omitted_; }
   /// Whether the next finding of this kind will be counted only, so that it does not need a message.
-  [[nodiscard]] bool counts_only(std::string_view rule, Severity severity, const SourceFile* file) const;
+  [[nodiscard]] bool counts_only(AnyRule rule, Severity severity, const SourceFile* file) const;
 
-  /// A finding that was set aside, and its index in `allowances()`. At most `max_per_rule` are stored per allowance.
-  struct Allowed {
+  /// A finding that an allowance set aside, a suppression in SARIF, and the index of the allowance in `allowances()`.
+  /// At most `max_per_rule` are stored per allowance.
+  struct Suppressed {
     Diagnostic diagnostic;
     std::size_t allowance;
   };
-  [[nodiscard]] const std::vector<Allowed>& allowed() const { return allowed_; }
+  [[nodiscard]] const std::vector<Suppressed>& suppressed() const { return suppressed_; }
   [[nodiscard]] const std::vector<Allowance>& allowances() const { return allowances_.all(); }
-  /// The number of findings that were set aside.
-  [[nodiscard]] std::size_t allowed_findings() const { return allowed_findings_; }
+  /// The number of findings that allowances set aside.
+  [[nodiscard]] std::size_t suppressed_findings() const { return suppressed_findings_; }
 
   /// Maximum number of listed findings of one rule and severity per file; any more are counted only.
   static constexpr std::size_t max_per_rule = 50;
@@ -130,7 +124,7 @@ class Diagnostics {
  private:
   struct Kind {
     const SourceFile* file;
-    std::string_view rule;
+    RuleId rule;
     Severity severity;
     auto operator<=>(const Kind&) const = default;
   };
@@ -140,13 +134,13 @@ class Diagnostics {
     auto operator<=>(const Cause&) const = default;
   };
   struct Silenced {
-    std::string rule;
+    RuleId rule;
     bool has_fired = false;
   };
   struct Tally {
     std::size_t found = 0;
-    std::size_t last_listed = 0;     ///< in `all_`
-    std::size_t suppressed_row = 0;  ///< in `suppressed_`, once more than `max_per_rule` were found
+    std::size_t last_listed = 0;  ///< in `all_`
+    std::size_t omitted_row = 0;  ///< in `omitted_`, once more than `max_per_rule` were found
   };
 
   /// Whether the finding is another place of a listed finding, or of one that is only counted.
@@ -158,7 +152,7 @@ class Diagnostics {
   std::vector<Diagnostic> all_;
   std::map<Kind, Tally> tallies_;
   std::map<Cause, std::size_t> first_of_cause_;  ///< index in `all_`; may be beyond its end
-  std::vector<Suppressed> suppressed_;
+  std::vector<Omitted> omitted_;
   std::vector<Silenced> silenced_;
   SeverityCounts counts_;
   bool strict_ = false;
@@ -166,10 +160,9 @@ class Diagnostics {
   bool silence_errors_ = false;
   bool any_silenced_ = false;
   Allowances allowances_;
-  std::vector<Allowed> allowed_;
-  std::size_t allowed_findings_ = 0;
+  std::vector<Suppressed> suppressed_;
+  std::size_t suppressed_findings_ = 0;
   const SourceFile* foreign_file_ = nullptr;
-  std::span<const std::string_view> fatal_rules_;
 };
 
 }  // namespace edsc

@@ -49,11 +49,11 @@ std::vector<FileSum> sums_by_file(const Diagnostics& diagnostics, bool with_allo
   for (const Diagnostic& diagnostic : diagnostics.all()) {
     ++sum_of(diagnostic.position.file).counts[diagnostic.severity];
   }
-  for (const Diagnostics::Suppressed& suppressed : diagnostics.suppressed()) {
-    sum_of(suppressed.file).counts[suppressed.severity] += suppressed.count;
+  for (const Diagnostics::Omitted& omitted : diagnostics.omitted()) {
+    sum_of(omitted.file).counts[omitted.severity] += omitted.count;
   }
-  if (with_allowed && diagnostics.allowed_findings() > 0) {
-    sum_of(diagnostics.allowed().front().diagnostic.position.file).allowed += diagnostics.allowed_findings();
+  if (with_allowed && diagnostics.suppressed_findings() > 0) {
+    sum_of(diagnostics.suppressed().front().diagnostic.position.file).allowed += diagnostics.suppressed_findings();
   }
   return sums;
 }
@@ -63,7 +63,7 @@ class TextPrinter {
   TextPrinter(std::string& out, bool colour) : out_(out), palette_(colour ? coloured : plain) {}
 
   void print(const Diagnostic& diagnostic) {
-    print_head(diagnostic.position, diagnostic.severity, diagnostic.message, diagnostic.rule);
+    print_head(diagnostic.position, diagnostic.severity, diagnostic.message, diagnostic.rule.text());
     print_source(diagnostic.position);
     for (const Note& note : diagnostic.notes) {
       print_head(note.position, Severity::note, note.message, {});
@@ -78,9 +78,9 @@ class TextPrinter {
     }
   }
 
-  void print(const Diagnostics::Suppressed& suppressed) {
-    print_file(suppressed.file);
-    print_message(suppressed.severity, fmt::format("{} more of this kind", suppressed.count), suppressed.rule);
+  void print(const Diagnostics::Omitted& omitted) {
+    print_file(omitted.file);
+    print_message(omitted.severity, fmt::format("{} more of this kind", omitted.count), omitted.rule.text());
   }
 
   void print(const FileSum& sum) {
@@ -150,15 +150,15 @@ nlohmann::json to_json(const Diagnostic& diagnostic) {
   }
   nlohmann::json row = to_json(diagnostic.position);
   row["severity"] = to_string(diagnostic.severity);
-  row["rule"] = diagnostic.rule;
+  row["rule"] = diagnostic.rule.text();
   row["message"] = diagnostic.message;
   row["notes"] = std::move(notes);
   if (diagnostic.places > 1) row["places"] = diagnostic.places;
   return row;
 }
 
-nlohmann::json to_json(const Diagnostics::Allowed& allowed, const Allowance& allowance) {
-  nlohmann::json row = to_json(allowed.diagnostic);
+nlohmann::json to_json(const Diagnostics::Suppressed& suppressed, const Allowance& allowance) {
+  nlohmann::json row = to_json(suppressed.diagnostic);
   nlohmann::json& why = row["allowance"] = to_json(allowance.position);
   why["kind"] = allowance.in_source ? "inSource" : "external";
   why["reason"] = allowance.reason;
@@ -167,17 +167,17 @@ nlohmann::json to_json(const Diagnostics::Allowed& allowed, const Allowance& all
 
 nlohmann::json allowed_rows(const Diagnostics& diagnostics) {
   nlohmann::json rows = nlohmann::json::array();
-  for (const Diagnostics::Allowed& one : diagnostics.allowed()) {
+  for (const Diagnostics::Suppressed& one : diagnostics.suppressed()) {
     rows.push_back(to_json(one, diagnostics.allowances()[one.allowance]));
   }
   return rows;
 }
 
-nlohmann::json to_json(const Diagnostics::Suppressed& suppressed) {
-  return {{"file", suppressed.file == nullptr ? std::string() : suppressed.file->name()},
-          {"severity", to_string(suppressed.severity)},
-          {"rule", suppressed.rule},
-          {"count", suppressed.count}};
+nlohmann::json to_json(const Diagnostics::Omitted& omitted) {
+  return {{"file", omitted.file == nullptr ? std::string() : omitted.file->name()},
+          {"severity", to_string(omitted.severity)},
+          {"rule", omitted.rule.text()},
+          {"count", omitted.count}};
 }
 
 template <typename Rows>
@@ -196,9 +196,9 @@ void print_text(std::string& out, const Diagnostics& diagnostics, bool colour, b
   const std::vector<Diagnostic>& all = diagnostics.all();
   for (std::size_t at = 0; at < all.size(); ++at) {
     printer.print(all[at]);
-    for (const Diagnostics::Suppressed& suppressed : diagnostics.suppressed()) {
-      if (suppressed.last_listed == at) {
-        printer.print(suppressed);
+    for (const Diagnostics::Omitted& omitted : diagnostics.omitted()) {
+      if (omitted.last_listed == at) {
+        printer.print(omitted);
       }
     }
   }
@@ -217,11 +217,11 @@ nlohmann::json print_json(const Diagnostics& diagnostics) {
   return {{"version", 1},
           {"diagnostics", to_json_array(diagnostics.all())},
           {"allowed_diagnostics", allowed_rows(diagnostics)},
-          {"suppressed", to_json_array(diagnostics.suppressed())},
+          {"suppressed", to_json_array(diagnostics.omitted())},
           {"errors", diagnostics.errors()},
           {"warnings", diagnostics.warnings()},
           {"notes", diagnostics.notes()},
-          {"allowed", diagnostics.allowed_findings()}};
+          {"allowed", diagnostics.suppressed_findings()}};
 }
 
 }  // namespace edsc

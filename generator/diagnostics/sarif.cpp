@@ -57,21 +57,21 @@ json suppression_of(const Allowance& allowance) {
 
 }  // namespace
 
-SarifLog::SarifLog(std::string_view version, const std::vector<SarifRule>& rules) {
+SarifLog::SarifLog(std::string_view version, std::span<const Rule> rules, std::string (*url_of)(const Rule&)) {
   json descriptors = json::array();
-  for (const SarifRule& rule : rules) {
-    rule_index_.emplace(rule.id, rule_index_.size());
+  for (const Rule& rule : rules) {
+    rule_index_.emplace(RuleId{rule}, rule_index_.size());
     descriptors.push_back({{"id", rule.id},
-                           {"shortDescription", {{"text", rule.description}}},
+                           {"shortDescription", {{"text", rule.title}}},
                            {"help", {{"text", rule.source}}},
-                           {"helpUri", rule.url},
-                           {"defaultConfiguration", {{"level", to_string(rule.level)}}}});
+                           {"helpUri", url_of(rule)},
+                           {"defaultConfiguration", {{"level", to_string(rule.severity)}}}});
   }
   driver_ = {{"name", "edsc"}, {"version", version}, {"rules", std::move(descriptors)}};
 }
 
 nlohmann::ordered_json SarifLog::result_of(const Diagnostic& diagnostic) const {
-  json result = {{"ruleId", diagnostic.rule}};
+  json result = {{"ruleId", diagnostic.rule.text()}};
   if (const auto at = rule_index_.find(diagnostic.rule); at != rule_index_.end()) result["ruleIndex"] = at->second;
   result["level"] = to_string(diagnostic.severity);
   result["message"] = {{"text", diagnostic.message}};
@@ -86,17 +86,17 @@ nlohmann::ordered_json SarifLog::result_of(const Diagnostic& diagnostic) const {
 
 void SarifLog::add(const Diagnostics& diagnostics) {
   for (const Diagnostic& diagnostic : diagnostics.all()) results_.push_back(result_of(diagnostic));
-  for (const Diagnostics::Allowed& allowed : diagnostics.allowed()) {
-    json result = result_of(allowed.diagnostic);
-    result["suppressions"].push_back(suppression_of(diagnostics.allowances()[allowed.allowance]));
+  for (const Diagnostics::Suppressed& suppressed : diagnostics.suppressed()) {
+    json result = result_of(suppressed.diagnostic);
+    result["suppressions"].push_back(suppression_of(diagnostics.allowances()[suppressed.allowance]));
     results_.push_back(std::move(result));
   }
-  for (const Diagnostics::Suppressed& suppressed : diagnostics.suppressed()) {
+  for (const Diagnostics::Omitted& omitted : diagnostics.omitted()) {
     json notification = {
         {"level", "note"},
-        {"message", {{"text", fmt::format("{} of {}", counted(suppressed.count, "more finding"), suppressed.rule)}}},
-        {"associatedRule", {{"id", suppressed.rule}}}};
-    if (suppressed.file != nullptr) notification["locations"] = {location_of(Position{suppressed.file})};
+        {"message", {{"text", fmt::format("{} of {}", counted(omitted.count, "more finding"), omitted.rule.text())}}},
+        {"associatedRule", {{"id", omitted.rule.text()}}}};
+    if (omitted.file != nullptr) notification["locations"] = {location_of(Position{omitted.file})};
     notifications_.push_back(std::move(notification));
   }
 }

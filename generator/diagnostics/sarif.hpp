@@ -1,30 +1,23 @@
 /// Findings as SARIF 2.1.0 for code review and CI systems.
 #pragma once
 
+#include <cstddef>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <string_view>
-#include <unordered_map>
-#include <vector>
 
 #include "diagnostics/diagnostics.hpp"
 
 namespace edsc {
 
-/// The part of a row of the rule table that SARIF needs.
-struct SarifRule {
-  std::string_view id;
-  Severity level;
-  std::string_view description;
-  std::string_view source;  ///< the clause
-  std::string url;          ///< of its documentation
-};
-
 /// One run over any number of files. File names may contain bytes that are not UTF-8: dump the document with
 /// nlohmann::json::error_handler_t::replace.
 class SarifLog {
  public:
-  SarifLog(std::string_view version, const std::vector<SarifRule>& rules);
+  /// `url_of` returns where a rule is documented.
+  SarifLog(std::string_view version, std::span<const Rule> rules, std::string (*url_of)(const Rule&));
 
   /// The source files need not outlive this call.
   void add(const Diagnostics& diagnostics);
@@ -38,7 +31,7 @@ class SarifLog {
   [[nodiscard]] nlohmann::ordered_json result_of(const Diagnostic& diagnostic) const;
 
   nlohmann::ordered_json driver_;
-  std::unordered_map<std::string_view, std::size_t> rule_index_;
+  std::map<RuleId, std::size_t> rule_index_;
   nlohmann::ordered_json results_ = nlohmann::ordered_json::array();
   nlohmann::ordered_json notifications_ = nlohmann::ordered_json::array();
 };

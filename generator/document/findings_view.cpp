@@ -31,19 +31,19 @@ void add_findings(const Diagnostics& diagnostics, Json& view) {
     std::string message = one.message;
     if (one.places > 1) message += fmt::format(" ({})", counted(one.places, "place"));
     rows.push_back({{"severity", to_string(one.severity)},
-                    {"rule", one.rule},
+                    {"rule", one.rule.text()},
                     {"message", std::move(message)},
                     {"place", place_text(one.position)}});
   }
-  for (const Diagnostics::Suppressed& one : diagnostics.suppressed()) {
+  for (const Diagnostics::Omitted& one : diagnostics.omitted()) {
     rows.push_back({{"severity", to_string(one.severity)},
-                    {"rule", one.rule},
+                    {"rule", one.rule.text()},
                     {"message", fmt::format("{} more of this kind", one.count)},
                     {"place", place_text(Position{one.file})}});
   }
   std::string sentence = fmt::format("{}, {}, {}", counted(diagnostics.errors(), "error"),
                                      counted(diagnostics.warnings(), "warning"), counted(diagnostics.notes(), "note"));
-  if (diagnostics.allowed_findings() > 0) sentence += fmt::format(", {} allowed", diagnostics.allowed_findings());
+  if (diagnostics.suppressed_findings() > 0) sentence += fmt::format(", {} allowed", diagnostics.suppressed_findings());
   view["findings_sentence"] = sentence;
   view["has_findings"] = !rows.empty();
   view["findings"] = std::move(rows);
@@ -55,14 +55,14 @@ void add_changes(const ComparedWith* compared, Json& view) {
   if (compared == nullptr) return;
   Json rows = Json::array();
   for (const Change& change : compared->changes.all()) {
-    const bool is_in_page = change.id != ChangeId::object_removed;
+    const bool is_in_page = change.rule != ChangeRule{"object-removed"};
     rows.push_back({{"entry", change.entry},
                     {"name", shown(change.name)},
                     {"href", is_in_page ? shown(object_of(change)) : Json(nullptr)},
                     {"message", message_of(change)},
                     {"verdict", verdict_text(change)},
                     {"class", change.is_breaking() ? "breaking" : "compatible"},
-                    {"kind", kind_of(change.id).name},
+                    {"kind", change.rule.text()},
                     {"line", shown(line_text(change.new_position))}});
   }
   const std::size_t breaking = compared->changes.breaking();

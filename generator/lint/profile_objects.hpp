@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "diagnostics/rule.hpp"
+#include "rules/check_rules.hpp"
 
 namespace edsc {
 

@@ -13,11 +13,11 @@
 #include "device/pdo/locked_parameters.hpp"
 #include "device/resolve.hpp"
 #include "diagnostics/quote.hpp"
-#include "diagnostics/rule.hpp"
 #include "diagnostics/unknown_rule.hpp"
 #include "eds/allow_comments.hpp"
 #include "eds/ini.hpp"
 #include "lint/check_device.hpp"
+#include "rules/check_rules.hpp"
 #include "system/path.hpp"
 #include "xdd/read_xdd.hpp"
 
@@ -55,11 +55,12 @@ void read_options_file(const std::string& path, LoadedDevice& loaded, Diagnostic
 
 void allow_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics) {
   for (const AllowedFindings& allowed : loaded.options.allow) {
-    if (find_rule(allowed.rule) == nullptr) {
-      diagnostics.error("options", allowed.position, "allow: " + unknown_rule(allowed.rule));
+    const auto rule = find_rule(check_rules, allowed.rule);
+    if (!rule) {
+      diagnostics.error("options", allowed.position, "allow: " + unknown_rule(allowed.rule, check_rules));
       continue;
     }
-    Allowance allowance{allowed.rule, allowed.reason, allowed.position, false, {}};
+    Allowance allowance{*rule, allowed.reason, allowed.position, false, {}};
     if (allowed.object) {
       const bool is_entry = allowed.object->sub_index.has_value();
       allowance.scope.kind = is_entry ? AllowanceScope::Kind::entry : AllowanceScope::Kind::object;
@@ -75,10 +76,11 @@ void allow_by_comment(const AllowComment& comment, Diagnostics& diagnostics) {
     diagnostics.warning("allow-comment", comment.position, std::move(message));
   };
   if (comment.rule.empty()) return warning("a comment of edsc has the form \"; edsc: allow RULE - reason\"");
-  if (find_rule(comment.rule) == nullptr) return warning(unknown_rule(comment.rule));
+  const auto rule = find_rule(check_rules, comment.rule);
+  if (!rule) return warning(unknown_rule(comment.rule, check_rules));
   if (comment.reason.empty()) return warning("missing reason: \"; edsc: allow RULE - reason\"");
   if (!comment.has_target) return warning("no key or section follows to which this comment applies");
-  diagnostics.allow({std::string{comment.rule}, std::string{comment.reason}, comment.position, true, comment.scope});
+  diagnostics.allow({*rule, std::string{comment.reason}, comment.position, true, comment.scope});
 }
 
 /// Registers the allowances in the options and comments of the EDS. The parts of an XDD are known after reading it.
@@ -99,7 +101,7 @@ std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnost
   auto loaded = std::make_unique<LoadedDevice>();
   loaded->source = read_or_report(settings.path, *loaded, diagnostics);
   if (loaded->unreadable) return loaded;
-  if (settings.keep_going) diagnostics.keep_going(loaded->source.get(), fatal_rules());
+  if (settings.keep_going) diagnostics.keep_going(loaded->source.get());
   read_options_file(options_path_of(settings), *loaded, diagnostics);
   if (loaded->unreadable) return loaded;
   if (settings.static_mapping) loaded->options.static_mapping.all = true;
@@ -109,35 +111,34 @@ std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnost
 
 Device device_for(const LoadedDevice& loaded, std::optional<std::uint8_t> node_id, bool keep_going) {
   Diagnostics reported;
-  if (keep_going) reported.keep_going(loaded.source.get(), fatal_rules());
+  if (keep_going) reported.keep_going(loaded.source.get());
   return resolve_device(loaded.sheet, loaded.options, node_id, reported);
 }
 
 void silence_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics) {
   for (const SilencedRule& silenced : loaded.options.silence) {
-    if (find_rule(silenced.rule) == nullptr) {
-      diagnostics.error("options", silenced.position, "silence: " + unknown_rule(silenced.rule));
+    if (const auto rule = find_rule(check_rules, silenced.rule)) {
+      diagnostics.silence(*rule);
     } else {
-      diagnostics.silence(silenced.rule);
+      diagnostics.error("options", silenced.position, "silence: " + unknown_rule(silenced.rule, check_rules));
     }
   }
 }
 
 bool can_keep_going(const LoadedDevice& loaded, const Diagnostics& diagnostics) {
   const auto is_final = [&](const Diagnostic& one) {
-    return one.severity == Severity::error && (one.position.file != loaded.source.get() ||
-                                               std::ranges::find(fatal_rules(), one.rule) != fatal_rules().end());
+    return one.severity == Severity::error && (one.position.file != loaded.source.get() || one.rule.row().is_fatal);
   };
   return loaded.device && std::ranges::none_of(diagnostics.all(), is_final);
 }
 
 void report_unused_allowances(const LoadedDevice& loaded, Diagnostics& diagnostics) {
-  const auto report = [&](std::string_view rule, const Position& position) {
-    if (find_rule(rule) == nullptr) return;
-    diagnostics.warning("allow-unused", position, fmt::format("no finding of {} matches", quote(rule)));
+  const auto report = [&](RuleId rule, const Position& position) {
+    diagnostics.warning("allow-unused", position, fmt::format("no finding of {} matches", quote(rule.text())));
   };
   for (const SilencedRule& one : loaded.options.silence) {
-    if (!diagnostics.has_silenced(one.rule)) report(one.rule, one.position);
+    const auto rule = find_rule(check_rules, one.rule);
+    if (rule && !diagnostics.has_silenced(*rule)) report(*rule, one.position);
   }
   const std::vector<Allowance> allowances = diagnostics.allowances();
   for (const Allowance& one : allowances) {

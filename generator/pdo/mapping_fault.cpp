@@ -32,9 +32,7 @@ std::optional<MappingFault> fault_of_string(const MappingValue& mapped, const Ma
 
 MappingRule rule_of(MappingFault fault) { return rules[static_cast<std::size_t>(fault)]; }
 
-bool is_mapping_rule(std::string_view rule) {
-  return std::ranges::find(rules, rule, &MappingRule::id) != std::end(rules);
-}
+bool is_mapping_rule(RuleId rule) { return std::ranges::find(rules, rule) != std::end(rules); }
 
 bool is_boolean_in_a_byte(const MappingValue& mapped, const canopen::DataTypeRow& type) {
   return type.kind == canopen::DataClass::boolean && mapped.bits == 8;

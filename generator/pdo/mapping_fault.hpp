@@ -6,10 +6,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string_view>
 
-#include "diagnostics/rule.hpp"
 #include "pdo/mapping.hpp"
+#include "rules/check_rules.hpp"
 
 namespace edsc {
 
@@ -27,9 +26,9 @@ enum class MappingFault : std::uint8_t {
 };
 
 /// The rule of a fault: an error, or a warning if the PDO is disabled by default.
-using MappingRule = RuleId<Severity::error, Severity::warning>;
+using MappingRule = CheckRule<Severity::error, Severity::warning>;
 [[nodiscard]] MappingRule rule_of(MappingFault fault);
-[[nodiscard]] bool is_mapping_rule(std::string_view rule);
+[[nodiscard]] bool is_mapping_rule(RuleId rule);
 
 /// What the EDS states about an object, as far as mappings need it.
 struct MappableObject {

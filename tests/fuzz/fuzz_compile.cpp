@@ -23,7 +23,7 @@ void split(const std::string& input, LoadedDevice& loaded, Diagnostics& diagnost
   }
   loaded.options_source = std::make_unique<SourceFile>("fuzz.options.json", input.substr(0, end));
   loaded.options = read_options(*loaded.options_source, is_identifier, diagnostics);
-  for (const SilencedRule& silenced : loaded.options.silence) diagnostics.silence(silenced.rule);
+  silence_by_options(loaded, diagnostics);
   loaded.source = std::make_unique<SourceFile>("fuzz.eds", input.substr(end + options_end.size()));
 }
 

@@ -83,7 +83,7 @@ HOST_PROGRAMS = (
     script("decode", "bus/decode/decode_test.py", "bus/decode/", "bus/values/", "cli/"),
     script("completion", "cli/completion_test.py", "cli/completion/"),
     script("rules", "generator/lint/rules_test.py", "generator/lint/", "generator/eds/", "generator/xdd/",
-           "generator/diagnostics/"),
+           "generator/diagnostics/", "generator/rules/"),
     script("options", "generator/device/options_test.py", "generator/device/options/"),
     script("cli_diff", "cli/diff_test.py", "generator/compare/", "cli/"),
     script("cli_format", "cli/format_test.py", "generator/format/", "cli/"),

@@ -54,7 +54,7 @@ struct DeviceFromText {
   /// The first finding of a rule; throws if there is none.
   [[nodiscard]] const Diagnostic& finding(std::string_view rule) const {
     for (const Diagnostic& diagnostic : diagnostics.all()) {
-      if (diagnostic.rule == rule) return diagnostic;
+      if (diagnostic.rule.text() == rule) return diagnostic;
     }
     throw std::runtime_error{"no finding of rule " + std::string{rule}};
   }
@@ -72,7 +72,7 @@ inline const std::vector<std::string> list_rules = {"object-not-listed", "mandat
 inline std::vector<std::string> rules_of(const Diagnostics& diagnostics) {
   std::vector<std::string> rules;
   for (const Diagnostic& diagnostic : diagnostics.all()) {
-    const std::string rule{diagnostic.rule};
+    const std::string rule{diagnostic.rule.text()};
     if (std::ranges::find(list_rules, rule) != list_rules.end()) continue;
     if (std::ranges::find(rules, rule) == rules.end()) rules.push_back(rule);
   }

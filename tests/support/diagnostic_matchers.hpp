@@ -43,8 +43,8 @@ inline Finding note_at(std::uint32_t line, std::uint32_t column, std::string rul
 inline std::vector<Finding> findings(const Diagnostics& diagnostics) {
   std::vector<Finding> result;
   for (const Diagnostic& diagnostic : diagnostics.all()) {
-    result.push_back(
-        {diagnostic.severity, std::string(diagnostic.rule), diagnostic.position.line, diagnostic.position.column});
+    result.push_back({diagnostic.severity, std::string(diagnostic.rule.text()), diagnostic.position.line,
+                      diagnostic.position.column});
   }
   return result;
 }

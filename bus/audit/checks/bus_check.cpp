@@ -32,7 +32,7 @@ void judge_length(const SeenMessage& seen, AuditState& audit) {
   const canopen::Frame& frame = seen.frame;
   const auto* const row = std::ranges::find(lengths, seen.message.service, &LengthRow::service);
   if (row == std::end(lengths) || (!frame.remote && frame.size >= row->min && frame.size <= row->max)) return;
-  const Subject subject{RuleId::frame_length, seen.message.node_id, 0, 0, frame.id, frame.extended};
+  const Subject subject{"frame-length", seen.message.node_id, 0, 0, frame.id, frame.extended};
   audit.findings.add(subject, seen.at, 0, [&] {
     const std::string bytes = counted(unsigned{frame.size}, "byte");
     return Texts{std::string{row->expected}, frame.remote ? "a remote frame" : bytes};
@@ -47,7 +47,7 @@ void BusCheck::end_interval(const Moment& now, AuditState& audit) {
   interval_bits_ = 0;
   max_load_ = std::max(max_load_, load);
   if (load <= audit.limits.max_load * 10U) return;
-  audit.findings.add({RuleId::bus_load}, now, static_cast<std::int64_t>(load), [&] {
+  audit.findings.add({"bus-load"}, now, static_cast<std::int64_t>(load), [&] {
     return Texts{fmt::format("at most {} %", audit.limits.max_load), percent(load)};
   });
 }
@@ -65,20 +65,20 @@ void BusCheck::count_bits(const SeenMessage& seen, AuditState& audit) {
 void BusCheck::see(const SeenMessage& seen, AuditState& audit) {
   const Message& message = seen.message;
   if (message.service == Service::error_frame) {
-    audit.findings.add({RuleId::error_frame}, seen.at, 0, [&] { return Texts{"none", message.text}; });
+    audit.findings.add({"error-frame"}, seen.at, 0, [&] { return Texts{"none", message.text}; });
     return;
   }
   count_bits(seen, audit);
   judge_length(seen, audit);
   if (message.service == Service::unknown) {
-    Subject subject{RuleId::can_id_unknown};
+    Subject subject{"can-id-unknown"};
     subject.can_id = seen.frame.id;
     subject.extended = seen.frame.extended;
     audit.findings.add(subject, seen.at, 0, [&] { return Texts{"a CAN-ID of a known node", message.text}; });
     return;
   }
   if (message.other_sender != 0) {
-    Subject subject{RuleId::can_id_senders, message.node_id};
+    Subject subject{"can-id-senders", message.node_id};
     subject.can_id = seen.frame.id;
     subject.extended = seen.frame.extended;
     audit.findings.add(subject, seen.at, 0, [&] {
@@ -86,7 +86,7 @@ void BusCheck::see(const SeenMessage& seen, AuditState& audit) {
     });
   }
   if (!is_from_node(message) || seen.frame.remote || audit.sender(message).model != nullptr) return;
-  audit.findings.add({RuleId::node_unknown, message.node_id}, seen.at, 0, [&] {
+  audit.findings.add({"node-unknown", message.node_id}, seen.at, 0, [&] {
     return Texts{"a node of --node", row_of(message.service).label};
   });
 }
@@ -95,7 +95,7 @@ void BusCheck::finish(const Moment& end, AuditState& audit) {
   if (audit.limits.bit_rate > 0) end_interval(end, audit);
   for (const std::uint8_t id : audit.known) {
     if (audit.nodes[id].first_seen) continue;
-    audit.findings.add({RuleId::node_silent, id}, end, 0, [] { return Texts{"frames of the node", "none"}; });
+    audit.findings.add({"node-silent", id}, end, 0, [] { return Texts{"frames of the node", "none"}; });
   }
 }
 

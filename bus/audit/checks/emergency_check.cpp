@@ -22,13 +22,13 @@ void EmergencyCheck::judge_emcy(const SeenMessage& seen, AuditState& audit) {
   Node& node = nodes_[message.node_id % AuditState::node_ids];
   if (seen.frame.remote) return;
   if (seen.frame.size != 8) {
-    audit.findings.add({RuleId::emcy_length, message.node_id}, seen.at, 0, [&] {
+    audit.findings.add({"emcy-length", message.node_id}, seen.at, 0, [&] {
       return Texts{"8 bytes", fmt::format("{} bytes", unsigned{seen.frame.size})};
     });
     return;
   }
   if (state.model != nullptr && !is_cob_id(state.settings.emcy_id, canopen::cob_id_of(seen.frame))) {
-    audit.findings.add({RuleId::emcy_cob_id, message.node_id, 0x1014}, seen.at, 0, [&] {
+    audit.findings.add({"emcy-cob-id", message.node_id, 0x1014}, seen.at, 0, [&] {
       const bool valid = (state.settings.emcy_id >> 31) == 0;
       return Texts{valid ? fmt::format("{:03X}h", state.settings.emcy_id & 0x1FFF'FFFF) : "no EMCY",
                    fmt::format("{:03X}h", seen.frame.id)};
@@ -36,7 +36,7 @@ void EmergencyCheck::judge_emcy(const SeenMessage& seen, AuditState& audit) {
   }
   const bool is_error = message.error_code > last_reset_code;
   if (is_error && (message.error_register & generic_error) == 0) {
-    audit.findings.add({RuleId::emcy_register, message.node_id}, seen.at, 0, [&] {
+    audit.findings.add({"emcy-register", message.node_id}, seen.at, 0, [&] {
       return Texts{"bit 0 is 1", fmt::format("{:02X}h with {:04X}h", message.error_register, message.error_code)};
     });
   }
@@ -44,7 +44,7 @@ void EmergencyCheck::judge_emcy(const SeenMessage& seen, AuditState& audit) {
   const bool is_timed = seen.at.has_time && node.last_us && *node.last_us >= state.settings_since;
   if (is_timed && seen.at.us - *node.last_us < inhibit - audit.limits.slack(inhibit)) {
     const std::int64_t gap = seen.at.us - *node.last_us;
-    audit.findings.add({RuleId::emcy_inhibit_time, message.node_id, 0x1015}, seen.at, -gap, [&] {
+    audit.findings.add({"emcy-inhibit-time", message.node_id, 0x1015}, seen.at, -gap, [&] {
       return Texts{"at least " + milliseconds(inhibit), "after " + milliseconds(gap)};
     });
   }
@@ -70,7 +70,7 @@ void EmergencyCheck::judge_register_read(const SeenMessage& seen, AuditState& au
   if (!seen.at.has_time || !node.last_us || seen.at.us - *node.last_us < settled) return;
   const std::uint8_t value = message.values[0].bytes[0];
   if (value == *node.error_register) return;
-  audit.findings.add({RuleId::emcy_register_value, message.node_id, 0x1001}, seen.at, 0, [&] {
+  audit.findings.add({"emcy-register-value", message.node_id, 0x1001}, seen.at, 0, [&] {
     return Texts{fmt::format("{:02X}h", *node.error_register), fmt::format("{:02X}h", value)};
   });
 }
@@ -88,7 +88,7 @@ void EmergencyCheck::finish(AuditState& audit) const {
   for (std::size_t id = 1; id < nodes_.size(); ++id) {
     const Node& node = nodes_[id];
     if (!node.open) continue;
-    audit.findings.add({RuleId::emcy_not_reset, static_cast<std::uint8_t>(id)}, *node.open, 0, [&] {
+    audit.findings.add({"emcy-not-reset", static_cast<std::uint8_t>(id)}, *node.open, 0, [&] {
       return Texts{"EMCY 0000h", fmt::format("the last one is {:04X}h", node.open_code)};
     });
   }

@@ -17,7 +17,7 @@ void GuardingCheck::judge_silence(std::uint8_t node_id, const Moment& now, Audit
   const std::int64_t waited = now.us - *node.asked_us;
   if (waited < reaction_us) return;
   node.asked_us.reset();
-  audit.findings.add({RuleId::guarding_response, node_id}, now, waited, [&] {
+  audit.findings.add({"guarding-response", node_id}, now, waited, [&] {
     return std::pair{"within " + milliseconds(reaction_us), "none for " + milliseconds(waited)};
   });
 }
@@ -38,7 +38,7 @@ void GuardingCheck::response(const SeenMessage& seen, AuditState& audit) {
   node.asked_us.reset();
   const std::optional<bool> expected = std::exchange(node.toggle, !message->toggle);
   if (expected.value_or(message->toggle) == message->toggle) return;
-  audit.findings.add({RuleId::guarding_toggle, seen.message.node_id}, seen.at, 0, [&] {
+  audit.findings.add({"guarding-toggle", seen.message.node_id}, seen.at, 0, [&] {
     return std::pair{toggle_text(*expected), toggle_text(message->toggle)};
   });
 }

@@ -18,7 +18,7 @@ void HeartbeatCheck::judge_late(std::uint8_t node_id, const Moment& now, AuditSt
   const std::int64_t gap = now.us - from;
   if (gap <= period + audit.limits.slack(period)) return;
   producer.judged = true;
-  audit.findings.add({RuleId::heartbeat_late, node_id, 0x1017}, now, gap, [&] {
+  audit.findings.add({"heartbeat-late", node_id, 0x1017}, now, gap, [&] {
     return std::pair{"every " + milliseconds(period), "none for " + milliseconds(gap)};
   });
 }
@@ -33,7 +33,7 @@ void HeartbeatCheck::judge_early(const SeenMessage& seen, AuditState& audit) {
   if (*producer.last_us < node.unchanged_since()) return;
   const std::int64_t gap = seen.at.us - *producer.last_us;
   if (gap >= period - audit.limits.slack(period)) return;
-  audit.findings.add({RuleId::heartbeat_early, node_id, 0x1017}, seen.at, -gap, [&] {
+  audit.findings.add({"heartbeat-early", node_id, 0x1017}, seen.at, -gap, [&] {
     return std::pair{"every " + milliseconds(period), "after " + milliseconds(gap)};
   });
 }
@@ -52,7 +52,7 @@ void HeartbeatCheck::judge_consumers(std::uint8_t producer, const Moment& now, A
       const std::int64_t gap = now.us - last;
       if (gap <= consumed.us + slack + reaction_us + node.settings.emcy_inhibit_us) continue;
       if (node.last_heartbeat_error_us.value_or(-1) >= last + consumed.us - slack) continue;
-      audit.findings.add({RuleId::heartbeat_consumer, id, 0x1016, consumed.sub_index}, now, gap, [&] {
+      audit.findings.add({"heartbeat-consumer", id, 0x1016, consumed.sub_index}, now, gap, [&] {
         return std::pair{fmt::format("EMCY 8130h {} after the last heartbeat of node {}", milliseconds(consumed.us),
                                      unsigned{producer}),
                          fmt::format("none, without a heartbeat for {}", milliseconds(gap))};

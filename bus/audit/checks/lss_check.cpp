@@ -59,7 +59,7 @@ void LssCheck::judge_silence(const Moment& now, AuditState& audit) {
   const std::int64_t waited = now.us - *asked_us_;
   asked_us_.reset();
   if (waited < reaction_us) return;
-  audit.findings.add({RuleId::lss_timeout}, now, waited, [&] {
+  audit.findings.add({"lss-timeout"}, now, waited, [&] {
     return Texts{"a response within " + milliseconds(reaction_us),
                  fmt::format("none to {:02X}h for {}", last_request_.value_or(0), milliseconds(waited))};
   });
@@ -73,7 +73,7 @@ void LssCheck::request(const SeenMessage& seen, AuditState& audit) {
   answered_ = false;
   const bool lacks_part = needs_part_before(command) && before != command - 1;
   if (seen.message.problem || lacks_part) {
-    audit.findings.add({RuleId::lss_command}, seen.at, 0, [&] {
+    audit.findings.add({"lss-command"}, seen.at, 0, [&] {
       return Texts{lacks_part ? fmt::format("command {:02X}h before", command - 1) : "an LSS command",
                    seen.message.text};
     });
@@ -92,7 +92,7 @@ void LssCheck::request(const SeenMessage& seen, AuditState& audit) {
   if (row == nullptr || !row->in_configuration) return;
   if (slaves_ == Slaves::configure && row->response != Command::none && seen.at.has_time) asked_us_ = seen.at.us;
   if (slaves_ != Slaves::waiting) return;
-  audit.findings.add({RuleId::lss_mode}, seen.at, 0, [&] {
+  audit.findings.add({"lss-mode"}, seen.at, 0, [&] {
     return Texts{"switch state to configuration before", seen.message.text};
   });
 }
@@ -105,7 +105,7 @@ void LssCheck::response(const SeenMessage& seen, AuditState& audit) {
   const bool fits = !last_request_ || (row != nullptr && row->response == command && command != Command::none);
   const bool again = fits && row != nullptr && row->of_one_slave && std::exchange(answered_, true);
   if (!fits || again) {
-    audit.findings.add({RuleId::lss_response}, seen.at, 0, [&] {
+    audit.findings.add({"lss-response"}, seen.at, 0, [&] {
       return Texts{again ? "one response: one slave in configuration" : "a response to the last request",
                    seen.message.text};
     });
@@ -116,7 +116,7 @@ void LssCheck::response(const SeenMessage& seen, AuditState& audit) {
   const std::uint8_t error = seen.frame.data[1];
   if (command == Command::configure_node_id && error == 0) audit.lss_node_id = asked_node_id_;
   if (error == 0) return;
-  Subject subject{RuleId::lss_refused};
+  Subject subject{"lss-refused"};
   subject.sub_index = static_cast<std::uint8_t>(command);
   audit.findings.add(subject, seen.at, 0, [&] { return Texts{"done", seen.message.text}; });
 }

@@ -40,7 +40,7 @@ void judge_boot_time(std::uint8_t node_id, const NodeState& node, const Moment& 
   if (boots_as_another(node, audit)) return;
   const std::int64_t waited = now.us - node.state_since.us;
   if (waited <= max_boot_us) return;
-  audit.findings.add({RuleId::nmt_boot_up, node_id}, now, waited, [&] {
+  audit.findings.add({"nmt-boot-up", node_id}, now, waited, [&] {
     return std::pair{fmt::format("within {} of the reset command", milliseconds(max_boot_us)),
                      "none for " + milliseconds(waited)};
   });
@@ -61,7 +61,7 @@ void NmtCheck::command(const SeenMessage& seen, AuditState& audit) {
                               ? nullptr
                               : find_nmt_command(&NmtCommandText::command, canopen::NmtCommand{seen.frame.data[0]});
   if (row == nullptr || seen.frame.size != 2 || seen.message.node_id > 127) {
-    audit.findings.add({RuleId::nmt_command, 0}, seen.at, 0, [&] {
+    audit.findings.add({"nmt-command", 0}, seen.at, 0, [&] {
       return std::pair<std::string, std::string>{"a command and a node-ID", seen.message.text};
     });
     return;
@@ -87,7 +87,7 @@ void NmtCheck::boot_up(const SeenMessage& seen, AuditState& audit) {
   if (node.state == NmtState::initialisation) {
     judge_boot_time(node_id, node, seen.at, audit);
   } else if (!node.may_boot && node.first_seen && (node.state || node.first_seen->us >= audit.times_since)) {
-    audit.findings.add({RuleId::nmt_reset, node_id}, seen.at, 0, [&] {
+    audit.findings.add({"nmt-reset", node_id}, seen.at, 0, [&] {
       return std::pair<std::string, std::string>{
           "a reset command before", fmt::format("the node was {}", node.state ? to_text(*node.state) : "on the bus")};
     });
@@ -104,7 +104,7 @@ void NmtCheck::report(const SeenMessage& seen, AuditState& audit) {
   const auto reported = canopen::error_control_message(seen.frame);
   if (!reported) {
     if (seen.frame.remote || seen.frame.size != 1) return;
-    audit.findings.add({RuleId::nmt_state, node_id}, seen.at, 0, [&] {
+    audit.findings.add({"nmt-state", node_id}, seen.at, 0, [&] {
       return std::pair<std::string, std::string>{"an NMT state", seen.message.text};
     });
     return;
@@ -113,7 +113,7 @@ void NmtCheck::report(const SeenMessage& seen, AuditState& audit) {
   if (node.state == reported->state) return;
   if (node.state && node.may_be(reported->state, seen.at)) return;
   if (node.state && !may_change_itself(node, reported->state, seen.at)) {
-    audit.findings.add({RuleId::nmt_state, node_id}, seen.at, 0, [&] {
+    audit.findings.add({"nmt-state", node_id}, seen.at, 0, [&] {
       const bool booting = *node.state == NmtState::initialisation;
       return std::pair<std::string, std::string>{booting ? "a boot-up message first" : to_text(*node.state),
                                                  to_text(reported->state)};
@@ -137,7 +137,7 @@ void NmtCheck::see(const SeenMessage& seen, AuditState& audit) {
   const bool stopped = node.state == NmtState::stopped && !node.may_be(NmtState::operational, seen.at) &&
                        !node.may_be(NmtState::pre_operational, seen.at);
   if (!stopped) return;
-  audit.findings.add({RuleId::stopped_service, node_id}, seen.at, 0, [&] {
+  audit.findings.add({"stopped-service", node_id}, seen.at, 0, [&] {
     return std::pair<std::string, std::string>{"NMT and error control only", row_of(seen.message.service).label};
   });
 }

@@ -10,7 +10,7 @@
 namespace edsc::audit {
 namespace {
 
-Subject subject_of(RuleId rule, std::uint8_t node_id, std::size_t number, bool transmit = true) {
+Subject subject_of(AuditRule rule, std::uint8_t node_id, std::size_t number, bool transmit = true) {
   const PdoDirection direction = transmit ? PdoDirection::transmit : PdoDirection::receive;
   return {rule, node_id, parameters_of(direction, static_cast<std::uint16_t>(number)).communication};
 }
@@ -22,14 +22,14 @@ void judge_event_timer(std::uint8_t node_id, std::size_t number, const TpdoSetti
   if (!settings.is_sent || !settings.is_event_driven() || settings.event_us == 0) return;
   const std::int64_t longest = std::max(settings.event_us, settings.inhibit_us);
   if (gap <= longest + audit.limits.slack(longest)) return;
-  audit.findings.add(subject_of(RuleId::pdo_event_timer, node_id, number), now, gap, [&] {
+  audit.findings.add(subject_of("pdo-event-timer", node_id, number), now, gap, [&] {
     return std::pair{"at most " + milliseconds(longest), "none for " + milliseconds(gap)};
   });
 }
 
 void judge_inhibit_time(const SeenMessage& seen, const TpdoSettings& settings, std::int64_t gap, AuditState& audit) {
   if (!settings.is_event_driven() || gap >= settings.inhibit_us - audit.limits.slack(settings.inhibit_us)) return;
-  const Subject subject = subject_of(RuleId::pdo_inhibit_time, seen.message.node_id, seen.message.number);
+  const Subject subject = subject_of("pdo-inhibit-time", seen.message.node_id, seen.message.number);
   audit.findings.add(subject, seen.at, -gap, [&] {
     return std::pair{"at least " + milliseconds(settings.inhibit_us), "after " + milliseconds(gap)};
   });
@@ -38,7 +38,7 @@ void judge_inhibit_time(const SeenMessage& seen, const TpdoSettings& settings, s
 void judge_window(const SeenMessage& seen, const NodeState& node, std::int64_t after_sync, AuditState& audit) {
   const std::int64_t window = node.settings.sync_window_us;
   if (window == 0 || after_sync <= window + audit.limits.slack(window)) return;
-  const Subject subject = subject_of(RuleId::pdo_sync_window, seen.message.node_id, seen.message.number);
+  const Subject subject = subject_of("pdo-sync-window", seen.message.node_id, seen.message.number);
   audit.findings.add(subject, seen.at, after_sync, [&] {
     return std::pair{fmt::format("within {} of SYNC", milliseconds(window)), "after " + milliseconds(after_sync)};
   });
@@ -61,14 +61,14 @@ void PdoCheck::judge_frame(const SeenMessage& seen, AuditState& audit) {
   const bool transmit = message.service == Service::tpdo;
   const std::size_t bytes = message.pdo->multiplexed ? classical_can.bytes : bytes_for(message.pdo->bits);
   if (transmit ? seen.frame.size != bytes : seen.frame.size < bytes) {
-    const Subject subject = subject_of(RuleId::pdo_length, message.node_id, message.number, transmit);
+    const Subject subject = subject_of("pdo-length", message.node_id, message.number, transmit);
     audit.findings.add(subject, seen.at, 0, [&] {
       return std::pair{counted(bytes, "byte"), counted(unsigned{seen.frame.size}, "byte")};
     });
   }
   const NodeState& node = audit.sender(message);
   if (!transmit || node.may_be(canopen::NmtState::operational, seen.at)) return;
-  audit.findings.add(subject_of(RuleId::pdo_state, message.node_id, message.number), seen.at, 0, [&] {
+  audit.findings.add(subject_of("pdo-state", message.node_id, message.number), seen.at, 0, [&] {
     return std::pair<std::string, std::string>{to_text(canopen::NmtState::operational), to_text(*node.state)};
   });
 }
@@ -90,7 +90,7 @@ void PdoCheck::judge_tpdo(const SeenMessage& seen, AuditState& audit) {
   // The remote frame may be before the log.
   const bool log_begins = seen.at.has_time && seen.at.us - audit.times_since < reaction_us;
   if (settings.is_requested() && !requested && !log_begins) {
-    audit.findings.add(subject_of(RuleId::pdo_not_requested, message.node_id, message.number), seen.at, 0, [] {
+    audit.findings.add(subject_of("pdo-not-requested", message.node_id, message.number), seen.at, 0, [] {
       return std::pair<std::string, std::string>{"a remote frame before", "none"};
     });
   }
@@ -103,7 +103,7 @@ void PdoCheck::judge_tpdo(const SeenMessage& seen, AuditState& audit) {
     }
   }
   if (settings.is_cyclic() && node.is_operational() && tpdo.sent && !requested && !due) {
-    audit.findings.add(subject_of(RuleId::pdo_sync_cycle, message.node_id, message.number), seen.at, syncs, [&] {
+    audit.findings.add(subject_of("pdo-sync-cycle", message.node_id, message.number), seen.at, syncs, [&] {
       return std::pair{after_syncs(settings.transmission_type),
                        syncs == 0 ? std::string{"twice after a SYNC"} : after_syncs(syncs)};
     });
@@ -151,7 +151,7 @@ void PdoCheck::end_stretch(std::uint8_t node_id, const Moment& now, AuditState& 
     const std::uint32_t first = tpdo.sent ? 0 : 1U + state.settings.sync_overflow.value_or(0);
     const std::uint32_t syncs = node.syncs - tpdo.last_sync;
     if (!settings.is_sent || !settings.is_cyclic() || syncs <= settings.transmission_type + first) continue;
-    audit.findings.add(subject_of(RuleId::pdo_sync_cycle, node_id, at + 1), now, syncs, [&] {
+    audit.findings.add(subject_of("pdo-sync-cycle", node_id, at + 1), now, syncs, [&] {
       return std::pair{after_syncs(settings.transmission_type), "none " + after_syncs(syncs)};
     });
   }

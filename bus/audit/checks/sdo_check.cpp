@@ -11,19 +11,19 @@ using Texts = std::pair<std::string, std::string>;
 
 struct FaultRow {
   SdoFault fault;
-  RuleId rule;
+  AuditRule rule;
   std::string_view expected;
 };
 
 constexpr FaultRow fault_rows[] = {
-    {SdoFault::length, RuleId::sdo_length, "8 bytes"},
-    {SdoFault::command, RuleId::sdo_command, "a command that fits the transfer"},
-    {SdoFault::unrequested, RuleId::sdo_unrequested, "a request before"},
-    {SdoFault::unfinished, RuleId::sdo_unfinished, "the end of the transfer before"},
-    {SdoFault::toggle, RuleId::sdo_toggle, "the other toggle bit"},
-    {SdoFault::sequence, RuleId::sdo_sequence, "the next sequence number"},
-    {SdoFault::size, RuleId::sdo_size, "the announced number of bytes"},
-    {SdoFault::crc, RuleId::sdo_crc, "the CRC of the data"},
+    {SdoFault::length, "sdo-length", "8 bytes"},
+    {SdoFault::command, "sdo-command", "a command that fits the transfer"},
+    {SdoFault::unrequested, "sdo-unrequested", "a request before"},
+    {SdoFault::unfinished, "sdo-unfinished", "the end of the transfer before"},
+    {SdoFault::toggle, "sdo-toggle", "the other toggle bit"},
+    {SdoFault::sequence, "sdo-sequence", "the next sequence number"},
+    {SdoFault::size, "sdo-size", "the announced number of bytes"},
+    {SdoFault::crc, "sdo-crc", "the CRC of the data"},
 };
 
 void judge_fault(const SeenMessage& seen, AuditState& audit) {
@@ -50,7 +50,7 @@ bool SdoCheck::judge_answer(Channel& channel, const Moment& now, AuditState& aud
   const std::int64_t until = !answers(node) && node.state_since.us > *channel.asked_us ? node.state_since.us : now.us;
   const std::int64_t waited = until - *channel.asked_us;
   if (waited <= audit.limits.sdo_timeout_us) return false;
-  audit.findings.add({RuleId::sdo_timeout, channel.node_id, channel.index, channel.sub_index}, now, waited, [&] {
+  audit.findings.add({"sdo-timeout", channel.node_id, channel.index, channel.sub_index}, now, waited, [&] {
     return Texts{"within " + milliseconds(audit.limits.sdo_timeout_us), "none for " + milliseconds(waited)};
   });
   return true;
@@ -67,7 +67,7 @@ void SdoCheck::see(const SeenMessage& seen, AuditState& audit) {
   const bool gave_up = late && (message.fault == SdoFault::unfinished || message.fault == SdoFault::command);
   if (message.fault != SdoFault::none && !gave_up) judge_fault(seen, audit);
   if (message.step == TransferStep::aborted) {
-    const Subject subject{RuleId::sdo_abort, message.node_id, message.index, message.sub_index, message.abort_code};
+    const Subject subject{"sdo-abort", message.node_id, message.index, message.sub_index, message.abort_code};
     audit.findings.add(subject, seen.at, 0, [&] { return Texts{"the end of the transfer", message.text}; });
   }
   channel.asked_us.reset();

@@ -16,7 +16,7 @@ std::uint8_t find_producer(std::uint32_t cob_id, const Moment& now, AuditState& 
     const NodeSettings& settings = audit.nodes[id].settings;
     if (!settings.is_sync_producer || !is_cob_id(settings.sync_id, cob_id)) continue;
     if (producer != 0) {
-      audit.findings.add({RuleId::sync_producers, id, 0x1005}, now, 0, [&] {
+      audit.findings.add({"sync-producers", id, 0x1005}, now, 0, [&] {
         return std::pair<std::string, std::string>{"one producer", fmt::format("also node {}", unsigned{producer})};
       });
       return 0;
@@ -26,7 +26,7 @@ std::uint8_t find_producer(std::uint32_t cob_id, const Moment& now, AuditState& 
   return producer;
 }
 
-Subject subject_of(RuleId rule, std::uint8_t producer, std::uint16_t index, std::uint32_t id) {
+Subject subject_of(AuditRule rule, std::uint8_t producer, std::uint16_t index, std::uint32_t id) {
   return {rule, producer, index, 0, id & 0x1FFF'FFFF, (id >> 29 & 1) != 0};
 }
 
@@ -38,7 +38,7 @@ void judge_silence(std::uint8_t producer, std::int64_t last_us, const Moment& no
   if (!node.settings.is_sync_producer || period == 0 || !sends || !node.first_seen || !now.has_time) return;
   const std::int64_t gap = now.us - std::max({last_us, node.unchanged_since(), node.first_seen->us});
   if (gap <= period + audit.limits.slack(period)) return;
-  const Subject subject = subject_of(RuleId::sync_period, producer, 0x1006, node.settings.sync_id);
+  const Subject subject = subject_of("sync-period", producer, 0x1006, node.settings.sync_id);
   audit.findings.add(subject, now, gap - period, [&] {
     return std::pair{"every " + milliseconds(period), "none for " + milliseconds(gap)};
   });
@@ -54,7 +54,7 @@ void SyncCheck::judge_period(std::uint32_t id, const Sync& sync, const Moment& n
   const std::int64_t gap = now.us - *sync.last_us;
   const std::int64_t error = std::abs(gap - period);
   if (error <= audit.limits.slack(period)) return;
-  audit.findings.add(subject_of(RuleId::sync_period, sync.producer, 0x1006, id), now, error, [&] {
+  audit.findings.add(subject_of("sync-period", sync.producer, 0x1006, id), now, error, [&] {
     return std::pair{"every " + milliseconds(period), "after " + milliseconds(gap)};
   });
 }
@@ -74,7 +74,7 @@ void SyncCheck::judge_counter(std::uint32_t id, const Sync& sync, const SeenMess
     if (counter != next) expected = std::to_string(next);
   }
   if (expected.empty()) return;
-  audit.findings.add(subject_of(RuleId::sync_counter, sync.producer, 0x1019, id), seen.at, 0, [&] {
+  audit.findings.add(subject_of("sync-counter", sync.producer, 0x1019, id), seen.at, 0, [&] {
     return std::pair{expected, counter < 0 ? std::string{"no counter"} : std::to_string(counter)};
   });
 }

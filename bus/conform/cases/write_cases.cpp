@@ -97,16 +97,18 @@ bool is_of_static_mapping(const Device& sheet, const LiveEntry& entry) {
          });
 }
 
-/// Returns an empty text if no rule of `edsc check` explains that the device refuses the entry.
-std::string_view rule_of(const Dut& dut, const LiveEntry& entry) {
+/// Returns std::nullopt if no rule of `edsc check` explains that the device refuses the entry.
+std::optional<AnyRule> rule_of(const Dut& dut, const LiveEntry& entry) {
   const Device& sheet = dut.sheet();
   for (const ConditionalParameter& parameter : conditional_parameters()) {
-    if (is_locked(sheet, parameter, entry)) return is_implied(sheet, parameter) ? "implied-option" : "never-writable";
+    if (is_locked(sheet, parameter, entry))
+      return is_implied(sheet, parameter) ? AnyRule{"implied-option"} : AnyRule{"never-writable"};
   }
-  if (is_of_static_mapping(sheet, entry)) return "never-writable";
-  if (entry.index == sync_overflow && dut.has(cycle_period) && !dut.is_writable(cycle_period)) return "never-writable";
-  if (entry.index == default_sdo) return "standard-access";
-  return {};
+  if (is_of_static_mapping(sheet, entry)) return AnyRule{"never-writable"};
+  if (entry.index == sync_overflow && dut.has(cycle_period) && !dut.is_writable(cycle_period))
+    return AnyRule{"never-writable"};
+  if (entry.index == default_sdo) return AnyRule{"standard-access"};
+  return std::nullopt;
 }
 
 /// Failures of entries whose EDS is right, and of those whose EDS is not.
@@ -118,20 +120,20 @@ class WriteResults {
   [[nodiscard]] bool lost() const { return results_.lost(); }
   void warn(const LiveEntry& entry, const std::string& text) { results_.add_warning(entry, text); }
   void fail(const LiveEntry& entry, const std::string& text) {
-    const std::string_view rule = rule_of(dut_, entry);
-    if (rule.empty()) return results_.add_failure(entry, text);
-    if (rule_.empty()) rule_ = rule;
+    const std::optional<AnyRule> rule = rule_of(dut_, entry);
+    if (!rule) return results_.add_failure(entry, text);
+    if (!rule_) rule_ = rule;
     if (by_sheet_.empty()) by_sheet_ = fmt::format("{}: {}", title(entry), text);
   }
   void finish(const std::string& expected, const std::string& why_none) {
     results_.finish(expected, why_none);
-    if (!rule_.empty()) dut_.fail_by_sheet(rule_, expected, by_sheet_);
+    if (rule_) dut_.fail_by_sheet(*rule_, expected, by_sheet_);
   }
 
  private:
   Dut& dut_;
   EntryResults results_;
-  std::string_view rule_;
+  std::optional<AnyRule> rule_;
   std::string by_sheet_;
 };
 

@@ -36,6 +36,7 @@
 #include "online/live_bus.hpp"
 #include "online/live_entry.hpp"
 #include "online/sdo_access.hpp"
+#include "rules/check_rules.hpp"
 #include "values/append.hpp"
 
 namespace edsc::conform {
@@ -51,7 +52,7 @@ struct CaseEnd {
   std::string reason;
   std::string expected;
   std::string got;
-  std::string rule{};                          ///< of `edsc check` that reports the cause in the EDS
+  RuleId rule{};                               ///< of `edsc check` that reports the cause in the EDS
   std::vector<EntryAddress> failed_entries{};  ///< all of them, of a case that tries many
 };
 
@@ -193,7 +194,7 @@ class Dut {
 
   [[noreturn]] void fail(std::string expected, std::string got, std::vector<EntryAddress> failed_entries = {});
   /// Fails because of an error in the EDS, which a rule of `edsc check` reports: no device could pass with this EDS.
-  [[noreturn]] void fail_by_sheet(std::string_view rule, std::string expected, std::string got);
+  [[noreturn]] void fail_by_sheet(AnyRule rule, std::string expected, std::string got);
   void expect(bool condition, const std::string& expected, const std::string& got) {
     if (!condition) fail(expected, got);
   }

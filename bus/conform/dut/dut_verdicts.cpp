@@ -15,9 +15,9 @@ void Dut::fail(std::string expected, std::string got, std::vector<EntryAddress> 
   failed_ = mark();
   throw CaseEnd{Verdict::failed, {}, std::move(expected), std::move(got), {}, std::move(failed_entries)};
 }
-void Dut::fail_by_sheet(std::string_view rule, std::string expected, std::string got) {
+void Dut::fail_by_sheet(AnyRule rule, std::string expected, std::string got) {
   failed_ = mark();
-  throw CaseEnd{Verdict::failed, {}, std::move(expected), std::move(got), std::string{rule}};
+  throw CaseEnd{Verdict::failed, {}, std::move(expected), std::move(got), rule};
 }
 void Dut::not_applicable(std::string reason) { throw CaseEnd{Verdict::not_applicable, std::move(reason), {}, {}}; }
 void Dut::inconclusive(std::string reason) { throw CaseEnd{Verdict::inconclusive, std::move(reason), {}, {}}; }

@@ -77,7 +77,7 @@ json case_view(const CaseResult& result, const RunReport& run, const Device& she
           {"clause", row.clause},
           {"expected", shown(result.expected)},
           {"got", shown(result.got)},
-          {"rule", shown(result.rule)},
+          {"rule", shown(std::string{result.rule.text()})},
           {"warnings", result.warnings},
           {"not_put_back", result.not_put_back},
           {"lag", duration_text(result.lag)},

@@ -45,7 +45,7 @@ json case_object(const CaseResult& result, const RunReport& run, const Device& s
           {"reason", text_or_null(result.reason)},
           {"expected", text_or_null(result.expected)},
           {"got", text_or_null(result.got)},
-          {"rule", text_or_null(result.rule)},
+          {"rule", text_or_null(std::string{result.rule.text()})},
           {"deviation", text_or_null(result.deviation)},
           {"warnings", result.warnings},
           {"not_put_back", result.not_put_back},

@@ -88,7 +88,8 @@ std::vector<std::string_view> permission_names(Permission permissions) {
 std::string message_of(const CaseResult& result) {
   if (result.verdict == Verdict::failed) {
     std::string text = fmt::format("expected {}; got {}", result.expected, result.got);
-    if (!result.rule.empty()) text += fmt::format("; rule {} of edsc check reports it in the EDS", result.rule);
+    if (!result.rule.text().empty())
+      text += fmt::format("; rule {} of edsc check reports it in the EDS", result.rule.text());
     return text;
   }
   const std::string_view text = row_of(result.verdict).text;

@@ -93,7 +93,8 @@ std::string TextReport::of(const CaseResult& result) const {
   append_detail(out, "clause", row.clause);
   append_detail(out, "expected", result.expected);
   append_detail(out, "got", result.got);
-  if (!result.rule.empty()) append_detail(out, "EDS", fmt::format("rule {} of edsc check reports it", result.rule));
+  if (!result.rule.text().empty())
+    append_detail(out, "EDS", fmt::format("rule {} of edsc check reports it", result.rule.text()));
   std::string_view name = "frames";
   for (const std::string& line : frame_lines(result, run_.node, sheet_, max_frames)) {
     append_detail(out, name, line);

@@ -6,10 +6,10 @@
 
 #include "commands/commands.hpp"
 #include "commands/network/timing_report.hpp"
-#include "diagnostics/rule.hpp"
 #include "diagnostics/unknown_rule.hpp"
 #include "network/checks/check_network.hpp"
 #include "network/network.hpp"
+#include "rules/check_rules.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -61,7 +61,7 @@ int check(const CheckSettings& settings) {
     Diagnostics diagnostics;
     if (settings.strict) diagnostics.treat_warnings_as_errors();
     diagnostics.silence_errors();
-    for (const std::string& rule : settings.silence) diagnostics.silence(rule);
+    for (const std::string& rule : settings.silence) diagnostics.silence(*find_rule(check_rules, rule));
     const auto loaded = load_network(path, diagnostics);
     check_network(loaded->network, diagnostics);
     report.add(diagnostics);
@@ -75,8 +75,8 @@ int check(const CheckSettings& settings) {
 
 /// In the format of CLI11: an error message, or nothing.
 std::string check_rule(const std::string& id) {
-  if (find_rule(id) != nullptr) return {};
-  return fmt::format("{} (see edsc check --list-rules)", unknown_rule(id));
+  if (find_rule(check_rules, id)) return {};
+  return fmt::format("{} (see edsc check --list-rules)", unknown_rule(id, check_rules));
 }
 
 void add_network_check_options(Command command, int& exit_code) {

@@ -106,7 +106,7 @@ class MissingPartners {
   }
 
  private:
-  void add(const CobIdUse& use, RuleId<Severity::warning, Severity::note> rule, std::string_view partner,
+  void add(const CobIdUse& use, CheckRule<Severity::warning, Severity::note> rule, std::string_view partner,
            MergedNote& note) {
     std::string message = fmt::format("{} ({}) has no {}", named(use), can_id_text(use.can_id, use.extended), partner);
     if (are_notes_) {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <string_view>
 #include <utility>
 
 #include "lint/rule_groups.hpp"
@@ -10,9 +9,9 @@ namespace {
 
 /// Rules of a single device that also judge the values of the network file. The other rules of these groups are about
 /// the EDS alone, or a rule of the network reports the same.
-constexpr std::string_view rules_of_values[] = {"heartbeat-consumer", "pdo-inhibit-time", "pdo-mapping-count",
-                                                "pdo-mapping-gap",    "pdo-remote",       "pdo-sync",
-                                                "pdo-sync-start",     "pdo-time-unused"};
+constexpr AnyRule rules_of_values[] = {"heartbeat-consumer", "pdo-inhibit-time", "pdo-mapping-count",
+                                       "pdo-mapping-gap",    "pdo-remote",       "pdo-sync",
+                                       "pdo-sync-start",     "pdo-time-unused"};
 
 /// The finding, at the first of its places that is in the network file; nothing if none is.
 void report(const NetworkContext& context, const NetworkNode& node, Diagnostic finding) {

@@ -16,7 +16,7 @@ class MergedNote {
     if (finding_) {
       finding_->add_place(position, std::move(message));
     } else {
-      finding_.emplace(Diagnostic{Severity::note, rule.id(), position, std::move(message), {}, {}});
+      finding_.emplace(Diagnostic{Severity::note, rule, position, std::move(message), {}, {}});
     }
   }
 

@@ -31,7 +31,7 @@ std::vector<std::string> size_findings(DeviceFromText& device, const Options& op
   static_cast<void>(lay_out(device.named(), options, device.diagnostics));
   std::vector<std::string> messages;
   for (const Diagnostic& finding : device.diagnostics.all()) {
-    if (finding.rule == "dictionary-size") messages.push_back(finding.message);
+    if (finding.rule.text() == "dictionary-size") messages.push_back(finding.message);
   }
   return messages;
 }

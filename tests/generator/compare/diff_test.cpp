@@ -17,11 +17,11 @@ namespace {
 
 /// One change, in short: `access-reduced 2000h:00 master`.
 std::string in_short(const Change& change) {
-  std::string text{kind_of(change.id).name};
+  std::string text{change.rule.text()};
   text += " " + change.entry;
-  if (change.breaks_master) text += " master";
-  if (change.breaks_pdo) text += " pdo";
-  if (change.breaks_source) text += " source";
+  if (change.breaks.master) text += " master";
+  if (change.breaks.pdo) text += " pdo";
+  if (change.breaks.source) text += " source";
   return text;
 }
 
@@ -73,22 +73,22 @@ std::string pdo(std::string_view cob_id, std::string_view transmission_type, con
 
 TEST(ChangeTable, HasEachNameOnceWithAReason) {
   std::set<std::string_view> names;
-  for (const ChangeKind& kind : all_change_kinds()) {
-    EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
-    EXPECT_FALSE(kind.what.empty() || kind.reason.empty()) << kind.name;
+  for (const Rule& rule : change_rules) {
+    EXPECT_TRUE(names.insert(rule.id).second) << rule.id;
+    EXPECT_FALSE(rule.title.empty() || rule.explanation.empty()) << rule.id;
   }
 }
 
 TEST(ChangeTable, StandsInTheDocuments) {
   std::ifstream file(EDSC_SOURCE_DIR "/docs/command-line.md");
   const std::string document{std::istreambuf_iterator<char>{file}, {}};
-  for (const ChangeKind& kind : all_change_kinds()) {
-    std::string who = kind.breaks_master ? "master" : "";
-    if (kind.breaks_pdo) who += who.empty() ? "pdo" : ", pdo";
-    if (kind.breaks_source) who += who.empty() ? "source" : ", source";
-    if (kind.id == ChangeId::stored_value_lost) who = "storage";
+  for (const Rule& rule : change_rules) {
+    std::string who = rule.breaks.master ? "master" : "";
+    if (rule.breaks.pdo) who += who.empty() ? "pdo" : ", pdo";
+    if (rule.breaks.source) who += who.empty() ? "source" : ", source";
+    if (rule.breaks.storage) who = "storage";
     const std::string row =
-        fmt::format("| `{}` | {} | {}: {} |\n", kind.name, who.empty() ? "-" : who, kind.what, kind.reason);
+        fmt::format("| `{}` | {} | {}: {} |\n", rule.id, who.empty() ? "-" : who, rule.title, rule.explanation);
     EXPECT_NE(document.find(row), std::string::npos) << row;
   }
 }

@@ -272,7 +272,7 @@ std::vector<std::string> live_defaults(const std::string& sheet) {
   check_device(text.named(), text.sheet, text.options, text.diagnostics);
   std::vector<std::string> lines;
   for (const Diagnostic& diagnostic : text.diagnostics.all()) {
-    if (diagnostic.rule == "live-default") lines.emplace_back(text.source.line(diagnostic.position.line));
+    if (diagnostic.rule.text() == "live-default") lines.emplace_back(text.source.line(diagnostic.position.line));
   }
   return lines;
 }

@@ -106,7 +106,7 @@ TEST(Options, MustSpeakOfObjectsThatExist) {
   const DeviceFromText text(var("2000", "Value", "5"), options);
   std::vector<std::string> messages;
   for (const Diagnostic& finding : text.diagnostics.all()) {
-    if (finding.rule == "options") messages.push_back(finding.message);
+    if (finding.rule.text() == "options") messages.push_back(finding.message);
   }
   EXPECT_EQ(messages, (std::vector<std::string>{"option pdo.no_event names 2000h:01, which is not in the EDS",
                                                 "option pdo.no_event names 2001h, which is not in the EDS",

@@ -87,8 +87,8 @@ TEST(OptionsFile, ListsAllowedFindings) {
   EXPECT_EQ(read.options.allow[0].reason, "mapped at \"start\"");
   EXPECT_EQ(read.options.allow[0].object, std::nullopt);
   EXPECT_EQ(read.options.allow[0].position.line, 2U);
-  EXPECT_EQ(read.options.allow[1].object, (EntrySelector{0x6401, 3}));
-  EXPECT_EQ(read.options.allow[2].object, (EntrySelector{0x6040, std::nullopt}));
+  EXPECT_EQ(read.options.allow[1].object, (EntryAddress{0x6401, 3}));
+  EXPECT_EQ(read.options.allow[2].object, (EntryAddress{0x6040, std::nullopt}));
 }
 
 TEST(OptionsFile, RefusesAllowedFindingsWithoutRuleOrReason) {
@@ -204,14 +204,14 @@ TEST(OptionsFile, RefusesAStaticMappingOfWhatIsNoMappingParameter) {
 TEST(OptionsFile, NamesObjectsAndEntriesThatRaiseNoEvent) {
   const ReadOptions read(R"({ "pdo": { "no_event": ["6401h", "6000h:02", "2000h:00"] } })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
-  EXPECT_EQ(read.options.no_event, (std::vector<EntrySelector>{{0x6401, {}}, {0x6000, 2}, {0x2000, 0}}));
+  EXPECT_EQ(read.options.no_event, (std::vector<EntryAddress>{{0x6401, {}}, {0x6000, 2}, {0x2000, 0}}));
 }
 
 TEST(OptionsFile, SaysWhatIsStored) {
   const ReadOptions read(
       R"({ "storage": { "entries": { "1005h": "with_node_id", "6010:01": "never", "6081h:00": "always" } } })");
   EXPECT_EQ(findings(read.diagnostics), Findings{});
-  using Row = std::pair<EntrySelector, std::string>;
+  using Row = std::pair<EntryAddress, std::string>;
   EXPECT_EQ(read.options.storing,
             (std::vector<Row>{{{0x1005, {}}, "with_node_id"}, {{0x6010, 1}, "never"}, {{0x6081, 0}, "always"}}));
 }
@@ -238,7 +238,7 @@ TEST(OptionsFile, RefusesAnEmergencyWithoutCodeOrFiveBytes) {
         R"("8210h": "090000000000")", R"("8210h": "09000000+1")", R"("8210h": "090000000x")", R"("8210h": 9)"}) {
     const ReadOptions read("{ \"emcy\": { \"info\": { " + std::string{member} + " } } }");
     ASSERT_EQ(read.diagnostics.errors(), 1U) << member;
-    EXPECT_EQ(read.diagnostics.all().front().rule, "options") << member;
+    EXPECT_EQ(read.diagnostics.all().front().rule.text(), "options") << member;
     EXPECT_TRUE(read.options.emergency_info.empty()) << member;
   }
 }
@@ -285,7 +285,7 @@ TEST(OptionsFile, RefusesAValueOfTheWrongType) {
                              R"("emcy": {"info": ["8210h"]})"}) {
     const ReadOptions read("{ " + std::string{member} + " }");
     ASSERT_EQ(read.diagnostics.errors(), 1U) << member;
-    EXPECT_EQ(read.diagnostics.all().front().rule, "options") << member;
+    EXPECT_EQ(read.diagnostics.all().front().rule.text(), "options") << member;
     EXPECT_EQ(read.runtime(), Runtime{}) << member;
   }
 }
@@ -384,8 +384,8 @@ TEST(OptionsFile, NamesThePathOfTheMemberThatIsWrong) {
 TEST(OptionsFile, ThatIsNoJsonIsAnErrorWhereItBreaks) {
   EXPECT_EQ(findings(ReadOptions("{\n  \"settable\": [,]\n}\n").diagnostics),
             (Findings{error_at(2, 16, "options-syntax")}));
-  EXPECT_EQ(ReadOptions("").diagnostics.all().front().rule, "options-syntax");
-  EXPECT_EQ(ReadOptions("{").diagnostics.all().front().rule, "options-syntax");
+  EXPECT_EQ(ReadOptions("").diagnostics.all().front().rule.text(), "options-syntax");
+  EXPECT_EQ(ReadOptions("{").diagnostics.all().front().rule.text(), "options-syntax");
 }
 
 TEST(OptionsFile, WithANumberThatNothingHoldsIsAnError) {
@@ -396,7 +396,7 @@ TEST(OptionsFile, HoldsOneObject) {
   for (const char* text : {"[]", "1", "\"names\"", "null"}) {
     const ReadOptions read(text);
     ASSERT_EQ(read.diagnostics.errors(), 1U) << text;
-    EXPECT_EQ(read.diagnostics.all().front().rule, "options") << text;
+    EXPECT_EQ(read.diagnostics.all().front().rule.text(), "options") << text;
   }
 }
 

@@ -34,7 +34,7 @@ struct Rendered : DeviceFromText {
 std::string complaint(const std::string& text, StoredEds what) {
   const DeviceFromText device{text, keeping(what)};
   for (const Diagnostic& diagnostic : device.diagnostics.all()) {
-    if (diagnostic.rule == "options") return diagnostic.message;
+    if (diagnostic.rule.text() == "options") return diagnostic.message;
   }
   return "";
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eds/allow_comments.hpp"
+#include "rules/check_rules.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {
@@ -56,12 +57,10 @@ TEST(AllowComments, OfAnotherForm) {
 
 class AllowancesOfASheet : public testing::Test {
  protected:
-  void allow(AllowanceScope scope, const std::string& rule = "rule") {
-    allowances_.add({rule, "because", {}, false, scope});
-  }
+  void allow(AllowanceScope scope, AnyRule rule = "file-name") { allowances_.add({rule, "because", {}, false, scope}); }
 
   /// The lines at which a finding of the rule is allowed; 0 is the file as a whole.
-  std::vector<std::uint32_t> allowed_lines(const std::string& rule = "rule") {
+  std::vector<std::uint32_t> allowed_lines(AnyRule rule = "file-name") {
     allowances_.set_outline(find_allow_comments(source_).outline);
     std::vector<std::uint32_t> lines;
     for (std::uint32_t line = 0; line <= source_.lines(); ++line) {
@@ -97,7 +96,7 @@ class AllowancesOfASheet : public testing::Test {
 TEST_F(AllowancesOfASheet, OfTheFile) {
   allow({});
   EXPECT_EQ(allowed_lines().size(), source_.lines() + 1U);
-  EXPECT_TRUE(allowed_lines("another-rule").empty());
+  EXPECT_TRUE(allowed_lines("file-date").empty());
 }
 
 TEST_F(AllowancesOfASheet, OfALineAndASection) {
@@ -126,7 +125,7 @@ TEST_F(AllowancesOfASheet, OfAnotherFileAreNone) {
   allow({});
   const SourceFile other("b.eds", "[1000]\n");
   allowances_.set_outline(find_allow_comments(source_).outline);
-  EXPECT_EQ(allowances_.find("rule", {&other, 1, 1, 1}), std::nullopt);
+  EXPECT_EQ(allowances_.find(AnyRule{"file-name"}, {&other, 1, 1, 1}), std::nullopt);
 }
 
 }  // namespace

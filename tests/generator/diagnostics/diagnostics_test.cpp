@@ -34,18 +34,18 @@ TEST(Diagnostics, CountErrorsAndWarnings) {
 
 TEST(Diagnostics, DropSilencedRules) {
   Diagnostics diagnostics;
-  diagnostics.silence("number-range");
+  diagnostics.silence(AnyRule{"number-range"});
   diagnostics.warning("data-type", {}, "kept");
   EXPECT_FALSE(diagnostics.any_silenced());
   diagnostics.warning("number-range", {}, "dropped");
   EXPECT_TRUE(diagnostics.any_silenced());
   ASSERT_EQ(diagnostics.all().size(), 1U);
-  EXPECT_EQ(diagnostics.all().at(0).rule, "data-type");
+  EXPECT_EQ(diagnostics.all().at(0).rule.text(), "data-type");
 }
 
 TEST(Diagnostics, DropSilencedErrorsForCheckOnly) {
   Diagnostics diagnostics;
-  diagnostics.silence("number-range");
+  diagnostics.silence(AnyRule{"number-range"});
   diagnostics.error("number-range", {}, "kept");
   EXPECT_EQ(diagnostics.errors(), 1U);
   diagnostics.silence_errors();
@@ -58,10 +58,10 @@ TEST(Diagnostics, SetAllowedFindingsAside) {
   const SourceFile file("a.eds", "x\n");
   Diagnostics diagnostics;
   diagnostics.set_outline({&file, {}, {}});
-  diagnostics.allow({"number-range", "because", {&file, 1, 1}, true, {}});
+  diagnostics.allow({AnyRule{"number-range"}, "because", {&file, 1, 1}, true, {}});
   diagnostics.warning("number-range", {&file, 1, 1}, "expected");
   diagnostics.error("number-range", {&file, 1, 1}, "an error stays");
-  EXPECT_EQ(diagnostics.allowed_findings(), 1U);
+  EXPECT_EQ(diagnostics.suppressed_findings(), 1U);
   EXPECT_EQ(diagnostics.allowances()[0].findings, 1U);
   EXPECT_EQ(diagnostics.errors(), 1U);
   EXPECT_EQ(diagnostics.warnings(), 0U);
@@ -70,19 +70,18 @@ TEST(Diagnostics, SetAllowedFindingsAside) {
 
 TEST(Diagnostics, SayWhichSilencedRulesHaveFired) {
   Diagnostics diagnostics;
-  diagnostics.silence("number-range");
-  diagnostics.silence("data-type");
+  diagnostics.silence(AnyRule{"number-range"});
+  diagnostics.silence(AnyRule{"data-type"});
   diagnostics.warning("data-type", {}, "dropped");
-  EXPECT_FALSE(diagnostics.has_silenced("number-range"));
-  EXPECT_TRUE(diagnostics.has_silenced("data-type"));
+  EXPECT_FALSE(diagnostics.has_silenced(AnyRule{"number-range"}));
+  EXPECT_TRUE(diagnostics.has_silenced(AnyRule{"data-type"}));
 }
 
 TEST(Diagnostics, KeepGoingInOneFile) {
   const SourceFile foreign("a.eds", "x\n");
   const SourceFile own("a.options.json", "x\n");
-  constexpr std::string_view fatal[] = {"no-objects"};
   Diagnostics diagnostics;
-  diagnostics.keep_going(&foreign, fatal);
+  diagnostics.keep_going(&foreign);
   diagnostics.error("number-range", {&foreign, 1, 1}, "the maker's");
   EXPECT_EQ(diagnostics.warnings(), 1U);
   diagnostics.error("number-range", {&own, 1, 1}, "the user's");
@@ -109,10 +108,10 @@ TEST(Diagnostics, ListTheFirstOfARuleAndCountTheRest) {
   }
   diagnostics.warning("number-range", {&other, 1, 1}, "elsewhere");
   EXPECT_EQ(diagnostics.all().size(), Diagnostics::max_per_rule + 1);
-  ASSERT_EQ(diagnostics.suppressed().size(), 1U);
-  EXPECT_EQ(diagnostics.suppressed()[0].file, &file);
-  EXPECT_EQ(diagnostics.suppressed()[0].rule, "number-range");
-  EXPECT_EQ(diagnostics.suppressed()[0].count, 100'000 - Diagnostics::max_per_rule);
+  ASSERT_EQ(diagnostics.omitted().size(), 1U);
+  EXPECT_EQ(diagnostics.omitted()[0].file, &file);
+  EXPECT_EQ(diagnostics.omitted()[0].rule.text(), "number-range");
+  EXPECT_EQ(diagnostics.omitted()[0].count, 100'000 - Diagnostics::max_per_rule);
   EXPECT_EQ(diagnostics.warnings(), 100'001U);
 }
 
@@ -180,7 +179,7 @@ TEST(Diagnostics, MakeOneOfTheFindingsOfOneCause) {
   const SourceFile file("a.eds", std::string(200, '\n'));
   const Diagnostics diagnostics = findings_of_one_cause(file);
   EXPECT_EQ(diagnostics.errors(), 2U);
-  EXPECT_TRUE(diagnostics.suppressed().empty());
+  EXPECT_TRUE(diagnostics.omitted().empty());
   ASSERT_EQ(diagnostics.all().size(), 2U);
   const Diagnostic& first = diagnostics.all().front();
   EXPECT_EQ(first.position.line, 1U);

@@ -22,7 +22,7 @@ TEST(ObjectRules, WarnOfEachMandatoryObjectThatIsMissing) {
   const CheckedObjects checked(var("1001", "Error register", "5", "ro"));
   std::vector<std::string> messages;
   for (const Diagnostic& diagnostic : checked.diagnostics.all()) {
-    if (diagnostic.rule == "mandatory-object") messages.push_back(diagnostic.message);
+    if (diagnostic.rule.text() == "mandatory-object") messages.push_back(diagnostic.message);
   }
   EXPECT_EQ(messages,
             (std::vector<std::string>{"mandatory object 1000h is missing", "mandatory object 1018h is missing"}));

@@ -105,8 +105,8 @@ TEST(MappingRule, IsOneForEachFault) {
   EXPECT_EQ(rule_of(MappingFault::dummy_not_allowed).id(), "pdo-dummy");
   EXPECT_EQ(rule_of(MappingFault::too_many_bits).id(), "pdo-size");
   EXPECT_EQ(rule_of(MappingFault::too_many_objects).id(), "pdo-entries");
-  EXPECT_TRUE(is_mapping_rule("pdo-dummy"));
-  EXPECT_FALSE(is_mapping_rule("pdo-empty"));
+  EXPECT_TRUE(is_mapping_rule(AnyRule{"pdo-dummy"}));
+  EXPECT_FALSE(is_mapping_rule(AnyRule{"pdo-empty"}));
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ nlohmann::ordered_json view_of(const DataSheet& sheet, Diagnostics& diagnostics)
 /// The rules with findings, except the one about a section that XML does not have.
 std::set<std::string> rule_set_of(const Diagnostics& diagnostics) {
   std::set<std::string> rules;
-  for (const Diagnostic& diagnostic : diagnostics.all()) rules.emplace(diagnostic.rule);
+  for (const Diagnostic& diagnostic : diagnostics.all()) rules.emplace(diagnostic.rule.text());
   rules.erase("file-info");
   return rules;
 }

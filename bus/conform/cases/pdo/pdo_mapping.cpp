@@ -52,7 +52,7 @@ std::uint64_t extended(const Entry& entry, std::uint64_t value) {
 
 }  // namespace
 
-void fail_value(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value, std::string_view rule,
+void fail_value(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value, AnyRule rule,
                 const std::string& expected, const std::string& got) {
   if (dut.default_of(index, sub_index).value_or(0) == value) dut.fail_by_sheet(rule, expected, got);
   dut.fail(expected, got);
@@ -86,7 +86,7 @@ std::optional<MappingProblem> problem_of(const Dut& dut, PdoDirection direction,
   const auto fault = fault_of(direction, mapped, object ? &*object : nullptr, dut.sheet().dummies);
   if (!fault) return std::nullopt;
   const auto problem = [&](std::string expected, std::string found) {
-    return MappingProblem{rule_of(*fault).id(), std::move(expected), std::move(found)};
+    return MappingProblem{rule_of(*fault), std::move(expected), std::move(found)};
   };
   switch (*fault) {
     case MappingFault::dummy_in_tpdo:

@@ -28,8 +28,8 @@ inline constexpr std::uint8_t cob_id_parameter = 1, type_parameter = 2, inhibit_
 
 /// Fails because of the value of an entry. If it is the default value of the EDS (0 without one), the failure names the
 /// rule of `edsc check` that reports it.
-[[noreturn]] void fail_value(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value,
-                             std::string_view rule, const std::string& expected, const std::string& got);
+[[noreturn]] void fail_value(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value, AnyRule rule,
+                             const std::string& expected, const std::string& got);
 
 /// Reads the present mapping; std::nullopt for an MPDO.
 [[nodiscard]] std::optional<std::vector<MappingValue>> read_mapping(Dut& dut, std::uint16_t communication);
@@ -38,7 +38,7 @@ inline constexpr std::uint8_t cob_id_parameter = 1, type_parameter = 2, inhibit_
 
 /// Why the EDS does not allow an entry of a mapping.
 struct MappingProblem {
-  std::string_view rule;  ///< of `edsc check`
+  AnyRule rule;  ///< of `edsc check`
   std::string expected;
   std::string got;
 };

@@ -1,39 +1,24 @@
-/// The rule table: the faults that edsc reports in EDS, DCF and XDD files, with severity and clause. A finding names a
-/// row and has a severity that the row allows; another id or severity does not compile.
+/// The rules of `edsc check` and `edsc network check`: the faults that edsc reports in EDS, DCF, XDD, options and
+/// network files, with severity and clause. A finding names a row and has a severity that the row allows; another id or
+/// severity does not compile.
 #pragma once
 
-#include <algorithm>
-#include <cstdint>
-#include <iterator>
-#include <span>
-#include <string_view>
+#include "rules/rule.hpp"
 
 namespace edsc {
-
-enum class Severity : std::uint8_t { note, warning, error };
-
-struct Rule {
-  std::string_view id;
-  Severity severity;  ///< of most findings
-  std::string_view meaning;
-  std::string_view source;      ///< clause of a CiA document, or "edsc" for a rule of this compiler
-  Severity mildest = severity;  ///< if the value can still be read, or the fault is harmless
-
-  [[nodiscard]] constexpr bool allows(Severity other) const { return other == severity || other == mildest; }
-};
-
 namespace rule_table {
 
-inline constexpr auto note = Severity::note;
-inline constexpr auto error = Severity::error;
-inline constexpr auto warning = Severity::warning;
+constexpr Rule fatal(Rule rule) {
+  rule.is_fatal = true;
+  return rule;
+}
 
-inline constexpr Rule rows[] = {
+inline constexpr Rule check[] = {
     // The file and its lines.
-    Rule{"unreadable-file", error, "the file cannot be read", "edsc"},
-    Rule{"empty-file", error, "the file has no section", "CiA 306-1, 4.2"},
-    Rule{"binary-file", error, "the file is not text", "CiA 306-1, 4.2"},
-    Rule{"xml-file", error, "the file is XML, not an EDS or DCF", "CiA 306-1, 4.2"},
+    fatal({"unreadable-file", error, "the file cannot be read", "edsc"}),
+    fatal({"empty-file", error, "the file has no section", "CiA 306-1, 4.2"}),
+    fatal({"binary-file", error, "the file is not text", "CiA 306-1, 4.2"}),
+    fatal({"xml-file", error, "the file is XML, not an EDS or DCF", "CiA 306-1, 4.2"}),
     Rule{"stray-line", warning, "a line that is neither section, entry nor comment", "CiA 306-1, 4.2"},
     Rule{"hash-comment", warning, "a comment that begins with # instead of ;", "CiA 306-1, 4.2"},
     Rule{"unterminated-section", error, "a section header without ]", "CiA 306-1, 4.2"},
@@ -76,11 +61,11 @@ inline constexpr Rule rows[] = {
     Rule{"module-count", error, "Count of a module's extension is not n or 0;m", "CiA 306-1, 6", warning},
     Rule{"module-object", error, "an object of a module already exists, or does not fit", "CiA 306-1, 6", warning},
     // XDD and XDC.
-    Rule{"xml-syntax", error, "the file is not well-formed XML", "XML 1.0", warning},
-    Rule{"xml-profile", error, "the XML is not a CANopen device profile", "CiA 311"},
+    fatal({"xml-syntax", error, "the file is not well-formed XML", "XML 1.0", warning}),
+    fatal({"xml-profile", error, "the XML is not a CANopen device profile", "CiA 311"}),
     Rule{"xml-element", warning, "an element or attribute that edsc does not read", "CiA 311", note},
     // Sections and keys.
-    Rule{"no-objects", error, "the file does not describe any object", "CiA 306-1, 4.6"},
+    fatal({"no-objects", error, "the file does not describe any object", "CiA 306-1, 4.6"}),
     Rule{"duplicate-section", warning, "duplicate section; the first is used", "CiA 306-1, 4.2"},
     Rule{"duplicate-key", warning, "duplicate key in a section; the first is used", "CiA 306-1, 4.2"},
     Rule{"unknown-section", warning, "a section that CiA 306 does not define", "CiA 306-1, 4"},
@@ -270,58 +255,19 @@ inline constexpr Rule rows[] = {
     Rule{"deprecated-option", warning, "an option by its name outside the group of its service", "edsc"},
     Rule{"allow-comment", warning, "an invalid comment \"; edsc:\"", "edsc"},
     Rule{"allow-unused", warning, "a silenced or allowed rule without a finding", "edsc"},
-    Rule{"dictionary-size", error, "the dictionary is too large", "edsc"},
+    fatal({"dictionary-size", error, "the dictionary is too large", "edsc"}),
 };
 
-inline constexpr std::string_view fatal[] = {"unreadable-file", "empty-file",  "binary-file", "xml-file",
-                                             "xml-syntax",      "xml-profile", "no-objects",  "dictionary-size"};
-
 }  // namespace rule_table
 
-/// The rules whose errors stop edsc even with `--keep-going`: no device can be resolved.
-[[nodiscard]] constexpr std::span<const std::string_view> fatal_rules() { return rule_table::fatal; }
+inline constexpr std::span<const Rule> check_rules{rule_table::check};
 
-[[nodiscard]] constexpr std::span<const Rule> all_rules() { return rule_table::rows; }
-
-/// Returns the rule with this id, or null.
-[[nodiscard]] constexpr const Rule* find_rule(std::string_view id) {
-  const auto* const at = std::ranges::find(rule_table::rows, id, &Rule::id);
-  return at == std::end(rule_table::rows) ? nullptr : at;
-}
-
-namespace rule_table {
-/// Names in the compiler's error for an unknown id, or a severity that the row does not allow.
-void no_such_rule();
-void severity_is_not_in_the_row_of_the_rule();
-
-template <Severity severity, Severity... others>
-inline constexpr bool is_one_of = ((severity == others) || ...);
-}  // namespace rule_table
-
-/// The id of a row whose findings may have each of these severities.
 template <Severity... severities>
-class RuleId {
- public:
-  consteval RuleId(const char* id) : row_{find_rule(id)} {
-    if (row_ == nullptr) rule_table::no_such_rule();
-    if (!(row_->allows(severities) && ...)) rule_table::severity_is_not_in_the_row_of_the_rule();
-  }
-  /// A rule with several severities converts to a rule with some of them.
-  template <Severity... others>
-  requires(sizeof...(others) > sizeof...(severities) &&
-           (rule_table::is_one_of<severities, others...> && ...)) constexpr RuleId(const RuleId<others...>& other)
-      : row_{&other.row()} {}
+using CheckRule = RuleOf<rule_table::check, severities...>;
 
-  [[nodiscard]] constexpr const Rule& row() const { return *row_; }
-  [[nodiscard]] constexpr std::string_view id() const { return row_->id; }
-
- private:
-  const Rule* row_;
-};
-
-using ErrorRule = RuleId<Severity::error>;
-using WarningRule = RuleId<Severity::warning>;
-using NoteRule = RuleId<Severity::note>;
-using AnyRule = RuleId<>;
+using ErrorRule = CheckRule<Severity::error>;
+using WarningRule = CheckRule<Severity::warning>;
+using NoteRule = CheckRule<Severity::note>;
+using AnyRule = CheckRule<>;
 
 }  // namespace edsc

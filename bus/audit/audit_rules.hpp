@@ -1,0 +1,120 @@
+/// The rules of `edsc audit`: what an audit of a log finds, with severity and clause. A check names a row by its id.
+#pragma once
+
+#include "rules/rule.hpp"
+
+namespace edsc::audit {
+namespace rule_table {
+
+using edsc::rule_table::error;
+using edsc::rule_table::note;
+using edsc::rule_table::warning;
+
+/// `advice`: how it is judged, or what to look at.
+constexpr Rule judged(std::string_view id, Severity severity, std::string_view title, std::string_view source,
+                      std::string_view advice) {
+  return {id, severity, title, source, severity, advice};
+}
+
+inline constexpr Rule audit[] = {
+    judged("pdo-event-timer", error, "a TPDO is sent later than its event timer allows", "CiA 301, 7.5.2.37",
+           "sub-index 5 is a maximum distance for transmission types 254 and 255 in Operational"),
+    judged("pdo-inhibit-time", error, "a TPDO is sent again within its inhibit time", "CiA 301, 7.5.2.37",
+           "sub-index 3 is a minimum distance for transmission types 254 and 255"),
+    judged("pdo-sync-cycle", error, "a synchronous TPDO is not sent after every n-th SYNC", "CiA 301, 7.5.2.37",
+           "n is the transmission type, 1 to 240; the distance between two TPDOs is counted in SYNCs"),
+    judged("pdo-sync-window", error, "a synchronous TPDO is sent after the synchronous window", "CiA 301, 7.5.2.7",
+           "for transmission types 0 to 240; the window 1007h of the node begins with SYNC"),
+    judged("pdo-not-requested", error, "an RTR-only TPDO is sent without a remote frame", "CiA 301, 7.5.2.37",
+           "for transmission types 252 and 253"),
+    judged("pdo-length", error, "a PDO does not have the length of its mapping", "CiA 301, 7.5.2.36",
+           "a TPDO must have this length; an RPDO must not be shorter. Give the DCF, or log the configuration, too"),
+    judged("pdo-state", error, "a node sends a PDO outside of Operational", "CiA 301, 7.3.2.2",
+           "the state follows from commands, boot-up and heartbeats; 100 ms after a command both states are accepted"),
+    judged(
+        "sync-period", error, "SYNC does not have the period of its producer", "CiA 301, 7.5.2.6",
+        "1006h of the node whose 1005h has bit 30; the first SYNC within a period, in Pre-operational and Operational"),
+    judged("sync-counter", error, "wrong counter of SYNC", "CiA 301, 7.5.2.22",
+           "1019h: without it SYNC has no data; with it a byte that counts from 1 to the overflow value"),
+    judged("sync-producers", error, "two nodes are configured as producer of one SYNC", "CiA 301, 7.2.5",
+           "bit 30 of 1005h of both"),
+    judged("heartbeat-late", error, "a heartbeat is later than 1017h", "CiA 301, 7.5.2.20",
+           "also a node that becomes silent before the end of the log"),
+    judged("heartbeat-early", warning, "two heartbeats are closer than 1017h", "CiA 301, 7.5.2.20",
+           "two nodes may have one node-ID; a heartbeat after an NMT command is not judged"),
+    judged("heartbeat-consumer", warning, "a heartbeat consumer does not report a missing heartbeat with EMCY 8130h",
+           "CiA 301, 7.5.2.19", "1016h of the consumer; it has 100 ms and its EMCY inhibit time to report"),
+    judged("guarding-toggle", error, "wrong toggle bit in a response to node guarding", "CiA 301, 7.2.8.3.2.1",
+           "it is 0 in the first response after a boot-up message, and alternates"),
+    judged("guarding-response", error, "a node does not respond to node guarding", "CiA 301, 7.2.8.3.2.1",
+           "within 100 ms; also a node that is not on the bus any more"),
+    judged("nmt-command", error, "an unknown NMT command, or one of another length", "CiA 301, 7.2.8.3.1",
+           "the master is at fault"),
+    judged("nmt-state", error, "a node reports an unknown state, or one that does not follow from the NMT commands",
+           "CiA 301, 7.3.2.2",
+           "leaving Operational after an EMCY is accepted: 1029h; so is a self-starting node: 1F80h; the NMT "
+           "master, 1F80h or --master, need not obey"),
+    judged("nmt-boot-up", error, "a node does not send a boot-up message after a reset command", "CiA 301, 7.3.2.2.1",
+           "within 5 s; not of the NMT master: 1F80h or --master"),
+    judged("nmt-reset", error, "a node sends a boot-up message without a reset command", "CiA 301, 7.3.2.2.1",
+           "it was on the bus before: a reset by its watchdog or its supply, or a second node"),
+    judged("stopped-service", error, "a stopped node sends an EMCY or answers an SDO", "CiA 301, 7.3.2.2.4",
+           "in Stopped only NMT and error control are active"),
+    judged("emcy-length", error, "an EMCY does not have 8 bytes", "CiA 301, 7.2.7.3", ""),
+    judged("emcy-cob-id", error, "an EMCY of a node whose 1014h is missing, invalid or another CAN-ID",
+           "CiA 301, 7.5.2.17", ""),
+    judged("emcy-register", error, "an EMCY with an error, but bit 0 of the error register is 0", "CiA 301, 7.5.2.2",
+           "the generic bit is mandatory: it is set while any error is present"),
+    judged("emcy-register-value", error, "the value read from 1001h differs from the error register of the last EMCY",
+           "CiA 301, 7.5.2.2", ""),
+    judged("emcy-inhibit-time", error, "an EMCY within the inhibit time 1015h", "CiA 301, 7.5.2.18", ""),
+    judged("emcy-not-reset", note, "an error that is not reset before the end of the log", "CiA 301, 7.2.7.1",
+           "EMCY 00xxh or a boot-up message ends it"),
+    judged("sdo-length", error, "an SDO frame does not have 8 bytes", "CiA 301, 7.2.4.3", ""),
+    judged("sdo-command", error, "an SDO command that is unknown or does not fit the transfer", "CiA 301, 7.2.4.3",
+           "also a response for another object"),
+    judged("sdo-unrequested", error, "an SDO response without a request", "CiA 301, 7.2.4.3",
+           "two servers may have one node-ID, or the client gave up too early"),
+    judged("sdo-unfinished", error, "a new SDO transfer before the end of the previous one", "CiA 301, 7.2.4.3",
+           "two clients may use one server"),
+    judged("sdo-toggle", error, "wrong toggle bit in a segmented SDO transfer", "CiA 301, 7.2.4.3.4", ""),
+    judged("sdo-sequence", error, "wrong sequence number in an SDO block transfer", "CiA 301, 7.2.4.3.10",
+           "a frame that the log lost looks the same"),
+    judged("sdo-size", error, "an SDO transfer of another length than announced", "CiA 301, 7.2.4.3.3", ""),
+    judged("sdo-crc", error, "wrong CRC of an SDO block transfer", "CiA 301, 7.2.4.3.16", ""),
+    judged("sdo-timeout", error, "an SDO server does not answer in time", "CiA 301, 7.2.4.1",
+           "--sdo-timeout; CiA 301 does not define it"),
+    judged("sdo-abort", note, "an aborted SDO transfer", "CiA 301, 7.2.4.3.17",
+           "each abort code of an object is a finding"),
+    judged("lss-response", error, "an LSS response that does not fit the last request", "CiA 305, 3", ""),
+    judged("lss-mode", error, "an LSS configuration or inquiry command outside of LSS configuration", "CiA 305, 3",
+           "the state follows from the last switch state command in the log"),
+    judged("lss-command", error, "an unknown LSS command, or one without those that belong before it", "CiA 305, 3",
+           "the parts of an LSS address are sent in their order"),
+    judged("lss-refused", note, "an LSS slave rejects a command", "CiA 305, 3", "each command is a finding"),
+    judged("lss-timeout", error, "the LSS slave in the configuration state does not respond", "CiA 305, 3",
+           "before the next request and within 100 ms; of a slave that has responded in this state"),
+    judged("bus-load", warning, "the bus load is above the limit", "edsc",
+           "maximum over 100 ms at --bit-rate, with stuff bits; --max-load is the limit"),
+    judged("error-frame", error, "an error frame of the CAN controller", "ISO 11898-1, 10.4.4", ""),
+    judged("frame-length", error, "a SYNC, TIME, error control or LSS frame of another length", "CiA 301, 7.2",
+           "nodes ignore it"),
+    judged("can-id-unknown", note, "a CAN-ID that no known node uses", "CiA 301, 7.3.5", ""),
+    judged("can-id-senders", error, "two nodes send PDOs with one CAN-ID", "CiA 301, 7.2.2",
+           "by the COB-IDs in force of both"),
+    judged("node-unknown", note, "a node whose EDS is not given", "edsc", "--node"),
+    judged("node-silent", note, "a node of --node that does not send anything", "edsc", ""),
+    judged(
+        "log-time", note, "the times of the log go back", "edsc",
+        "by more than 100 ms: the clock was set, or two logs were joined; times before and after it are not compared"),
+    judged("log-interface", note, "frames of more than one interface", "edsc",
+           "they are judged as those of one bus; --interface selects one"),
+};
+
+}  // namespace rule_table
+
+inline constexpr std::span<const Rule> audit_rules{rule_table::audit};
+
+using AuditRule = RuleOf<rule_table::audit>;
+
+}  // namespace edsc::audit

@@ -1,0 +1,107 @@
+/// A rule: one kind of fault or change that edsc reports. The tables of all commands have this row: check_rules.hpp
+/// (`edsc check`, `edsc network check`), audit/audit_rules.hpp (`edsc audit`), compare/change_rules.hpp (`edsc diff`).
+#pragma once
+
+#include <algorithm>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace edsc {
+
+enum class Severity : std::uint8_t { note, warning, error };
+
+[[nodiscard]] constexpr std::string_view to_string(Severity severity) {
+  constexpr std::string_view words[] = {"note", "warning", "error"};
+  return words[static_cast<std::size_t>(severity)];
+}
+
+/// What a change between two versions of a device breaks.
+struct Breaks {
+  bool master = false;   ///< programs that access the device by SDO, or supervise it
+  bool pdo = false;      ///< devices that send its RPDOs or receive its TPDOs
+  bool source = false;   ///< code that is compiled against the generated headers
+  bool storage = false;  ///< parameters that the device has stored are not loaded
+
+  [[nodiscard]] constexpr bool any() const { return master || pdo || source || storage; }
+};
+
+struct Rule {
+  std::string_view id;  ///< as printed and as users write it; stable
+  Severity severity;    ///< of most findings
+  std::string_view title;
+  std::string_view source;            ///< clause of a CiA document or standard, or "edsc" for a rule of edsc
+  Severity mildest = severity;        ///< if the value can still be read, or the fault is harmless
+  std::string_view explanation = {};  ///< how it is judged, what to look at, or why a change breaks something
+  bool is_fatal = false;              ///< an error stops edsc even with `--keep-going`: no device can be resolved
+  Breaks breaks = {};                 ///< of a rule about changes
+
+  [[nodiscard]] constexpr bool allows(Severity other) const { return other == severity || other == mildest; }
+};
+
+namespace rule_table {
+inline constexpr auto note = Severity::note;
+inline constexpr auto error = Severity::error;
+inline constexpr auto warning = Severity::warning;
+
+inline constexpr Rule no_rule{"", error, "", ""};
+}  // namespace rule_table
+
+/// A row of a rule table. Ids are equal if they are the same row; their order is the one of the table.
+class RuleId {
+ public:
+  /// No rule: of a finding that no table has. Its text is empty.
+  constexpr RuleId() = default;
+  constexpr explicit RuleId(const Rule& row) : row_{&row} {}
+
+  [[nodiscard]] constexpr const Rule& row() const { return *row_; }
+  [[nodiscard]] constexpr std::string_view text() const { return row_->id; }
+
+  friend constexpr bool operator==(const RuleId&, const RuleId&) = default;
+  friend constexpr auto operator<=>(const RuleId&, const RuleId&) = default;
+
+ private:
+  const Rule* row_ = &rule_table::no_rule;
+};
+
+/// Returns the rule whose id is `text`: what a user wrote.
+[[nodiscard]] constexpr std::optional<RuleId> find_rule(std::span<const Rule> table, std::string_view text) {
+  const auto at = std::ranges::find(table, text, &Rule::id);
+  return at == table.end() ? std::nullopt : std::optional{RuleId{*at}};
+}
+
+namespace rule_table {
+/// Names in the compiler's error for an unknown id, or a severity that the row does not allow.
+void no_such_rule();
+void severity_is_not_in_the_row_of_the_rule();
+
+template <Severity severity, Severity... others>
+inline constexpr bool is_one_of = ((severity == others) || ...);
+}  // namespace rule_table
+
+/// The id of a row of `table` whose findings may have each of these severities. It is made from its text; a text that
+/// the table does not have does not compile.
+template <const auto& table, Severity... severities>
+class RuleOf : public RuleId {
+ public:
+  consteval RuleOf(const char* id) : RuleId{row_with(id)} {
+    if (!(row().allows(severities) && ...)) rule_table::severity_is_not_in_the_row_of_the_rule();
+  }
+  /// A rule with several severities converts to a rule with some of them.
+  template <Severity... others>
+  requires(sizeof...(others) > sizeof...(severities) && (rule_table::is_one_of<severities, others...> &&
+                                                         ...)) constexpr RuleOf(const RuleOf<table, others...>& other)
+      : RuleId{other} {}
+
+ private:
+  static consteval const Rule& row_with(std::string_view id) {
+    const auto found = find_rule(table, id);
+    if (!found) rule_table::no_such_rule();
+    return found->row();
+  }
+};
+
+}  // namespace edsc
