@@ -7,8 +7,8 @@
 #include <set>
 #include <span>
 
-#include "device/types/little_endian.hpp"
 #include "text/number_text.hpp"
+#include "values/little_endian.hpp"
 #include "values/parse_value.hpp"
 
 namespace edsc {

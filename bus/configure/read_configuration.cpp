@@ -8,7 +8,7 @@
 
 #include "configure/configuration_plan.hpp"
 #include "device/index_range.hpp"
-#include "device/types/little_endian.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc {
 namespace {

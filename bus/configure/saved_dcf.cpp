@@ -7,12 +7,12 @@
 
 #include "device/index_range.hpp"
 #include "device/resolve.hpp"
-#include "device/types/value_bytes.hpp"
 #include "eds/ini.hpp"
 #include "format/canonical_form.hpp"
 #include "format/dcf/configured_values.hpp"
 #include "format/dcf/parameter_text.hpp"
 #include "format/section_order.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

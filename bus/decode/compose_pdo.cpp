@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "device/types/little_endian.hpp"
+#include "device/entry_text.hpp"
 #include "values/append.hpp"
-#include "values/parse_value.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc {
 namespace {

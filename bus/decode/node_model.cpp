@@ -5,8 +5,8 @@
 
 #include "device/cob_id_parameter.hpp"
 #include "device/index_range.hpp"
-#include "device/types/little_endian.hpp"
 #include "text/counted.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc {
 namespace {

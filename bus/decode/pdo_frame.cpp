@@ -6,9 +6,9 @@
 #include <iterator>
 
 #include "device/scaled_unit.hpp"
-#include "device/types/little_endian.hpp"
 #include "text/counted.hpp"
 #include "values/append.hpp"
+#include "values/little_endian.hpp"
 #include "values/value_text.hpp"
 
 namespace edsc {

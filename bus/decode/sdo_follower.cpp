@@ -7,12 +7,12 @@
 #include <iterator>
 #include <utility>
 
+#include "device/entry_text.hpp"
 #include "device/index_range.hpp"
 #include "device/scaled_unit.hpp"
-#include "device/types/little_endian.hpp"
 #include "text/counted.hpp"
 #include "values/append.hpp"
-#include "values/value_text.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc {
 namespace {

@@ -8,9 +8,9 @@
 #include <iterator>
 
 #include "decode/emergency_text.hpp"
-#include "device/types/little_endian.hpp"
 #include "text/counted.hpp"
 #include "values/append.hpp"
+#include "values/little_endian.hpp"
 #include "values/nmt_text.hpp"
 #include "values/value_text.hpp"
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "device/pdo/pdo_defaults.hpp"
-#include "device/types/value_bytes.hpp"
 #include "network/communication_objects.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

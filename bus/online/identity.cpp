@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "device/types/little_endian.hpp"
 #include "online/sdo_access.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc {
 namespace {

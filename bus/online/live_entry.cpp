@@ -6,11 +6,11 @@
 #include <bit>
 #include <cmath>
 
-#include "device/types/little_endian.hpp"
+#include "device/entry_text.hpp"
 #include "eds/ini.hpp"
 #include "text/counted.hpp"
 #include "text/utf8.hpp"
-#include "values/value_text.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc {
 namespace {

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "device/types/little_endian.hpp"
 #include "online/bus_watch.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc {
 namespace {

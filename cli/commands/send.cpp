@@ -5,7 +5,6 @@
 #include "commands/commands.hpp"
 #include "decode/compose_pdo.hpp"
 #include "decode/log/log_line.hpp"
-#include "device/types/little_endian.hpp"
 #include "online/live_bus.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
@@ -13,6 +12,7 @@
 #include "shared/live_device.hpp"
 #include "shared/live_options.hpp"
 #include "shared/with_bus.hpp"
+#include "values/little_endian.hpp"
 #include "values/parse_value.hpp"
 #include "values/value_text.hpp"
 

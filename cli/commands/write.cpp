@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include "commands/commands.hpp"
+#include "device/entry_text.hpp"
 #include "monitor/progress_line.hpp"
 #include "online/live_bus.hpp"
 #include "shared/define_command.hpp"
@@ -11,7 +12,6 @@
 #include "shared/with_bus.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
-#include "values/parse_value.hpp"
 
 namespace edsc {
 namespace {

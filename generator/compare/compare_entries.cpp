@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "device/cob_id_parameter.hpp"
-#include "device/types/value_bytes.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

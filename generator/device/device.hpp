@@ -12,9 +12,10 @@
 #include <vector>
 
 #include "device/information.hpp"
-#include "device/types/little_endian.hpp"
 #include "diagnostics/diagnostics.hpp"
 #include "pdo/mapping.hpp"
+#include "values/little_endian.hpp"
+#include "values/value.hpp"
 
 namespace edsc {
 
@@ -30,17 +31,6 @@ enum class ObjectType : std::uint8_t {
 };
 
 [[nodiscard]] std::string_view to_string(ObjectType type);
-
-/// A value of the EDS. Numbers are stored as the bits of their type: two's complement extended to 64 bits, or the IEEE
-/// 754 pattern.
-struct Value {
-  std::uint64_t bits = 0;
-  bool plus_node_id = false;     ///< the node-ID must be added when it is known
-  bool hexadecimal = false;      ///< as written in the EDS
-  std::string bytes = {};        ///< of strings
-  Position position = {};        ///< in the file; of its section if the value is missing
-  std::string_view clause = {};  ///< of CiA 301, if the value comes from there; otherwise empty
-};
 
 /// One entry of the object dictionary, with an index and sub-index.
 struct Entry {

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "device/drive_modes.hpp"
-#include "device/types/value.hpp"
 #include "lint/rule_groups.hpp"
+#include "values/read_value.hpp"
 
 namespace edsc {
 namespace {

@@ -13,11 +13,11 @@
 #include "device/index_range.hpp"
 #include "device/pdo/fixed_mapping.hpp"
 #include "device/reserved_values.hpp"
-#include "device/types/little_endian.hpp"
-#include "device/types/value.hpp"
 #include "device/value_overlay.hpp"
 #include "diagnostics/quote.hpp"
 #include "lookup/find_entry.hpp"
+#include "values/little_endian.hpp"
+#include "values/read_value.hpp"
 
 namespace edsc {
 namespace {

@@ -1,7 +1,7 @@
 /// Arbitrary bytes as a concise DCF (1F22h): its entries make up the whole stream; nothing beyond it is read.
-#include "device/types/value_bytes.hpp"
 #include "format/dcf/concise_dcf.hpp"
 #include "fuzz.hpp"
+#include "values/value_bytes.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace edsc;

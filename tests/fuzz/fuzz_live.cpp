@@ -10,12 +10,12 @@
 #include "configure/configure_node.hpp"
 #include "configure/read_configuration.hpp"
 #include "decode/decoder.hpp"
-#include "device/types/value_bytes.hpp"
 #include "format/dcf/parameter_text.hpp"
 #include "live_port.hpp"
 #include "load/load_device.hpp"
 #include "monitor/monitor_view.hpp"
 #include "online/scan.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc::fuzz {
 namespace {

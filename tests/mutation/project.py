@@ -72,7 +72,7 @@ HOST = ("generator/", "bus/", "cli/")
 
 # Fast programs first: no program runs after the first failure.
 HOST_PROGRAMS = (
-    gtest("decode_tests", "bus/decode/", "bus/values/", "generator/text/", "generator/device/"),
+    gtest("decode_tests", "bus/decode/", "generator/values/", "generator/text/", "generator/device/"),
     gtest("live_tests", "bus/configure/", "bus/monitor/", "bus/online/"),
     gtest("bus_server_tests", "bus/server/"),
     gtest("generator_tests", "generator/"),
@@ -80,7 +80,7 @@ HOST_PROGRAMS = (
             ("{build}/tests/conform_mutants", "{source}/tests/bus/conform/mutants.tsv"), ("conform_mutants",)),
     script("golden", "golden/golden_test.py", "generator/"),
     script("check", "cli/check_test.py", "generator/", "cli/"),
-    script("decode", "bus/decode/decode_test.py", "bus/decode/", "bus/values/", "cli/"),
+    script("decode", "bus/decode/decode_test.py", "bus/decode/", "generator/values/", "cli/"),
     script("completion", "cli/completion_test.py", "cli/completion/"),
     script("rules", "generator/lint/rules_test.py", "generator/lint/", "generator/eds/", "generator/xdd/",
            "generator/diagnostics/", "generator/rules/"),

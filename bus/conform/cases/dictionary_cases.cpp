@@ -15,9 +15,9 @@
 #include "conform/cases/shared/entry_results.hpp"
 #include "conform/cases/shared/entry_values.hpp"
 #include "conform/dut/dut.hpp"
+#include "device/entry_text.hpp"
 #include "device/index_range.hpp"
 #include "device/objects/object_structure.hpp"
-#include "values/value_text.hpp"
 
 namespace edsc::conform {
 namespace dictionary_area {

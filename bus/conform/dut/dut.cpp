@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "device/types/little_endian.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc::conform {
 namespace {

@@ -32,12 +32,12 @@
 #include "conform/sheet_findings.hpp"
 #include "conform/verdict.hpp"
 #include "device/device.hpp"
-#include "device/types/little_endian.hpp"
 #include "online/live_bus.hpp"
 #include "online/live_entry.hpp"
 #include "online/sdo_access.hpp"
 #include "rules/check_rules.hpp"
 #include "values/append.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc::conform {
 

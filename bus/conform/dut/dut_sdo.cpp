@@ -5,7 +5,7 @@
 #include <canopen/sdo/sdo_client.hpp>
 
 #include "conform/dut/dut.hpp"
-#include "device/types/little_endian.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc::conform {
 

@@ -7,8 +7,8 @@
 #include <iterator>
 #include <type_traits>
 
-#include "device/types/little_endian.hpp"
 #include "values/append.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc {
 

@@ -14,10 +14,10 @@
 #include "backend/cpp/cpp_text.hpp"
 #include "backend/cpp/json_object.hpp"
 #include "device/pdo/pdo_defaults.hpp"
-#include "device/types/value_bytes.hpp"
 #include "system/path.hpp"
 #include "text/ascii.hpp"
 #include "text/source_file.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "backend/cpp/placement.hpp"
-#include "device/types/value_bytes.hpp"
 #include "text/printable.hpp"
 #include "text/utf8.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

@@ -11,7 +11,7 @@
 #include "backend/cpp/cpp_text.hpp"
 #include "backend/cpp/identifier.hpp"
 #include "device/drive_modes.hpp"
-#include "device/types/value_bytes.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

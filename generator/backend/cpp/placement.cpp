@@ -7,7 +7,7 @@
 #include "device/drive_modes.hpp"
 #include "device/index_range.hpp"
 #include "device/stored_eds.hpp"
-#include "device/types/value_bytes.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

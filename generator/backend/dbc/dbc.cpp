@@ -14,8 +14,8 @@
 
 #include "backend/dbc/dbc_name.hpp"
 #include "device/pdo/pdo_defaults.hpp"
-#include "device/types/little_endian.hpp"
-#include "device/types/value_bytes.hpp"
+#include "values/little_endian.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

@@ -7,9 +7,9 @@
 
 #include "backend/json/information_view.hpp"
 #include "backend/json/replaced_default.hpp"
-#include "device/types/value_bytes.hpp"
 #include "system/path.hpp"
 #include "text/source_file.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

@@ -1,6 +1,6 @@
 #include "backend/json/replaced_default.hpp"
 
-#include "device/types/value.hpp"
+#include "values/read_value.hpp"
 
 namespace edsc {
 

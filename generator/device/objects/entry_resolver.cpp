@@ -7,10 +7,10 @@
 #include "device/objects/object_type_name.hpp"
 #include "device/resolve_information.hpp"
 #include "device/types/type_name.hpp"
-#include "device/types/value.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/ini.hpp"
 #include "eds/number.hpp"
+#include "values/read_value.hpp"
 
 namespace edsc {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "device/types/value.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 #include "text/counted.hpp"
+#include "values/read_value.hpp"
 
 namespace edsc {
 namespace {

@@ -5,10 +5,10 @@
 
 #include "device/index_range.hpp"
 #include "device/pdo/fixed_mapping.hpp"
-#include "device/types/value.hpp"
-#include "device/types/value_bytes.hpp"
 #include "format/dcf/configured_values.hpp"
 #include "format/dcf/write_order.hpp"
+#include "values/read_value.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 

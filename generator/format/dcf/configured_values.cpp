@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "device/types/value.hpp"
-#include "device/types/value_bytes.hpp"
 #include "eds/number.hpp"
+#include "values/read_value.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

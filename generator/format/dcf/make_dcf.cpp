@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "device/index_range.hpp"
-#include "device/types/value.hpp"
-#include "device/types/value_bytes.hpp"
 #include "eds/number.hpp"
 #include "eds/sections/section_keys.hpp"
 #include "format/dcf/configured_values.hpp"
 #include "format/spelling/key_table.hpp"
 #include "format/spelling/number_spelling.hpp"
+#include "values/read_value.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

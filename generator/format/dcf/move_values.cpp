@@ -8,10 +8,10 @@
 #include <string>
 
 #include "device/cob_id_parameter.hpp"
-#include "device/types/value.hpp"
-#include "device/types/value_bytes.hpp"
 #include "format/spelling/key_table.hpp"
 #include "format/spelling/number_spelling.hpp"
+#include "values/read_value.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

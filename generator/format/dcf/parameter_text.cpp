@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "device/types/value_bytes.hpp"
 #include "format/spelling/number_spelling.hpp"
 #include "text/ascii.hpp"
 #include "text/utf8.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

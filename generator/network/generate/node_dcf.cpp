@@ -12,7 +12,6 @@
 
 #include "device/index_range.hpp"
 #include "device/resolve.hpp"
-#include "device/types/value_bytes.hpp"
 #include "eds/ini.hpp"
 #include "format/canonical_form.hpp"
 #include "format/dcf/concise_dcf.hpp"
@@ -22,6 +21,7 @@
 #include "format/sheet_document.hpp"
 #include "network/communication_objects.hpp"
 #include "system/path.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

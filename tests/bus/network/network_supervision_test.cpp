@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "device/types/value_bytes.hpp"
 #include "network/network.hpp"
 #include "network/network_session.hpp"
 #include "network/node_configuration.hpp"
 #include "support/faulty_slave.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

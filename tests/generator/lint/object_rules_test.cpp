@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "device/entry_text.hpp"
 #include "lint/rule_groups.hpp"
 #include "support/device_from_text.hpp"
-#include "values/parse_value.hpp"
 
 namespace edsc {
 namespace {

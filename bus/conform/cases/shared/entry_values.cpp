@@ -9,8 +9,8 @@
 #include <limits>
 
 #include "configure/configuration_plan.hpp"
-#include "device/types/value.hpp"
 #include "text/utf8.hpp"
+#include "values/read_value.hpp"
 
 namespace edsc::conform {
 namespace {

@@ -5,8 +5,9 @@
 #include <cstdint>
 #include <optional>
 
-#include "device/device.hpp"
+#include "diagnostics/diagnostics.hpp"
 #include "eds/data_sheet.hpp"
+#include "values/value.hpp"
 
 namespace edsc {
 

@@ -1,5 +1,5 @@
 /// Integers, booleans and node-ID formulas of an EDS.
-#include "device/types/value.hpp"
+#include "values/read_value.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "device/device.hpp"
-
 namespace edsc {
 
 /// The value of a text, or an error message.
@@ -24,8 +22,6 @@ struct ParsedValue {
 /// is -1 as INTEGER16. Quotation marks around a string are removed, and escapes in it are resolved; a string without
 /// them is used unchanged. A DOMAIN is given as hexadecimal digits.
 [[nodiscard]] ParsedValue parse_value_text(const canopen::DataTypeRow& type, std::string_view text);
-/// Checks the limits of the entry; its unit may follow the number, unless the entry has a Factor other than 1.
-[[nodiscard]] ParsedValue parse_value_text(const Entry& entry, std::string_view text);
 
 /// The days from 1984-01-01, as in TIME_OF_DAY and 1020h; nothing for an invalid date, or one before.
 [[nodiscard]] std::optional<std::uint32_t> days_of_date(unsigned year, unsigned month, unsigned day);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "device/entry_text.hpp"
 #include "device/scaled_unit.hpp"
 #include "values/parse_value.hpp"
 

@@ -1,7 +1,7 @@
 /// One value of an EDS, and what is reported about it.
 #pragma once
 
-#include "device/types/value.hpp"
+#include "values/read_value.hpp"
 
 #include <cstdint>
 #include <optional>

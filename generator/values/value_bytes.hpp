@@ -1,11 +1,13 @@
 /// Values as bytes of an SDO or PDO, and numbers as text.
 #pragma once
 
+#include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
-#include "device/device.hpp"
-#include "device/types/little_endian.hpp"
+#include "values/little_endian.hpp"
+#include "values/value.hpp"
 
 namespace edsc {
 

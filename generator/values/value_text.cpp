@@ -8,12 +8,11 @@
 #include <chrono>
 #include <iterator>
 
-#include "device/scaled_unit.hpp"
-#include "device/types/little_endian.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
 #include "text/utf8.hpp"
 #include "values/append.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc {
 namespace {
@@ -68,13 +67,13 @@ void append_domain(std::string& text, Bytes bytes) {
   if (bytes.size() > max_shown_bytes) text += " ...";
 }
 
+}  // namespace
+
 void append_unit(std::string& text, std::string_view unit) {
   if (unit.empty()) return;
   text += ' ';
   text += unit;
 }
-
-}  // namespace
 
 void append_quoted(std::string& out, std::string_view text) {
   out += '"';
@@ -158,22 +157,6 @@ std::string value_text(const DataTypeRow& type, Bytes bytes) {
   return text;
 }
 
-void append_value(std::string& text, const Entry& entry, Bytes bytes) {
-  constexpr std::uint16_t cycle_period = 0x1006, window_length = 0x1007;  // in us
-  const bool communication =
-      entry.index >= 0x1000 && entry.index < 0x2000 && entry.index != cycle_period && entry.index != window_length;
-  if (!communication || entry.type->type != DataType::unsigned32 || bytes.size() != sizeof(std::uint32_t)) {
-    return append_value(text, *entry.type, bytes, raw_unit(entry));
-  }
-  append_hex_number(text, number_of(bytes), 8);
-}
-
-std::string value_text(const Entry& entry, Bytes bytes) {
-  std::string text;
-  append_value(text, entry, bytes);
-  return text;
-}
-
 std::string limit_text(const Value& limit, const DataTypeRow& type) {
   if (limit.plus_node_id) return fmt::format("$NODEID+0x{:X}", limit.bits);
   if (type.kind == DataClass::signed_integer) return fmt::format("{}", static_cast<std::int64_t>(limit.bits));
@@ -183,16 +166,6 @@ std::string limit_text(const Value& limit, const DataTypeRow& type) {
   } else {
     append_decimal(text, limit.bits);
   }
-  return text;
-}
-
-std::string limits_text(const Entry& entry) {
-  if (!entry.low_limit && !entry.high_limit) return "";
-  std::string text;
-  if (entry.low_limit) text += limit_text(*entry.low_limit, *entry.type);
-  text += "..";
-  if (entry.high_limit) text += limit_text(*entry.high_limit, *entry.type);
-  append_unit(text, raw_unit(entry));
   return text;
 }
 

@@ -1,4 +1,4 @@
-#include "device/types/value.hpp"
+#include "values/read_value.hpp"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,11 @@
 #include <cmath>
 #include <string>
 
-#include "device/types/value_bytes.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/ini.hpp"
 #include "eds/number.hpp"
 #include "text/ascii.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {

@@ -7,13 +7,11 @@
 #include <charconv>
 #include <cmath>
 
-#include "device/scaled_unit.hpp"
-#include "device/types/little_endian.hpp"
-#include "device/types/value.hpp"
 #include "eds/ini.hpp"
 #include "text/ascii.hpp"
 #include "text/number_text.hpp"
 #include "text/utf8.hpp"
+#include "values/little_endian.hpp"
 #include "values/value_text.hpp"
 
 namespace edsc {
@@ -183,22 +181,6 @@ ParsedValue parse_string(const DataTypeRow& type, std::string_view text) {
   return {{units.begin(), units.end()}, ""};
 }
 
-/// Why a value is rejected; empty if it is valid. A limit with an unknown node-ID is not checked.
-std::string limit_problem(const Entry& entry, std::uint64_t number, std::string_view text) {
-  const DataTypeRow& type = *entry.type;
-  if (type.kind == DataClass::signed_integer) {
-    number = static_cast<std::uint64_t>(sign_extended(number, type.bits));
-  }
-  for (const bool high : {false, true}) {
-    const auto& limit = high ? entry.high_limit : entry.low_limit;
-    if (!limit || limit->plus_node_id) continue;
-    if (!(high ? is_less(type, limit->bits, number) : is_less(type, number, limit->bits))) continue;
-    return fmt::format("{} is {} the {} limit of {} \"{}\", {}", text, high ? "above" : "below", high ? "high" : "low",
-                       entry_label(entry.index, entry.sub_index), entry.name, limit_text(*limit, type));
-  }
-  return "";
-}
-
 }  // namespace
 
 std::optional<std::uint32_t> days_of_date(unsigned year, unsigned month, unsigned day) {
@@ -221,29 +203,6 @@ ParsedValue parse_value_text(const DataTypeRow& type, std::string_view text) {
     case DataClass::domain: return parse_hex_bytes(type, trim(text));
   }
   return problem("a value of unknown data type");
-}
-
-ParsedValue parse_value_text(const Entry& entry, std::string_view text) {
-  const DataTypeRow& type = *entry.type;
-  const bool number = type.kind == DataClass::unsigned_integer || type.kind == DataClass::signed_integer ||
-                      type.kind == DataClass::real;
-  if (!number) return parse_value_text(type, text);
-  text = trim(text);
-  const std::string_view unit = entry.unit;
-  if (!unit.empty() && text.size() > unit.size() && text.ends_with(unit) &&
-      text[text.size() - unit.size() - 1] == ' ') {
-    if (is_scaled(entry)) {
-      return problem(fmt::format(
-          "\"{}\" has a unit, but {} \"{}\" is in steps of {} (Factor of the EDS); give the number of steps, without a "
-          "unit",
-          text, entry_label(entry.index, entry.sub_index), entry.name, physical_unit(entry)));
-    }
-    text = trim_right(text.substr(0, text.size() - unit.size()));
-  }
-  ParsedValue result = parse_value_text(type, text);
-  if (result.ok()) result.problem = limit_problem(entry, number_of(result.bytes), text);
-  if (!result.ok()) result.bytes.clear();
-  return result;
 }
 
 }  // namespace edsc

@@ -16,7 +16,7 @@
 #include <string>
 #include <string_view>
 
-#include "device/device.hpp"
+#include "values/value.hpp"
 
 namespace edsc {
 
@@ -27,25 +27,21 @@ inline constexpr std::chrono::sys_days time_epoch = std::chrono::year{1984} / 1 
 void append_number(std::string& text, const canopen::DataTypeRow& type, std::uint64_t number, unsigned bits,
                    std::string_view unit = {});
 
+/// A blank and the unit; nothing for an empty one.
+void append_unit(std::string& text, std::string_view unit);
+
 /// A value of any type. If the number of bytes does not match the type, shows the bytes with a remark. For a DOMAIN,
 /// the first bytes and the length.
 void append_value(std::string& text, const canopen::DataTypeRow& type, std::span<const std::uint8_t> bytes,
                   std::string_view unit = {});
-
-/// With the unit of the entry if raw values are in it (no Factor other than 1). UNSIGNED32 values of communication
-/// parameters, such as COB-IDs and mappings, in hexadecimal only.
-void append_value(std::string& text, const Entry& entry, std::span<const std::uint8_t> bytes);
 
 /// `"a \"b\" \x0D"`: in quotation marks, non-printable characters as codes.
 void append_quoted(std::string& out, std::string_view text);
 
 /// The same as a separate string.
 [[nodiscard]] std::string value_text(const canopen::DataTypeRow& type, std::span<const std::uint8_t> bytes);
-[[nodiscard]] std::string value_text(const Entry& entry, std::span<const std::uint8_t> bytes);
 
 /// A limit; with an unknown node-ID, as a formula.
 [[nodiscard]] std::string limit_text(const Value& limit, const canopen::DataTypeRow& type);
-/// `0..3000 rpm`: the limits in the EDS; empty if it has none.
-[[nodiscard]] std::string limits_text(const Entry& entry);
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-#include "device/types/value_bytes.hpp"
+#include "values/value_bytes.hpp"
 
 #include <gtest/gtest.h>
 

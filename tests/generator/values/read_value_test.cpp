@@ -1,5 +1,5 @@
 /// Reals, times, strings, domains and limits of an EDS.
-#include "device/types/value.hpp"
+#include "values/read_value.hpp"
 
 #include <gtest/gtest.h>
 
