@@ -4,13 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <set>
 #include <string_view>
 #include <utility>
 
 #include "device/device.hpp"
-#include "diagnostics/json_file.hpp"
 #include "diagnostics/place.hpp"
+#include "json/json_file.hpp"
 #include "text/ascii.hpp"
 #include "text/suggestion.hpp"
 
@@ -20,13 +21,37 @@ namespace {
 using json = JsonFile::Json;
 
 constexpr std::array<std::string_view, 2> file_members = {"$schema", "deviations"};
-constexpr std::array<std::string_view, 4> deviation_members = {"case", "object", "reason", "source"};
+
+std::string set_case(Deviation& deviation, std::string text) {
+  if (std::ranges::none_of(all_cases(), [&](const CaseRow* row) { return row->id == text; })) {
+    return fmt::format("unknown case {}; edsc conform --list prints the cases", text);
+  }
+  deviation.id = std::move(text);
+  return {};
+}
+
+std::string set_object(Deviation& deviation, std::string text) {
+  deviation.object = parse_entry_address(text);
+  return deviation.object ? "" : "expected an object or entry such as \"1800h\" or \"1800h:02\"";
+}
+
+template <std::string Deviation::*member>
+std::string set_text(Deviation& deviation, std::string text) {
+  deviation.*member = std::move(text);
+  return {};
+}
+
+constexpr DeviationMember members[] = {
+    {"case", true, "^[0-9]+\\.[0-9]+$", "number of the case, as printed by edsc conform --list", set_case},
+    {"object", false, "^[0-9A-Fa-f]{4}h(:[0-9A-Fa-f]{2})?$",
+     "object or entry for which the failure is expected; if missing, all", set_object},
+    {"reason", true, "\\S", "behaviour of the device, and why", set_text<&Deviation::reason>},
+    {"source", false, "\\S", "where it is documented: the manual, its page or line", set_text<&Deviation::source>},
+};
 
 class DeviationsReader {
  public:
-  DeviationsReader(const SourceFile& source, Diagnostics& diagnostics) : file_{source}, diagnostics_{diagnostics} {
-    for (const CaseRow* row : all_cases()) case_ids_.push_back(row->id);
-  }
+  DeviationsReader(const SourceFile& source, Diagnostics& diagnostics) : file_{source}, diagnostics_{diagnostics} {}
 
   std::vector<Deviation> read() {
     for (const JsonFault& fault : file_.faults()) error(fault.position, fault.message, fault.notes);
@@ -67,33 +92,25 @@ class DeviationsReader {
       valid = valid && problem.empty();
       if (!problem.empty()) error(file_.name_position(*value), problem);
     }
-    for (const std::string_view name : {std::string_view{"case"}, std::string_view{"reason"}}) {
-      if (item.contains(name)) continue;
+    for (const DeviationMember& member : members) {
+      if (!member.is_required || item.contains(member.name)) continue;
       valid = false;
-      error(row.position, fmt::format("missing member {}", name));
+      error(row.position, fmt::format("missing member {}", member.name));
     }
     if (valid) deviations_.push_back(std::move(row));
   }
 
   /// Returns the problem of a member; empty: none.
-  std::string set_member(Deviation& row, const std::string& name, const json& value) const {
-    if (std::ranges::find(deviation_members, name) == deviation_members.end()) {
-      return fmt::format("unknown member {}{}", name, did_you_mean(name, deviation_members));
+  static std::string set_member(Deviation& row, const std::string& name, const json& value) {
+    const auto* const member = std::ranges::find(members, std::string_view{name}, &DeviationMember::name);
+    if (member == std::end(members)) {
+      std::vector<std::string_view> names;
+      for (const DeviationMember& one : members) names.push_back(one.name);
+      return fmt::format("unknown member {}{}", name, did_you_mean(name, names));
     }
-    const std::string text = value.is_string() ? value.get<std::string>() : std::string{};
-    if (trim(text).empty()) return fmt::format("{}: expected a non-empty string", name);
-    if (name == "case") {
-      if (std::ranges::find(case_ids_, text) == case_ids_.end()) {
-        return fmt::format("case: unknown case {}; edsc conform --list prints the cases", text);
-      }
-      row.id = text;
-    } else if (name == "object") {
-      row.object = parse_entry_address(text);
-      if (!row.object) return "object: expected an object or entry such as \"1800h\" or \"1800h:02\"";
-    } else {
-      (name == "reason" ? row.reason : row.source) = text;
-    }
-    return {};
+    std::string text = value.is_string() ? value.get<std::string>() : std::string{};
+    std::string problem = trim(text).empty() ? "expected a non-empty string" : member->set(row, std::move(text));
+    return problem.empty() ? problem : fmt::format("{}: {}", name, problem);
   }
 
   void error(const Position& position, std::string message, std::vector<Note> notes = {}) {
@@ -106,7 +123,6 @@ class DeviationsReader {
 
   JsonFile file_;
   Diagnostics& diagnostics_;
-  std::vector<std::string_view> case_ids_;
   std::vector<Deviation> deviations_;
 };
 
@@ -139,6 +155,8 @@ std::string reason_of(const Deviation& deviation) {
 }
 
 }  // namespace
+
+std::span<const DeviationMember> deviation_members() { return members; }
 
 std::vector<Deviation> read_deviations(const SourceFile& source, Diagnostics& diagnostics) {
   return DeviationsReader{source, diagnostics}.read();

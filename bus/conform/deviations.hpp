@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "conform/verdict.hpp"
@@ -20,6 +21,18 @@ struct Deviation {
   std::string source;  ///< `manual, page 12`; may be empty
   Position position;   ///< in the SourceFile, which must outlive this
 };
+
+/// A member of a declaration in the file. Each is a text.
+struct DeviationMember {
+  std::string_view name;
+  bool is_required;
+  std::string_view pattern;  ///< of the text, in docs/schema/deviations.schema.json
+  std::string_view meaning;
+  /// Sets the member of the declaration. Returns what is wrong with the text, or nothing.
+  std::string (*set)(Deviation& deviation, std::string text);
+};
+
+[[nodiscard]] std::span<const DeviationMember> deviation_members();
 
 /// Reads a file in the format of docs/schema/deviations.schema.json. Reports anything else in it as an error, with line
 /// and column.

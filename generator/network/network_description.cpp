@@ -8,8 +8,8 @@
 #include <span>
 #include <utility>
 
-#include "diagnostics/json_file.hpp"
 #include "diagnostics/quote.hpp"
+#include "json/json_file.hpp"
 #include "text/suggestion.hpp"
 
 namespace edsc {

@@ -65,7 +65,7 @@ ParsedValue parse_boolean(std::string_view text) {
   return problem(fmt::format("\"{}\" is not a BOOLEAN; expected true, false, 1 or 0", text));
 }
 
-ParsedValue parse_real(const DataTypeRow& type, std::string_view text) {
+ParsedValue parse_float(const DataTypeRow& type, std::string_view text) {
   const std::string_view whole = text;
   if (text.starts_with('+')) text.remove_prefix(1);
   double number = 0;
@@ -197,7 +197,7 @@ ParsedValue parse_value_text(const DataTypeRow& type, std::string_view text) {
     case DataClass::boolean: return parse_boolean(trim(text));
     case DataClass::unsigned_integer:
     case DataClass::signed_integer: return parse_integer(type, trim(text));
-    case DataClass::real: return parse_real(type, trim(text));
+    case DataClass::real: return parse_float(type, trim(text));
     case DataClass::string: return parse_string(type, text);
     case DataClass::time: return parse_time(type, trim(text));
     case DataClass::domain: return parse_hex_bytes(type, trim(text));

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "device/options/options.hpp"
-#include "diagnostics/json_file.hpp"
+#include "json/json_file.hpp"
 
 namespace edsc {
 

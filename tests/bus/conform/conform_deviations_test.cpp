@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -38,6 +41,39 @@ TEST(ConformDeviations, AreRead) {
   EXPECT_EQ(read.rows[0].object, (EntryAddress{0x1800, 2}));
   EXPECT_EQ(read.rows[1].object, std::nullopt);
   EXPECT_EQ(read.rows[1].position.line, 4u);
+}
+
+TEST(ConformDeviations, MayHaveComments) {
+  const ReadDeviations read{"// of the pump\n{ /* none */ \"deviations\": [] }"};
+  EXPECT_EQ(read.problem(), "");
+}
+
+std::string text_of_file(const std::string& name) {
+  std::ifstream file(EDSC_SOURCE_DIR "/docs/" + name);
+  return {std::istreambuf_iterator<char>{file}, {}};
+}
+
+TEST(ConformDeviations, HaveTheMembersOfTheSchema) {
+  const auto schema = nlohmann::ordered_json::parse(text_of_file("schema/deviations.schema.json"));
+  const auto& items = schema["properties"]["deviations"]["items"];
+  auto properties = nlohmann::ordered_json::object();
+  auto required = nlohmann::ordered_json::array();
+  for (const DeviationMember& member : deviation_members()) {
+    properties[std::string{member.name}] = {
+        {"description", member.meaning}, {"type", "string"}, {"pattern", member.pattern}};
+    if (member.is_required) required.push_back(member.name);
+  }
+  EXPECT_EQ(items["properties"].dump(2), properties.dump(2));
+  EXPECT_EQ(items["required"], required);
+}
+
+TEST(ConformDeviations, HaveTheMembersOfTheDocuments) {
+  const std::string page = text_of_file("conform.md");
+  for (const DeviationMember& member : deviation_members()) {
+    const std::string row =
+        fmt::format("| `{}` | {} | {} |\n", member.name, member.is_required ? "required" : "optional", member.meaning);
+    EXPECT_NE(page.find(row), std::string::npos) << row;
+  }
 }
 
 TEST(ConformDeviations, AreReadStrictly) {

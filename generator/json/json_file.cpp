@@ -1,4 +1,4 @@
-#include "diagnostics/json_file.hpp"
+#include "json/json_file.hpp"
 
 #include <fmt/format.h>
 
