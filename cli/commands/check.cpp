@@ -10,6 +10,7 @@
 #include "diagnostics/unknown_rule.hpp"
 #include "load/load_device.hpp"
 #include "rules/check_rules.hpp"
+#include "rules/rule_examples.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -53,12 +54,25 @@ nlohmann::ordered_json to_json(const Rule& rule) {
           {"url", url_of(rule)}};
 }
 
+void print_example(std::string_view title, const std::vector<std::string>& blocks) {
+  for (const std::string& block : blocks) fmt::print("\n{}:\n\n{}", title, block);
+}
+
 int explain(const Rule& rule, const std::string& format) {
+  const std::vector<RuleExample>& examples = examples_of(RuleId{rule});
   if (format == "text") {
     fmt::print("{}: {}\n{}\nSource: {}\nDocumentation, with examples: {}\n", rule.id, to_string(rule.severity),
                rule.title, rule.source, url_of(rule));
+    for (const RuleExample& example : examples) {
+      print_example("Wrong", example.wrong);
+      print_example("Right", example.right);
+    }
   } else {
-    fmt::print("{}\n", json_text(to_json(rule)));
+    nlohmann::ordered_json json = to_json(rule);
+    for (const RuleExample& example : examples) {
+      json["examples"].push_back({{"wrong", example.wrong}, {"right", example.right}});
+    }
+    fmt::print("{}\n", json_text(json));
   }
   return exit_fine;
 }

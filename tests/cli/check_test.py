@@ -274,9 +274,12 @@ class Documentation(CheckTest):
         result = self.run_edsc("check", "--explain", "pdo-length")
         rule = json.loads(self.run_edsc("check", "--explain", "pdo-length", "--format", "json").stdout)
         self.assertEqual(result.returncode, FINE)
-        self.assertEqual(set(rule), {"id", "severity", "severities", "meaning", "source", "url"})
+        self.assertEqual(set(rule), {"id", "severity", "severities", "meaning", "source", "url", "examples"})
+        (example,) = rule.pop("examples")
         self.assertEqual(result.stdout, f"pdo-length: {rule['severity']}\n{rule['meaning']}\nSource: {rule['source']}\n"
-                                        f"Documentation, with examples: {rule['url']}\n")
+                                        f"Documentation, with examples: {rule['url']}\n\n"
+                                        f"Wrong:\n\n{example['wrong'][0]}\nRight:\n\n{example['right'][0]}")
+        self.assertIn("[1A00sub1]", example["wrong"][0])
         self.assertIn(rule, json.loads(self.run_edsc("check", "--list-rules", "--format", "json").stdout))
 
     def test_of_an_unknown_rule(self) -> None:

@@ -3,7 +3,7 @@
 
     rules_test.py SOURCE_DIR EDSC [--write]      --write generates docs/rules.md
 
-examples.txt has for each rule `@ id`, then `@@ bad` and `@@ good`, each followed by its changes of base.eds; a rule may have
+generator/rules/check_examples.txt has for each rule `@ id`, then `@@ bad` and `@@ good`, each followed by its changes of base.eds; a rule may have
 several such pairs:
 - `[section]` names the section of the lines below; a new one is added at the end, and to its object list
 - `Key=value` replaces the line with this key, or adds one; `+line` adds it as it is; `-Key` and `-[section]` remove
@@ -269,11 +269,11 @@ The rules of `edsc check`. An error stops `edsc generate`; a warning reports a f
 information and does not change the exit code, not even with `--strict`. `--silence RULE` and `silence` in the
 [options file](options.md) disable a rule for `check`; for `generate`, only its warnings and notes. `allow` in the options
 file, or a comment in the EDS, allows [expected findings](options.md#allowed-findings). `edsc check --list-rules` prints this
-table, `--explain RULE` one row of it.
+table, `--explain RULE` one row of it with its examples.
 
 The examples are changes to an EDS without findings: a line replaces the one with the same key, a section that begins with
 `-` is removed, and `^` marks the position of the finding. `tests/generator/lint/rules_test.py` runs the examples of
-`tests/generator/lint/examples.txt` and writes this page from them with `--write`.
+`generator/rules/check_examples.txt` and writes this page from them with `--write`.
 """
 
 
@@ -301,7 +301,7 @@ def main() -> int:
     source, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     folder = Path(__file__).parent
     base = (folder / "base.eds").read_text(encoding="utf-8")
-    examples = read_examples(folder / "examples.txt")
+    examples = read_examples(source / "generator/rules/check_examples.txt")
     listed = subprocess.run([edsc, "check", "--list-rules", "--format", "json"], check=True, capture_output=True)
     rules = json.loads(listed.stdout)
     ids = [rule["id"] for rule in rules]

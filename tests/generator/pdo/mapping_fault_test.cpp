@@ -95,16 +95,16 @@ TEST(MappingFaultOfADummy, IsAnotherLengthThanThatOfItsType) {
 }
 
 TEST(MappingRule, IsOneForEachFault) {
-  EXPECT_EQ(rule_of(MappingFault::unknown_object).id(), "pdo-object");
-  EXPECT_EQ(rule_of(MappingFault::not_mappable).id(), "pdo-mappable");
-  EXPECT_EQ(rule_of(MappingFault::wrong_direction).id(), "pdo-direction");
-  EXPECT_EQ(rule_of(MappingFault::wrong_length).id(), "pdo-length");
-  EXPECT_EQ(rule_of(MappingFault::variable_length).id(), "pdo-variable-length");
-  EXPECT_EQ(rule_of(MappingFault::part_of_a_byte).id(), "pdo-variable-length");
-  EXPECT_EQ(rule_of(MappingFault::dummy_in_tpdo).id(), "pdo-dummy");
-  EXPECT_EQ(rule_of(MappingFault::dummy_not_allowed).id(), "pdo-dummy");
-  EXPECT_EQ(rule_of(MappingFault::too_many_bits).id(), "pdo-size");
-  EXPECT_EQ(rule_of(MappingFault::too_many_objects).id(), "pdo-entries");
+  EXPECT_EQ(rule_of(MappingFault::unknown_object).text(), "pdo-object");
+  EXPECT_EQ(rule_of(MappingFault::not_mappable).text(), "pdo-mappable");
+  EXPECT_EQ(rule_of(MappingFault::wrong_direction).text(), "pdo-direction");
+  EXPECT_EQ(rule_of(MappingFault::wrong_length).text(), "pdo-length");
+  EXPECT_EQ(rule_of(MappingFault::variable_length).text(), "pdo-variable-length");
+  EXPECT_EQ(rule_of(MappingFault::part_of_a_byte).text(), "pdo-variable-length");
+  EXPECT_EQ(rule_of(MappingFault::dummy_in_tpdo).text(), "pdo-dummy");
+  EXPECT_EQ(rule_of(MappingFault::dummy_not_allowed).text(), "pdo-dummy");
+  EXPECT_EQ(rule_of(MappingFault::too_many_bits).text(), "pdo-size");
+  EXPECT_EQ(rule_of(MappingFault::too_many_objects).text(), "pdo-entries");
   EXPECT_TRUE(is_mapping_rule(AnyRule{"pdo-dummy"}));
   EXPECT_FALSE(is_mapping_rule(AnyRule{"pdo-empty"}));
 }

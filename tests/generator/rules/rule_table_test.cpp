@@ -5,12 +5,15 @@
 
 #include <set>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "audit/audit_rules.hpp"
 #include "compare/change_rules.hpp"
 #include "rules/check_rules.hpp"
+#include "rules/rule_examples.hpp"
 
 namespace edsc {
 namespace {
@@ -29,6 +32,20 @@ TEST_P(RuleTable, HoldsEachIdOnceWithTitleAndSource) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, RuleTable, testing::Values(check_rules, audit::audit_rules, change_rules));
+
+/// Of the rules of edsc audit and edsc diff, none has an example yet.
+TEST(RuleExamples, AreOfEachRuleOfCheck) {
+  for (const Rule& rule : check_rules) EXPECT_FALSE(examples_of(RuleId{rule}).empty()) << rule.id;
+  for (const Rule& rule : audit::audit_rules) EXPECT_TRUE(examples_of(RuleId{rule}).empty()) << rule.id;
+  for (const Rule& rule : change_rules) EXPECT_TRUE(examples_of(RuleId{rule}).empty()) << rule.id;
+}
+
+TEST(RuleExamples, AreTheLinesOfTheirFiles) {
+  const std::vector<RuleExample>& examples = examples_of(AnyRule{"xml-profile"});
+  ASSERT_EQ(examples.size(), 1U);
+  EXPECT_EQ(examples[0].wrong, (std::vector<std::string>{"<?xml version=\"1.0\"?>\n<html/>\n ^\n"}));
+  EXPECT_EQ(examples[0].right, std::vector<std::string>{});
+}
 
 TEST(RuleId, IsFoundByItsText) {
   EXPECT_EQ(find_rule(check_rules, "pdo-size"), AnyRule{"pdo-size"});
