@@ -20,13 +20,10 @@
 #include "device/objects/object_structure.hpp"
 
 namespace edsc::conform {
-namespace dictionary_area {
 namespace {
 
 using canopen::AbortCode;
 using canopen::Access;
-
-constexpr std::uint16_t error_history = 0x1003;
 
 bool lacks_flag(const Dut& dut, const LiveEntry& entry, std::uint32_t flag) {
   return (flags_of(dut.sheet(), entry) & flag) == 0;
@@ -71,10 +68,8 @@ void expect_readable(EntryResults& results, const LiveEntry& entry, const SdoOut
   }
 }
 
-using InArea = bool (*)(const LiveEntry&);
-
 /// Reads each entry that is readable in the EDS and compares the number of bytes with its data type.
-void read_entries(Dut& dut, InArea in_area, const std::string& none) {
+void read_entries(Dut& dut, EntryFilter in_area, const std::string& none) {
   EntryResults results{dut};
   for (const LiveEntry& entry : dut.entries()) {
     if (results.lost()) break;
@@ -138,7 +133,7 @@ Bytes trimmed(const LiveEntry& entry, Bytes bytes) {
   return bytes;
 }
 
-void compare_defaults(Dut& dut, InArea in_area, const std::string& none) {
+void compare_defaults(Dut& dut, EntryFilter in_area, const std::string& none) {
   EntryResults results{dut};
   for (const LiveEntry& entry : dut.entries()) {
     if (results.lost()) break;
@@ -309,7 +304,7 @@ void try_limits(Dut& dut) {
 }
 
 /// Writes the value that was read. A mappable value may change in between and is not compared.
-void write_back(Dut& dut) {
+void write_back_values(Dut& dut) {
   EntryResults results{dut};
   for (const LiveEntry& entry : dut.entries()) {
     if (results.lost()) break;
@@ -333,30 +328,28 @@ void write_back(Dut& dut) {
   results.finish("each writable entry accepts the value that was read", no_application_entries);
 }
 
-constexpr Permission none = Permission::none;
-
-constexpr CaseRow rows[] = {
-    {"4.1", "Each readable entry of 1000h to 1FFFh is read", "CiA 301, 7.4.5", Level::read, none,
+constexpr CaseRow dictionary_rows[] = {
+    {"4.1", "Each readable entry of 1000h to 1FFFh is read", "CiA 301, 7.4.5", Level::read, Permission::none,
      read_communication_entries},
-    {"4.2", "Constants of 1000h to 1FFFh have the values of the EDS", "CiA 306-1, 4.6.2", Level::read, none,
+    {"4.2", "Constants of 1000h to 1FFFh have the values of the EDS", "CiA 306-1, 4.6.2", Level::read, Permission::none,
      compare_communication_defaults},
-    {"4.3", "Each write of a read-only entry is refused", "CiA 301, 7.4.5", Level::communication, none,
+    {"4.3", "Each write of a read-only entry is refused", "CiA 301, 7.4.5", Level::communication, Permission::none,
      write_read_only_entries},
-    {"4.4", "Each read of a write-only entry is refused", "CiA 301, 7.4.5", Level::read, none, read_write_only_entries},
-    {"4.5", "Sub-index FFh describes its object", "CiA 301, 7.4.4", Level::read, none, check_structures},
+    {"4.4", "Each read of a write-only entry is refused", "CiA 301, 7.4.5", Level::read, Permission::none,
+     read_write_only_entries},
+    {"4.5", "Sub-index FFh describes its object", "CiA 301, 7.4.4", Level::read, Permission::none, check_structures},
     {"4.6", "The device enforces the limits of the EDS", "CiA 306-1, 4.6.2", Level::communication,
      Permission::application, try_limits},
-    {"4.7", "Each readable entry of 2000h and above is read", "CiA 301, 7.4.5", Level::read, none,
+    {"4.7", "Each readable entry of 2000h and above is read", "CiA 301, 7.4.5", Level::read, Permission::none,
      read_application_entries},
-    {"4.8", "Constants of 2000h and above have the values of the EDS", "CiA 306-1, 4.6.2", Level::read, none,
-     compare_application_defaults},
+    {"4.8", "Constants of 2000h and above have the values of the EDS", "CiA 306-1, 4.6.2", Level::read,
+     Permission::none, compare_application_defaults},
     {"4.9", "Each writable entry of 2000h and above accepts its present value", "CiA 301, 7.4.5", Level::communication,
-     Permission::application, write_back},
+     Permission::application, write_back_values},
 };
 
 }  // namespace
-}  // namespace dictionary_area
 
-std::span<const CaseRow> dictionary_cases() { return dictionary_area::rows; }
+std::span<const CaseRow> dictionary_cases() { return dictionary_rows; }
 
 }  // namespace edsc::conform

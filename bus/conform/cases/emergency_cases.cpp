@@ -7,7 +7,6 @@
 #include "conform/cases/shared/setup.hpp"
 
 namespace edsc::conform {
-namespace emergency_area {
 namespace {
 
 using canopen::CobId;
@@ -15,7 +14,6 @@ using canopen::ErrorRegister;
 using canopen::NmtCommand;
 using canopen::NmtState;
 
-constexpr std::uint16_t error_register = 0x1001, error_history = 0x1003, emcy = 0x1014;
 constexpr std::uint16_t generic_error = 0x1000;
 constexpr auto generic_bit = static_cast<std::uint8_t>(ErrorRegister::generic);
 
@@ -65,8 +63,8 @@ Raised raise(Dut& dut) {
     dut.enter(NmtState::operational);
     error = {error.cob_id, canopen::emergency_code::pdo_length, false, dut.mark(), {}};
     dut.send(rpdo->can_id, {});
-    if (rpdo->synchronous && dut.has(0x1005)) {
-      dut.send(static_cast<std::uint32_t>(dut.read_number(0x1005)) & 0x1FFF'FFFF, {});
+    if (rpdo->synchronous && dut.has(sync_cob_id)) {
+      dut.send(static_cast<std::uint32_t>(dut.read_number(sync_cob_id)) & 0x1FFF'FFFF, {});
     }
   }
   const auto seen = dut.wait_for(Dut::with_cob_id(error.cob_id), to_report, error.since);
@@ -202,7 +200,7 @@ void delete_history(Dut& dut) {
   dut.expect_equal(dut.read_number(error_history), 0, "1003h:00 after 0 was written");
 }
 
-constexpr CaseRow rows[] = {
+constexpr CaseRow emergency_rows[] = {
     {"5.1", "1014h holds the default COB-ID of EMCY", "CiA 301, 7.5.2.17", Level::read, Permission::none, cob_id},
     {"5.2", "The error register 1001h can be read, and bit 0 is set if another bit is set", "CiA 301, 7.5.2.2",
      Level::read, Permission::none, read_register},
@@ -219,8 +217,7 @@ constexpr CaseRow rows[] = {
 };
 
 }  // namespace
-}  // namespace emergency_area
 
-std::span<const CaseRow> emergency_cases() { return emergency_area::rows; }
+std::span<const CaseRow> emergency_cases() { return emergency_rows; }
 
 }  // namespace edsc::conform

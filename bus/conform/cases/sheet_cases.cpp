@@ -9,7 +9,6 @@
 #include "conform/sheet_findings.hpp"
 
 namespace edsc::conform {
-namespace sheet_area {
 namespace {
 
 std::string list_of(const std::vector<std::string>& lines, std::size_t count) {
@@ -30,13 +29,12 @@ void no_errors(Dut& dut) {
   dut.expect(findings->error_count == 0, "an EDS without errors", list_of(findings->errors, findings->error_count));
 }
 
-constexpr CaseRow rows[] = {
+constexpr CaseRow sheet_rows[] = {
     {"1.0", "The EDS has no errors", "CiA 306-1, 4", Level::read, Permission::none, no_errors},
 };
 
 }  // namespace
-}  // namespace sheet_area
 
-std::span<const CaseRow> sheet_cases() { return sheet_area::rows; }
+std::span<const CaseRow> sheet_cases() { return sheet_rows; }
 
 }  // namespace edsc::conform

@@ -7,14 +7,12 @@
 #include "conform/cases/shared/storage_setup.hpp"
 
 namespace edsc::conform {
-namespace storage_area {
 namespace {
 
 using canopen::NmtCommand;
 using canopen::NmtState;
 
-constexpr std::uint16_t store_parameters = 0x1010, restore_parameters = 0x1011, verify_configuration = 0x1020;
-constexpr std::uint8_t date = 1, time = 2;
+constexpr std::uint8_t configuration_date = 1, configuration_time = 2;
 
 /// A parameter with a value that is neither the stored one nor the default value.
 struct Changed {
@@ -102,16 +100,16 @@ void load(Dut& dut) {
 
 /// 1020h is stored with the configuration, and set to 0 when the configuration changes.
 void verify(Dut& dut) {
-  dut.need_writable(verify_configuration, date);
-  dut.need_writable(verify_configuration, time);
+  dut.need_writable(verify_configuration, configuration_date);
+  dut.need_writable(verify_configuration, configuration_time);
   with_storage(dut, Storage::all, [&dut](const Storage& storage) {
     const auto expect_both = [&dut](std::uint64_t first, std::uint64_t second, const std::string& when) {
-      dut.expect_equal(dut.read_number(verify_configuration, date), first, "1020h:01 " + when);
-      dut.expect_equal(dut.read_number(verify_configuration, time), second, "1020h:02 " + when);
+      dut.expect_equal(dut.read_number(verify_configuration, configuration_date), first, "1020h:01 " + when);
+      dut.expect_equal(dut.read_number(verify_configuration, configuration_time), second, "1020h:02 " + when);
     };
     constexpr std::uint64_t days = 15'000, milliseconds_of_day = 43'200'000;
-    dut.write(verify_configuration, date, days);
-    dut.write(verify_configuration, time, milliseconds_of_day);
+    dut.write(verify_configuration, configuration_date, days);
+    dut.write(verify_configuration, configuration_time, milliseconds_of_day);
     storage.save();
     storage.reset();
     expect_both(days, milliseconds_of_day, "after \"save\" and a reset");
@@ -121,7 +119,7 @@ void verify(Dut& dut) {
   });
 }
 
-constexpr CaseRow rows[] = {
+constexpr CaseRow storage_rows[] = {
     {"8.1", "1010h:01 refuses a signature other than \"save\" and stores nothing", "CiA 301, 7.5.2.13",
      Level::communication, Permission::store, wrong_save<Storage::all>},
     {"8.2", "\"save\" to 1010h:01 stores all parameters", "CiA 301, 7.5.2.13", Level::communication, Permission::store,
@@ -145,8 +143,7 @@ constexpr CaseRow rows[] = {
 };
 
 }  // namespace
-}  // namespace storage_area
 
-std::span<const CaseRow> storage_cases() { return storage_area::rows; }
+std::span<const CaseRow> storage_cases() { return storage_rows; }
 
 }  // namespace edsc::conform

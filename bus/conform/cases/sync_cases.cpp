@@ -8,13 +8,11 @@
 #include "conform/cases/shared/storage_setup.hpp"
 
 namespace edsc::conform {
-namespace sync_area {
 namespace {
 
 using canopen::NmtCommand;
 using canopen::NmtState;
 
-constexpr std::uint16_t sync_cob_id = 0x1005, sync_period = 0x1006, sync_window = 0x1007, sync_overflow = 0x1019;
 constexpr Duration period = milliseconds{20};
 
 /// Sets the overflow value of the SYNC counter, if the EDS has 1019h; 0: no counter. 1006h must be 0.
@@ -214,7 +212,7 @@ void stored_values(Dut& dut) {
   });
 }
 
-constexpr CaseRow rows[] = {
+constexpr CaseRow sync_rows[] = {
     {"6.1", "1005h holds the default COB-ID of SYNC", "CiA 301, 7.5.2.5", Level::communication, Permission::none,
      default_cob_id},
     {"6.2", "A SYNC producer sends a SYNC in each period of 1006h", "CiA 301, 7.2.5.3 and 7.5.2.6",
@@ -238,8 +236,7 @@ constexpr CaseRow rows[] = {
 };
 
 }  // namespace
-}  // namespace sync_area
 
-std::span<const CaseRow> sync_cases() { return sync_area::rows; }
+std::span<const CaseRow> sync_cases() { return sync_rows; }
 
 }  // namespace edsc::conform

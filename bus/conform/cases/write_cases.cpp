@@ -24,17 +24,11 @@
 #include "device/pdo/locked_parameters.hpp"
 
 namespace edsc::conform {
-namespace write_area {
 namespace {
 
 using canopen::AbortCode;
 using canopen::CobId;
 using canopen::DataClass;
-
-constexpr std::uint16_t error_register = 0x1001, status_register = 0x1002, cob_id_sync = 0x1005, cycle_period = 0x1006,
-                        window_length = 0x1007, high_resolution_time = 0x1013, consumer_heartbeat = 0x1016,
-                        sync_overflow = 0x1019, emergency_consumer = 0x1028, error_behavior = 0x1029,
-                        default_sdo = 0x1200;
 
 // Which entries
 
@@ -63,7 +57,7 @@ bool is_live(const LiveEntry& entry) {
 }
 
 bool starts_sync(const LiveEntry& entry) {
-  return entry.index == cob_id_sync || entry.index == cycle_period || entry.index == window_length ||
+  return entry.index == sync_cob_id || entry.index == sync_period || entry.index == sync_window ||
          entry.index == sync_overflow;
 }
 
@@ -105,9 +99,9 @@ std::optional<AnyRule> rule_of(const Dut& dut, const LiveEntry& entry) {
       return is_implied(sheet, parameter) ? AnyRule{"implied-option"} : AnyRule{"never-writable"};
   }
   if (is_of_static_mapping(sheet, entry)) return AnyRule{"never-writable"};
-  if (entry.index == sync_overflow && dut.has(cycle_period) && !dut.is_writable(cycle_period))
+  if (entry.index == sync_overflow && dut.has(sync_period) && !dut.is_writable(sync_period))
     return AnyRule{"never-writable"};
-  if (entry.index == default_sdo) return AnyRule{"standard-access"};
+  if (entry.index == default_sdo_server) return AnyRule{"standard-access"};
   return std::nullopt;
 }
 
@@ -156,7 +150,7 @@ bool is_allowed(const LiveEntry& entry, std::uint64_t value) {
   const auto number = static_cast<std::uint32_t>(value);
   if (is_cob_id(entry) || is_mapping(entry) || entry.index == consumer_heartbeat) return false;
   switch (entry.index) {
-    case cycle_period: return canopen::is_sync_period(number);
+    case sync_period: return canopen::is_sync_period(number);
     case sync_overflow: return canopen::is_sync_overflow(number);
     case error_behavior: return entry.sub_index == 0 || number <= 2;
     case high_resolution_time: return true;
@@ -193,7 +187,7 @@ std::optional<std::uint32_t> other_consumer_time(Dut& dut) {
 
 /// Values near the present one, and small ones. SYNC is not produced faster than every 10 ms.
 std::vector<std::uint64_t> other_numbers(const LiveEntry& entry, std::uint64_t present) {
-  if (entry.index == cycle_period) return {20'000, 10'000};
+  if (entry.index == sync_period) return {20'000, 10'000};
   if (entry.type->kind == DataClass::boolean) return {present == 0 ? 1U : 0U};
   if (entry.type->kind == DataClass::real) {
     if (entry.type->bits == 32) return {std::bit_cast<std::uint32_t>(1.0F), 0, std::bit_cast<std::uint32_t>(2.0F)};
@@ -336,9 +330,7 @@ void try_values(Dut& dut, WriteResults& results, const LiveEntry& entry) {
   if (is_readable(entry)) (void)write(dut, entry, before.bytes);
 }
 
-using InArea = bool (*)(const LiveEntry&);
-
-void write_values(Dut& dut, InArea in_area, const std::string& none) {
+void write_values(Dut& dut, EntryFilter in_area, const std::string& none) {
   dut.enter(canopen::NmtState::pre_operational);
   WriteResults results{dut};
   for (const LiveEntry& entry : dut.entries()) {
@@ -357,7 +349,7 @@ void write_application_values(Dut& dut) {
 }
 
 /// All parameters at once, as a configuration tool writes them.
-void write_back(Dut& dut) {
+void write_back_parameters(Dut& dut) {
   dut.enter(canopen::NmtState::pre_operational);
   WriteResults results{dut};
   std::vector<ConfigurationValue> values;
@@ -375,9 +367,9 @@ void write_back(Dut& dut) {
                  "the EDS has no writable entry at 1000h to 1FFFh");
 }
 
-constexpr CaseRow rows[] = {
+constexpr CaseRow write_rows[] = {
     {"4.10", "The parameters of 1000h to 1FFFh accept the values that they have", "CiA 301, 7.4.5 and 7.5.2",
-     Level::communication, Permission::none, write_back},
+     Level::communication, Permission::none, write_back_parameters},
     {"4.11", "Each writable entry of 1000h to 1FFFh accepts its default value, its limits and another value",
      "CiA 301, 7.4.5 and 7.5.2", Level::communication, Permission::none, write_communication_values},
     {"4.12", "Each writable entry of 2000h and above accepts its default value, in simulated time also another one",
@@ -385,8 +377,7 @@ constexpr CaseRow rows[] = {
 };
 
 }  // namespace
-}  // namespace write_area
 
-std::span<const CaseRow> write_cases() { return write_area::rows; }
+std::span<const CaseRow> write_cases() { return write_rows; }
 
 }  // namespace edsc::conform

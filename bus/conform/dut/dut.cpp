@@ -2,10 +2,36 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <canopen/can/cob_id.hpp>
+#include <canopen/nmt/error_control.hpp>
+#include <canopen/nmt_master/nmt_master.hpp>
+#include <canopen/sdo/sdo_client.hpp>
+
+#include "configure/configuration_plan.hpp"
+#include "configure/configure_node.hpp"
+#include "configure/read_configuration.hpp"
+#include "online/interruption.hpp"
 #include "values/little_endian.hpp"
 
 namespace edsc::conform {
+
+namespace sdo = canopen::sdo;
+
 namespace {
+
+using canopen::NmtCommand;
+using canopen::NmtState;
+
+/// The sub-indices of 1020h. They are written last: the device sets them to 0 when another parameter changes.
+constexpr std::uint8_t verified[] = {1, 2};
+
+constexpr std::uint64_t watched_heartbeat_ms = 100;
+
+/// The time that a device may need to follow an NMT command. CiA 301 does not specify a limit.
+constexpr Duration to_follow = milliseconds{50};
+/// The time that a device may need to start.
+constexpr Duration to_start = milliseconds{5000};
 
 std::uint32_t seed_of(std::uint32_t seed, std::string_view id) {
   for (const char letter : id) seed = seed * 31 + static_cast<unsigned char>(letter);
@@ -16,22 +42,23 @@ std::uint32_t seed_of(std::uint32_t seed, std::string_view id) {
 
 std::string label(std::uint16_t index, std::uint8_t sub_index) { return entry_label(index, sub_index); }
 
+std::string outcome_text(const SdoOutcome& outcome) {
+  if (outcome.done()) return outcome.bytes.empty() ? "done" : "the value " + hex_bytes(outcome.bytes);
+  return outcome.end == SdoEnd::refused ? abort_text(outcome.code) : failure_text(outcome);
+}
+
+std::string milliseconds_text(std::uint64_t time_us) {
+  return fmt::format("{}.{:03} ms", time_us / 1000, time_us % 1000);
+}
+
 Dut::Dut(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const DutSettings& settings)
-    : bus_{bus},
+    : CaseFrames{bus},
       sheet_{sheet},
       stimuli_{stimuli},
       settings_{settings},
       sdo_{bus, settings.node, settings.sdo},
-      random_{settings.seed},
-      last_time_{bus.now()} {
-  bus_.on_frame = [this](const canopen::Frame& frame, canopen::TimePoint) { record(frame, bus_.received_at(), false); };
-  bus_.on_sent = [this](const canopen::Frame& frame, canopen::TimePoint at) { record(frame, at, true); };
-}
-
-Dut::~Dut() {
-  bus_.on_frame = nullptr;
-  bus_.on_sent = nullptr;
-}
+      found_values_{sdo_, sheet},
+      random_{settings.seed} {}
 
 // ---- the EDS ----
 
@@ -87,12 +114,264 @@ std::vector<const Pdo*> Dut::pdos(PdoDirection direction) const {
   return found;
 }
 
+// ---- SDO ----
+
+LiveEntry Dut::live(std::uint16_t index, std::uint8_t sub_index) const { return live_entry(&sheet_, index, sub_index); }
+
+SdoOutcome Dut::upload(std::uint16_t index, std::uint8_t sub_index, SdoTransfer transfer) {
+  return edsc::upload(sdo_, live(index, sub_index), transfer);
+}
+
+SdoOutcome Dut::download(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value,
+                         SdoTransfer transfer) {
+  found_values_.remember(index, sub_index);
+  return sdo_.download(index, sub_index, value, transfer);
+}
+
+SdoOutcome Dut::download(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number) {
+  return download(index, sub_index, bytes_of(index, sub_index, number));
+}
+
+SdoOutcome Dut::command(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value) {
+  constexpr unsigned to_store_ms = 5000;  // a device may erase a page of flash before it answers
+  sdo_.set_timeout(std::max(settings_.sdo.timeout_ms, to_store_ms));
+  SdoOutcome outcome = sdo_.download(index, sub_index, value);
+  sdo_.set_timeout(settings_.sdo.timeout_ms);
+  return outcome;
+}
+
+Bytes Dut::bytes_of(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number) const {
+  const Entry* const found = entry(index, sub_index);
+  const unsigned bits = found == nullptr || found->type == nullptr ? 32 : found->type->bits;
+  return edsc::bytes_of(number, bits == 0 ? 4 : bytes_for(bits));
+}
+
+Bytes Dut::read(std::uint16_t index, std::uint8_t sub_index) {
+  SdoOutcome outcome = upload(index, sub_index);
+  expect(outcome.done(), "the value of " + label(index, sub_index), outcome_text(outcome));
+  return std::move(outcome.bytes);
+}
+
+std::uint64_t Dut::read_number(std::uint16_t index, std::uint8_t sub_index) {
+  return number_of(read(index, sub_index));
+}
+
+void Dut::write(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number) {
+  const Bytes bytes = bytes_of(index, sub_index, number);
+  const SdoOutcome outcome = download(index, sub_index, bytes);
+  expect_done(outcome, fmt::format("{:X}h written to {}", number, label(index, sub_index)));
+}
+
+void Dut::request(const sdo::Data& data) {
+  transfer_open_ = true;
+  send(canopen::default_sdo(node()).request.can_id(), data);
+}
+
+std::optional<sdo::Data> Dut::answer() {
+  const auto is_answer = [this](const canopen::Frame& frame) {
+    return frame.size == 8 && with_id(canopen::default_sdo(node()).response.can_id())(frame);
+  };
+  const auto found = wait_for(is_answer, milliseconds{settings_.sdo.timeout_ms}, next_answer_);
+  if (!found) return std::nullopt;
+  next_answer_ = static_cast<Mark>(last_match()) + 1;
+  return found->frame.data;
+}
+
+std::optional<sdo::Data> Dut::exchange(const sdo::Data& data) {
+  next_answer_ = mark();
+  request(data);
+  return answer();
+}
+
+void Dut::end_transfer(std::uint16_t index, std::uint8_t sub_index) {
+  sdo::Data abort{sdo::abort_command};
+  sdo::put_multiplexer(abort, index, sub_index);
+  sdo::put_word(abort, static_cast<std::uint32_t>(canopen::AbortCode::general));
+  send(canopen::default_sdo(node()).request.can_id(), abort);
+  pass_time(milliseconds{5});
+  transfer_open_ = false;
+}
+
+// ---- all values at once ----
+
+ConfigurationResult Dut::write_in_order(const std::vector<ConfigurationValue>& values) {
+  for (const ConfigurationValue& value : values) found_values_.remember(value.entry.index, value.entry.sub_index);
+  const ConfigurationHooks hooks{[](std::size_t, std::size_t) {}, [] { return false; }};
+  return configure_node(sdo_, plan_configuration(values, &sheet_), hooks);
+}
+
+Dut::Values Dut::values() {
+  Values found;
+  NodeConfiguration configuration = read_configuration(sdo_, sheet_, configuration_entries(sheet_), [](std::size_t) {});
+  for (ReadValue& value : configuration.values) {
+    found[{value.entry.index, value.entry.sub_index}] = std::move(value.bytes);
+  }
+  for (const std::uint8_t sub_index : verified) {
+    if (!has(verify_configuration, sub_index)) continue;
+    const SdoOutcome outcome = upload(verify_configuration, sub_index);
+    if (outcome.done()) found[{verify_configuration, sub_index}] = outcome.bytes;
+  }
+  return found;
+}
+
+void Dut::restore(const Values& wanted) {
+  Values parameters = wanted;
+  for (const std::uint8_t sub_index : verified) parameters.erase({verify_configuration, sub_index});
+  for (std::string& left : found_values_.restore(parameters, true)) warn(std::move(left));
+  for (const std::uint8_t sub_index : verified) {
+    const auto found = wanted.find({verify_configuration, sub_index});
+    if (found == wanted.end() || upload(verify_configuration, sub_index).bytes == found->second) continue;
+    if (!command(verify_configuration, sub_index, found->second).done()) {
+      warn(label(verify_configuration, sub_index) + " could not be restored");
+    }
+  }
+}
+
+// ---- NMT ----
+
+Dut::Match Dut::error_control() const { return with_id(0x700U + node().value()); }
+
+Dut::Match Dut::boot_up() const {
+  return [id = 0x700U + node().value()](const canopen::Frame& frame) {
+    return with_id(id)(frame) && frame.size == 1 && frame.data[0] == 0;
+  };
+}
+
+Dut::Match Dut::heartbeat() const {
+  return [id = 0x700U + node().value()](const canopen::Frame& frame) {
+    return with_id(id)(frame) && frame.size == 1 && frame.data[0] != 0;
+  };
+}
+
+void Dut::nmt(NmtCommand command) {
+  const bool resets = command == NmtCommand::reset_node || command == NmtCommand::reset_communication;
+  if (resets) found_values_.remember_before_reset();
+  state_changed_ = true;
+  send(canopen::nmt_frame(command, node()));
+}
+
+void Dut::reset(NmtCommand command) {
+  nmt(command);
+  const auto started = wait_for(boot_up(), to_start);
+  expect(started.has_value(), "a boot-up message within " + milliseconds_text(to_start.count()), "none");
+  pass_time(to_follow);
+}
+
+void Dut::enter(NmtState state) {
+  switch (state) {
+    case NmtState::operational: nmt(NmtCommand::start); break;
+    case NmtState::stopped: nmt(NmtCommand::stop); break;
+    case NmtState::pre_operational: nmt(NmtCommand::enter_pre_operational); break;
+    case NmtState::initialisation: return reset(NmtCommand::reset_node);
+  }
+  pass_time(to_follow);
+}
+
+bool Dut::watch_state() {
+  if (is_readable(producer_heartbeat)) {
+    const std::uint64_t period = read_number(producer_heartbeat);
+    if (period == 0 || period > watched_heartbeat_ms) {
+      if (!is_writable(producer_heartbeat)) return period != 0;
+      write(producer_heartbeat, 0, watched_heartbeat_ms);
+    }
+    guarded_ = false;
+    return true;
+  }
+  guarded_ = has(guard_time);
+  return guarded_;
+}
+
+std::optional<NmtState> Dut::state() {
+  constexpr Duration several_heartbeats = milliseconds{5 * watched_heartbeat_ms};
+  const Mark since = mark();
+  if (guarded_) send_remote(0x700U + node().value(), 1);
+  const auto seen = wait_for(heartbeat(), std::max(several_heartbeats, tolerance()), since);
+  if (!seen) return std::nullopt;
+  const auto message = canopen::error_control_message(seen->frame);
+  if (!message) return std::nullopt;
+  return message->state;
+}
+
+void Dut::expect_state(NmtState expected) {
+  const auto found = state();
+  expect(found == expected, fmt::format("an error control message with the state {}", canopen::to_text(expected)),
+         found ? std::string{canopen::to_text(*found)} : "none");
+}
+
+// ---- verdicts ----
+
+void Dut::fail(std::string expected, std::string got, std::vector<EntryAddress> failed_entries) {
+  failed_ = mark();
+  throw CaseEnd{Verdict::failed, {}, std::move(expected), std::move(got), {}, std::move(failed_entries)};
+}
+void Dut::fail_by_sheet(AnyRule rule, std::string expected, std::string got) {
+  failed_ = mark();
+  throw CaseEnd{Verdict::failed, {}, std::move(expected), std::move(got), rule};
+}
+void Dut::not_applicable(std::string reason) { throw CaseEnd{Verdict::not_applicable, std::move(reason), {}, {}}; }
+void Dut::inconclusive(std::string reason) { throw CaseEnd{Verdict::inconclusive, std::move(reason), {}, {}}; }
+
+void Dut::need_part(std::string_view name) {
+  if (std::ranges::find(settings_.omitted, name) == settings_.omitted.end()) return;
+  not_applicable(fmt::format("the composition of the program omits it: canopen::without<canopen::part::{}>", name));
+}
+
+void Dut::need_permission(Permission permission) {
+  for (const PermissionRow& row : permission_options) {
+    if (includes(permission, row.permission) && !allowed(row.permission)) {
+      inconclusive(fmt::format("needs {}", row.option));
+    }
+  }
+}
+
+void Dut::expect_abort(const SdoOutcome& outcome, const AbortRule& rule, const std::string& what) {
+  const std::string where = what.empty() ? "" : what + ": ";
+  const std::string expected = where + "an abort with " + abort_text(rule.standard.front());
+  if (outcome.end != SdoEnd::refused || !rule.is_accepted(outcome.code)) fail(expected, where + outcome_text(outcome));
+  if (!rule.is_standard(outcome.code)) {
+    warn(fmt::format("{}{}; CiA 301 has {}", where, abort_text(outcome.code), abort_text(rule.standard.front())));
+  }
+}
+
+void Dut::expect_abort(const std::optional<sdo::Data>& data, const AbortRule& rule, const std::string& what) {
+  SdoOutcome outcome;
+  outcome.end = !data ? SdoEnd::no_answer : SdoEnd::done;
+  if (data && (*data)[0] == sdo::abort_command) {
+    transfer_open_ = false;
+    outcome.end = SdoEnd::refused;
+    outcome.code = canopen::abort_code_from(sdo::word_of(*data));
+  } else if (data) {
+    outcome.bytes.assign(data->begin(), data->end());
+  }
+  expect_abort(outcome, rule, what);
+}
+
+void Dut::expect_done(const SdoOutcome& outcome, const std::string& what) {
+  expect(outcome.done(), what, outcome_text(outcome));
+}
+
+void Dut::expect_equal(std::uint64_t got, std::uint64_t expected, const std::string& what) {
+  expect(got == expected, fmt::format("{}: {} ({:X}h)", what, expected, expected), fmt::format("{} ({:X}h)", got, got));
+}
+
+void Dut::expect_time(std::uint64_t measured, std::uint64_t low, std::uint64_t high, const std::string& what) {
+  const std::uint64_t wider = tolerance().count();
+  if (measured + wider >= low && measured <= high + wider) return;
+  const std::uint64_t misses = measured < low ? low - measured : measured - high;
+  if (misses <= lag() + settings_.tolerance.count()) {
+    inconclusive(fmt::format("{}: measured {}, but the test itself was late by {}", what, milliseconds_text(measured),
+                             milliseconds_text(lag())));
+  }
+  fail(fmt::format("{}: {} to {}", what, milliseconds_text(low), milliseconds_text(high)), milliseconds_text(measured));
+}
+
+Duration Dut::tolerance() const { return settings_.tolerance; }
+
 // ---- for the runner ----
 
 void Dut::begin_case(const CaseRow& row) {
-  frames_.clear();
+  clear_frames();
   warnings_.clear();
-  lag_ = 0;
   next_answer_ = 0;
   failed_.reset();
   case_began_ = now();
@@ -104,9 +383,9 @@ void Dut::end_case(CaseResult& result) {
   if (transfer_open_) end_transfer();
   result.began = case_began_;
   result.took = now() - case_began_;
-  result.lag = lag_;
+  result.lag = lag();
   result.warnings = std::move(warnings_);
-  result.frames = frames_;
+  result.frames = frames();
   result.until_failure = failed_;
   result.not_put_back = put_back();
 }
@@ -119,6 +398,16 @@ std::vector<std::string> Dut::find_state() {
     // 1017h cannot be used as the EDS says: a case will report it.
   }
   return put_back();
+}
+
+std::vector<std::string> Dut::put_back() {
+  const Uninterrupted uninterrupted;
+  if (transfer_open_) end_transfer();
+  if (state_changed_) enter(canopen::NmtState::pre_operational);
+  std::vector<std::string> left = found_values_.put_back(allowed(Permission::application));
+  if (state_changed_ && found_state_ && *found_state_ != canopen::NmtState::pre_operational) enter(*found_state_);
+  state_changed_ = false;
+  return left;
 }
 
 }  // namespace edsc::conform

@@ -16,11 +16,8 @@
 #include <canopen/nmt/nmt.hpp>
 #include <canopen/sdo/sdo_protocol.hpp>
 #include <cstdint>
-#include <functional>
-#include <map>
 #include <optional>
 #include <random>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -28,7 +25,10 @@
 
 #include "configure/configure_node.hpp"
 #include "conform/dut/abort_rule.hpp"
+#include "conform/dut/case_frames.hpp"
+#include "conform/dut/found_values.hpp"
 #include "conform/dut/stimuli.hpp"
+#include "conform/objects.hpp"
 #include "conform/sheet_findings.hpp"
 #include "conform/verdict.hpp"
 #include "device/device.hpp"
@@ -41,7 +41,6 @@
 
 namespace edsc::conform {
 
-using canopen::Duration;
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using Bytes = std::vector<std::uint8_t>;
@@ -72,12 +71,9 @@ struct DutSettings {
   std::optional<SheetFindings> findings{};
 };
 
-class Dut {
+class Dut : public CaseFrames {
  public:
   Dut(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const DutSettings& settings);
-  ~Dut();
-  Dut(const Dut&) = delete;
-  Dut& operator=(const Dut&) = delete;
 
   // ---- the EDS ----
 
@@ -123,7 +119,7 @@ class Dut {
   /// Writes the values in the sequence of CiA 301 (`order_writes`). They are put back when the case ends.
   [[nodiscard]] ConfigurationResult write_in_order(const std::vector<ConfigurationValue>& values);
   /// Reads an entry that the case then writes frame by frame. The value is put back when the case ends.
-  void remember(std::uint16_t index, std::uint8_t sub_index);
+  void remember(std::uint16_t index, std::uint8_t sub_index) { found_values_.remember(index, sub_index); }
 
   /// Sends one request to the default SDO server and returns its next frame; std::nullopt after the timeout. A transfer
   /// that remains open is aborted by `end_transfer` or when the case ends.
@@ -137,8 +133,7 @@ class Dut {
 
   // ---- all values at once ----
 
-  using Key = std::pair<std::uint16_t, std::uint8_t>;
-  using Values = std::map<Key, Bytes>;
+  using Values = FoundValues::Values;
 
   /// Returns the present values of the entries that "save" may store, and of 1020h.
   [[nodiscard]] Values values();
@@ -146,37 +141,11 @@ class Dut {
   /// cannot be written adds a warning.
   void restore(const Values& values);
 
-  // ---- frames ----
+  // ---- NMT ----
 
-  /// A position in the recorded frames.
-  using Mark = std::size_t;
-  using Match = std::function<bool(const canopen::Frame&)>;
-
-  [[nodiscard]] Mark mark() const { return frames_.size(); }
-  void send(const canopen::Frame& frame);
-  void send(std::uint32_t can_id, std::span<const std::uint8_t> data);
-  void send_remote(std::uint32_t can_id, std::uint8_t size);
-  /// Returns the first matching frame that was received since the mark. Waits for at most `span`.
-  std::optional<SeenFrame> wait_for(const Match& match, Duration span, Mark since);
-  std::optional<SeenFrame> wait_for(const Match& match, Duration span) { return wait_for(match, span, mark()); }
-  /// Waits for `span` and returns all matching frames that were received.
-  std::vector<SeenFrame> collect(const Match& match, Duration span);
-  void pass_time(Duration span) {
-    (void)collect([](const canopen::Frame&) { return false; }, span);
-  }
-  /// Frames received since the mark.
-  [[nodiscard]] std::vector<SeenFrame> received_since(Mark since, const Match& match) const;
-  [[nodiscard]] std::uint64_t now() const;  ///< microseconds since the run began
-
-  [[nodiscard]] static Match with_id(std::uint32_t can_id);
-  /// Matches data frames with the CAN-ID of a COB-ID as an object holds it. Ignores bit 31 (valid).
-  [[nodiscard]] static Match with_cob_id(std::uint32_t cob_id);
   [[nodiscard]] Match error_control() const;  ///< 700h + node-ID
   [[nodiscard]] Match boot_up() const;
   [[nodiscard]] Match heartbeat() const;  ///< error control without boot-up messages
-
-  // ---- NMT ----
-
   /// NMT to this node.
   void nmt(canopen::NmtCommand command);
   /// Sends reset node or reset communication and waits for the boot-up message. The case fails without it.
@@ -234,41 +203,24 @@ class Dut {
   std::vector<std::string> put_back();
   /// Finds the NMT state of the device before the run, if error control reports it. Returns what could not be put back.
   [[nodiscard]] std::vector<std::string> find_state();
-  [[nodiscard]] std::uint64_t lag() const { return lag_; }
 
  private:
   [[nodiscard]] LiveEntry live(std::uint16_t index, std::uint8_t sub_index) const;
-  void record(const canopen::Frame& frame, canopen::TimePoint at, bool sent);
-  void remember_entry(const LiveEntry& entry);
-  void remember_configuration();
-  void take_frame(Duration longest);
-  [[nodiscard]] std::vector<std::string> restore_values(const Values& values, bool application);
 
-  LiveBus& bus_;
   const Device& sheet_;
   Stimuli& stimuli_;
   DutSettings settings_;
   SdoAccess sdo_;
+  FoundValues found_values_;
   std::mt19937 random_;
 
-  std::vector<SeenFrame> frames_;  ///< of this case
   std::vector<std::string> warnings_;
-  canopen::TimePoint last_time_;
-  std::uint64_t elapsed_ = 0;  ///< microseconds since the run began, at last_time_
-  std::uint64_t lag_ = 0;
   std::uint64_t case_began_ = 0;
-
-  std::map<Key, Bytes> changed_;        ///< values before this case
-  std::map<Key, Bytes> configuration_;  ///< of the whole device, before the first reset
-  std::set<Key> unreadable_;            ///< written, but not readable: not put back
-  bool configuration_known_ = false;
-  bool was_reset_ = false;
   bool state_changed_ = false;
   bool transfer_open_ = false;
   std::optional<Mark> failed_;                    ///< where the case failed
   bool guarded_ = false;                          ///< the state is read by node guarding
   Mark next_answer_ = 0;                          ///< of `answer`
-  Mark last_match_ = 0;                           ///< of `wait_for`
   std::optional<canopen::NmtState> found_state_;  ///< before the run
 };
 

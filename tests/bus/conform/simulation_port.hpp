@@ -82,12 +82,12 @@ class SimulationStimuli final : public Stimuli {
   bool set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value) override {
     return device_.node().set(index, sub_index, value) == canopen::ok;
   }
-  bool emergency(std::uint16_t code, std::uint8_t error_register) override {
-    device_.node().emergency(code, canopen::ErrorRegister{error_register});
+  bool emergency(std::uint16_t code, std::uint8_t bits) override {
+    device_.node().emergency(code, canopen::ErrorRegister{bits});
     return true;
   }
-  bool emergency_over(std::uint8_t error_register) override {
-    device_.node().emergency_over(canopen::ErrorRegister{error_register});
+  bool emergency_over(std::uint8_t bits) override {
+    device_.node().emergency_over(canopen::ErrorRegister{bits});
     return true;
   }
   bool power_cycle() override {

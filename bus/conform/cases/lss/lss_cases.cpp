@@ -5,7 +5,6 @@
 #include "conform/cases/lss/lss_slave.hpp"
 
 namespace edsc::conform {
-namespace lss_area {
 namespace {
 
 using canopen::NmtCommand;
@@ -305,12 +304,12 @@ void activate(Dut& dut) {
     dut.pass_time(delay);
     slave.wait();
     dut.enter(NmtState::pre_operational);
-    const SdoOutcome outcome = dut.upload(0x1000);
+    const SdoOutcome outcome = dut.upload(device_type);
     dut.expect(outcome.end != SdoEnd::no_answer, "an answer to an SDO request afterwards", outcome_text(outcome));
   });
 }
 
-constexpr CaseRow rows[] = {
+constexpr CaseRow lss_rows[] = {
     {"11.1", "Switch state selective selects a device by all four numbers of 1018h", "CiA 305, switch state selective",
      Level::communication, Permission::none, select},
     {"11.2", "Switch state global leads to the configuration state and back, without an answer",
@@ -344,8 +343,7 @@ constexpr CaseRow rows[] = {
 };
 
 }  // namespace
-}  // namespace lss_area
 
-std::span<const CaseRow> lss_cases() { return lss_area::rows; }
+std::span<const CaseRow> lss_cases() { return lss_rows; }
 
 }  // namespace edsc::conform

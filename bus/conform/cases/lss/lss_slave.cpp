@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace edsc::conform::lss_area {
+namespace edsc::conform {
 
 using canopen::NmtState;
 
@@ -89,4 +89,4 @@ void need_silent_bus(Dut& dut) {
   }
 }
 
-}  // namespace edsc::conform::lss_area
+}  // namespace edsc::conform

@@ -11,7 +11,7 @@
 
 #include "conform/cases/shared/setup.hpp"
 
-namespace edsc::conform::lss_area {
+namespace edsc::conform {
 
 using canopen::Frame;
 using canopen::LssState;
@@ -19,13 +19,12 @@ using canopen::NodeId;
 namespace lss = canopen::lss;
 using lss::Command;
 
-inline constexpr std::uint16_t identity = 0x1018;
-/// The time that a slave may need to answer. CiA 305 does not specify a limit.
-inline constexpr Duration to_answer = milliseconds{200};
-
 /// The LSS slave of the device. The constructor leaves it in the waiting state.
 class Slave {
  public:
+  /// The time that a slave may need to answer. CiA 305 does not specify a limit.
+  static constexpr Duration to_answer = milliseconds{200};
+
   explicit Slave(Dut& dut);
 
   [[nodiscard]] const std::array<std::uint32_t, 4>& numbers() const { return numbers_; }
@@ -74,4 +73,4 @@ void with_slave(Dut& dut, Check check) {
 /// Inconclusive if other nodes are on the bus, which a service to all slaves would change.
 void need_silent_bus(Dut& dut);
 
-}  // namespace edsc::conform::lss_area
+}  // namespace edsc::conform

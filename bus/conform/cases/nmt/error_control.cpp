@@ -4,22 +4,22 @@
 
 #include <canopen/emcy/error_register.hpp>
 
-namespace edsc::conform::error_control_area {
+namespace edsc::conform {
 
 void need_guarding(Dut& dut) {
   dut.need(guard_time);
   dut.need(life_time_factor);
-  if (!dut.has(producer_time)) return;
-  if (dut.read_number(producer_time) != 0) {
-    dut.need_writable(producer_time);
-    dut.write(producer_time, 0, 0);
+  if (!dut.has(producer_heartbeat)) return;
+  if (dut.read_number(producer_heartbeat) != 0) {
+    dut.need_writable(producer_heartbeat);
+    dut.write(producer_heartbeat, 0, 0);
   }
 }
 
 std::vector<SeenFrame> answers(Dut& dut) {
   const Dut::Mark since = dut.mark();
   dut.send_remote(0x700U + dut.node().value(), 1);
-  dut.pass_time(to_answer);
+  dut.pass_time(to_answer_guarding);
   return dut.received_since(since, dut.error_control());
 }
 
@@ -38,7 +38,7 @@ void expect_guarded(Dut& dut, NmtState state, bool toggle) {
 }
 
 Dut::Match error_control_event(Dut& dut) {
-  if (!dut.has(0x1014)) dut.inconclusive("1014h:00 does not exist in the EDS: the device cannot report the event");
+  if (!dut.has(emcy)) dut.inconclusive("1014h:00 does not exist in the EDS: the device cannot report the event");
   return emcy_with_code(emcy_cob_id(dut), canopen::emergency_code::error_control);
 }
 
@@ -47,9 +47,9 @@ void expect_not_lost(Dut& dut, const Dut::Match& event, Dut::Mark since, const s
 }
 
 void start_heartbeat(Dut& dut) {
-  dut.need_writable(producer_time);
+  dut.need_writable(producer_heartbeat);
   dut.enter(NmtState::pre_operational);
-  dut.write(producer_time, 0, beat.count() / 1000);
+  dut.write(producer_heartbeat, 0, beat.count() / 1000);
   dut.pass_time(beat / 2);
 }
 
@@ -71,4 +71,4 @@ void expect_no_heartbeats(Dut& dut) {
   dut.expect(seen.empty(), "no heartbeat while 1017h:00 is 0", fmt::format("{} in a second", seen.size()));
 }
 
-}  // namespace edsc::conform::error_control_area
+}  // namespace edsc::conform

@@ -8,17 +8,15 @@
 
 #include "conform/cases/shared/setup.hpp"
 
-namespace edsc::conform::error_control_area {
+namespace edsc::conform {
 
 using canopen::NmtCommand;
 using canopen::NmtState;
 
-inline constexpr std::uint16_t guard_time = 0x100C, life_time_factor = 0x100D;
-inline constexpr std::uint16_t consumer_time = 0x1016, producer_time = 0x1017;
 inline constexpr std::uint8_t toggle_bit = 0x80;
 
 /// The time that a device may need to answer a guarding request.
-inline constexpr Duration to_answer = milliseconds{50};
+inline constexpr Duration to_answer_guarding = milliseconds{50};
 
 /// Not applicable if the EDS does not have node guarding. Disables heartbeat, which excludes guarding.
 void need_guarding(Dut& dut);
@@ -40,4 +38,4 @@ void start_heartbeat(Dut& dut);
 void expect_heartbeats(Dut& dut, NmtState state, Duration period, unsigned count);
 void expect_no_heartbeats(Dut& dut);
 
-}  // namespace edsc::conform::error_control_area
+}  // namespace edsc::conform

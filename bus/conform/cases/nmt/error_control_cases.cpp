@@ -5,13 +5,12 @@
 #include "conform/cases/nmt/error_control.hpp"
 
 namespace edsc::conform {
-namespace error_control_area {
 namespace {
 
 void need_both(Dut& dut) {
   dut.need_writable(guard_time);
   dut.need_writable(life_time_factor);
-  dut.need_writable(producer_time);
+  dut.need_writable(producer_heartbeat);
 }
 
 /// Writes 100Ch and 100Dh: 0 disables life guarding.
@@ -22,10 +21,10 @@ void set_guarding(Dut& dut, std::uint16_t milliseconds_between, std::uint8_t fac
 
 void one_of_both(Dut& dut) {
   const bool guarding = dut.has(guard_time) && dut.has(life_time_factor);
-  if (!guarding && !dut.has(producer_time)) {
+  if (!guarding && !dut.has(producer_heartbeat)) {
     dut.fail_by_sheet("error-control", "1017h, or 100Ch and 100Dh", "the EDS has neither");
   }
-  for (const std::uint16_t index : {guard_time, life_time_factor, producer_time}) {
+  for (const std::uint16_t index : {guard_time, life_time_factor, producer_heartbeat}) {
     if (dut.has(index)) (void)dut.read_number(index);
   }
 }
@@ -33,15 +32,15 @@ void one_of_both(Dut& dut) {
 void heartbeat_off(Dut& dut) {
   need_both(dut);
   start_heartbeat(dut);
-  dut.write(producer_time, 0, 0);
-  dut.expect_equal(dut.read_number(producer_time), 0, "1017h:00");
+  dut.write(producer_heartbeat, 0, 0);
+  dut.expect_equal(dut.read_number(producer_heartbeat), 0, "1017h:00");
   expect_no_heartbeats(dut);
 }
 
 void guarding_without_heartbeat(Dut& dut) {
   need_both(dut);
   start_heartbeat(dut);
-  dut.write(producer_time, 0, 0);
+  dut.write(producer_heartbeat, 0, 0);
   dut.pass_time(beat);
   const bool first = (guard(dut) & toggle_bit) != 0;
   for (const bool bit : {!first, first, !first}) expect_guarded(dut, NmtState::pre_operational, bit);
@@ -82,7 +81,7 @@ void heartbeat_with_guarding(Dut& dut) {
   start_heartbeat(dut);
   const Dut::Mark since = dut.mark();
   expect_heartbeats(dut, NmtState::pre_operational, beat, 10);
-  if (dut.has(0x1014)) expect_not_lost(dut, error_control_event(dut), since, "while 1017h:00 is not 0");
+  if (dut.has(emcy)) expect_not_lost(dut, error_control_event(dut), since, "while 1017h:00 is not 0");
 }
 
 void requests_with_guarding(Dut& dut) {
@@ -92,10 +91,10 @@ void requests_with_guarding(Dut& dut) {
   const Dut::Mark since = dut.mark();
   expect_requests_ignored(dut);
   dut.pass_time(beat * 5);
-  if (dut.has(0x1014)) expect_not_lost(dut, error_control_event(dut), since, "while 1017h:00 is not 0");
+  if (dut.has(emcy)) expect_not_lost(dut, error_control_event(dut), since, "while 1017h:00 is not 0");
 }
 
-constexpr CaseRow rows[] = {
+constexpr CaseRow error_control_rows[] = {
     {"7.201", "The device has heartbeat or node guarding", "CiA 301, 7.2.8.3.2", Level::communication, Permission::none,
      one_of_both},
     {"7.202", "A device with heartbeat and node guarding stops its heartbeat if 1017h = 0", "CiA 301, 7.5.2.20",
@@ -113,8 +112,7 @@ constexpr CaseRow rows[] = {
 };
 
 }  // namespace
-}  // namespace error_control_area
 
-std::span<const CaseRow> error_control_cases() { return error_control_area::rows; }
+std::span<const CaseRow> error_control_cases() { return error_control_rows; }
 
 }  // namespace edsc::conform

@@ -7,7 +7,6 @@
 #include "conform/cases/nmt/error_control.hpp"
 
 namespace edsc::conform {
-namespace error_control_area {
 namespace {
 
 /// Sends guarding requests for all other node-IDs and returns the error control messages of other node-IDs.
@@ -18,7 +17,7 @@ std::vector<SeenFrame> foreign_answers(Dut& dut) {
     dut.send_remote(0x700U + node, 1);
     dut.pass_time(milliseconds{2});
   }
-  dut.pass_time(to_answer);
+  dut.pass_time(to_answer_guarding);
   return dut.received_since(since, [own = dut.node().value()](const canopen::Frame& frame) {
     return (frame.id & 0x780U) == 0x700U && (frame.id & 0x7FU) != own && !frame.extended && !frame.remote;
   });
@@ -90,7 +89,7 @@ void life_guarding(Dut& dut) {
   for (unsigned i = 0; i < 8; ++i) {
     last = dut.now();
     (void)guard(dut);
-    dut.pass_time(time - to_answer);
+    dut.pass_time(time - to_answer_guarding);
   }
   dut.expect(dut.received_since(began, event).empty(), "no EMCY with code 8130h while requests are sent", "one");
   const auto lost = dut.wait_for(event, time * factor * 2, began);
@@ -117,8 +116,7 @@ constexpr CaseRow guarding_rows[] = {
 };
 
 }  // namespace
-}  // namespace error_control_area
 
-std::span<const CaseRow> guarding_cases() { return error_control_area::guarding_rows; }
+std::span<const CaseRow> guarding_cases() { return guarding_rows; }
 
 }  // namespace edsc::conform

@@ -7,7 +7,6 @@
 #include "conform/cases/nmt/error_control.hpp"
 
 namespace edsc::conform {
-namespace error_control_area {
 namespace {
 
 using canopen::NodeId;
@@ -16,14 +15,16 @@ using canopen::NodeId;
 class Producer {
  public:
   explicit Producer(Dut& dut) : dut_{dut} {
-    const std::optional<Value>& limit = dut.need_writable(consumer_time, 1).high_limit;
+    const std::optional<Value>& limit = dut.need_writable(consumer_heartbeat, 1).high_limit;
     node_ = free_node_id(dut);
     if (limit && limit->bits < value(milliseconds{0xFFFF})) {
       dut.not_applicable(fmt::format("the EDS limits 1016h:01 to {:X}h, which is too low for a node-ID", limit->bits));
     }
   }
 
-  void watch(Duration time, std::uint8_t sub_index = 1) const { dut_.write(consumer_time, sub_index, value(time)); }
+  void watch(Duration time, std::uint8_t sub_index = 1) const {
+    dut_.write(consumer_heartbeat, sub_index, value(time));
+  }
 
   [[nodiscard]] std::uint64_t value(Duration time) const {
     return std::uint64_t{node_.value()} << 16 | time.count() / 1000;
@@ -62,10 +63,10 @@ void expect_lost(Dut& dut, const Dut::Match& event, Dut::Mark since, std::uint64
 // ---- heartbeat producer ----
 
 void write_heartbeat(Dut& dut) {
-  dut.need_writable(producer_time);
+  dut.need_writable(producer_heartbeat);
   for (const std::uint64_t time : {500U, 1000U, 0U}) {
-    dut.write(producer_time, 0, time);
-    const Bytes read = dut.read(producer_time);
+    dut.write(producer_heartbeat, 0, time);
+    const Bytes read = dut.read(producer_heartbeat);
     dut.expect_equal(read.size(), 2, "bytes of 1017h:00");
     dut.expect_equal(number_of(read), time, "1017h:00");
   }
@@ -79,22 +80,22 @@ void count_heartbeats(Dut& dut) {
 void stop_heartbeat(Dut& dut) {
   start_heartbeat(dut);
   dut.expect(!dut.collect(dut.heartbeat(), beat * 3).empty(), "a heartbeat every 100 ms", "none");
-  dut.write(producer_time, 0, 0);
+  dut.write(producer_heartbeat, 0, 0);
   expect_no_heartbeats(dut);
 }
 
 // ---- heartbeat consumer ----
 
 void duplicate_consumer(Dut& dut) {
-  dut.need_writable(consumer_time, 2);
+  dut.need_writable(consumer_heartbeat, 2);
   const Producer producer{dut};
   producer.watch(watched);
   producer.watch(watched);
-  const std::uint64_t before = dut.read_number(consumer_time, 2);
-  dut.expect_equal(dut.read_number(consumer_time, 1), producer.value(watched), "1016h:01");
-  dut.expect_abort(dut.download(consumer_time, 2, producer.value(watched)), abort_rule::duplicate,
+  const std::uint64_t before = dut.read_number(consumer_heartbeat, 2);
+  dut.expect_equal(dut.read_number(consumer_heartbeat, 1), producer.value(watched), "1016h:01");
+  dut.expect_abort(dut.download(consumer_heartbeat, 2, producer.value(watched)), abort_rule::duplicate,
                    "the node-ID of 1016h:01 written to 1016h:02");
-  dut.expect_equal(dut.read_number(consumer_time, 2), before, "1016h:02 afterwards");
+  dut.expect_equal(dut.read_number(consumer_heartbeat, 2), before, "1016h:02 afterwards");
 }
 
 void heartbeats_in_time(Dut& dut) {
@@ -158,8 +159,7 @@ constexpr CaseRow heartbeat_rows[] = {
 };
 
 }  // namespace
-}  // namespace error_control_area
 
-std::span<const CaseRow> heartbeat_cases() { return error_control_area::heartbeat_rows; }
+std::span<const CaseRow> heartbeat_cases() { return heartbeat_rows; }
 
 }  // namespace edsc::conform

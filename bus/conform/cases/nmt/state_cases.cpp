@@ -4,7 +4,6 @@
 #include "conform/cases/shared/setup.hpp"
 
 namespace edsc::conform {
-namespace state_area {
 namespace {
 
 using canopen::NmtCommand;
@@ -28,14 +27,14 @@ Services start_services(Dut& dut) {
   Services services;
   constexpr std::uint8_t event_driven = 255;
   services.tpdo = set_up_tpdo(dut, event_driven, static_cast<std::uint16_t>(cycle.count() / 1000));
-  if (dut.has(0x1005) && dut.allowed(Permission::outputs)) {
+  if (dut.has(sync_cob_id) && dut.allowed(Permission::outputs)) {
     const std::uint32_t cob_id = stop_sync(dut);
     if (can_produce_sync(dut, cob_id)) {
       start_sync(dut, cob_id, cycle);
       services.sync = cob_id;
     }
   }
-  if (dut.has(0x1014) && canopen::CobId{static_cast<std::uint32_t>(dut.read_number(0x1014))}.valid()) {
+  if (dut.has(emcy) && canopen::CobId{static_cast<std::uint32_t>(dut.read_number(emcy))}.valid()) {
     services.emcy = emcy_cob_id(dut);
   }
   services.state = dut.watch_state();
@@ -64,7 +63,7 @@ void expect_services(Dut& dut, const Services& services, NmtState state) {
   if (services.sync)
     expect_runs(dut, canopen::serves_sync(state), sent(*services.sync), "SYNCs with a period of 50 ms" + in);
 
-  const SdoOutcome outcome = dut.upload(0x1000);
+  const SdoOutcome outcome = dut.upload(device_type);
   if (canopen::serves_sdo(state)) {
     dut.expect(outcome.done() || outcome.end == SdoEnd::refused, "an answer to an SDO request" + in,
                outcome_text(outcome));
@@ -118,7 +117,7 @@ void stopped(Dut& dut) {
   expect_services(dut, services, NmtState::pre_operational);
 }
 
-constexpr CaseRow rows[] = {
+constexpr CaseRow state_rows[] = {
     {"9.1", "After a reset the device sends one boot-up message and has its power-on values",
      "CiA 301, 7.2.8.3.3 and 7.3.2.2.1", Level::communication, Permission::none, boot_up},
     {"9.2", "After its boot-up message the device is Pre-operational: SDO, SYNC, EMCY and error control, but no PDO",
@@ -130,8 +129,7 @@ constexpr CaseRow rows[] = {
 };
 
 }  // namespace
-}  // namespace state_area
 
-std::span<const CaseRow> state_cases() { return state_area::rows; }
+std::span<const CaseRow> state_cases() { return state_rows; }
 
 }  // namespace edsc::conform

@@ -4,7 +4,6 @@
 #include "conform/cases/shared/setup.hpp"
 
 namespace edsc::conform {
-namespace transition_area {
 namespace {
 
 using canopen::NmtCommand;
@@ -51,7 +50,7 @@ void service(Dut& dut) {
   }
 }
 
-constexpr CaseRow rows[] = {
+constexpr CaseRow transition_rows[] = {
     {"10.1", "Reset node and reset communication lead from each state to a boot-up message and to Pre-operational",
      "CiA 301, 7.2.8.2.1.4, 7.2.8.2.1.5 and 7.3.2", Level::communication, Permission::none, resets},
     {"10.2", "Enter pre-operational leads from each state to Pre-operational", "CiA 301, 7.2.8.2.1.6 and 7.3.2",
@@ -63,8 +62,7 @@ constexpr CaseRow rows[] = {
 };
 
 }  // namespace
-}  // namespace transition_area
 
-std::span<const CaseRow> transition_cases() { return transition_area::rows; }
+std::span<const CaseRow> transition_cases() { return transition_rows; }
 
 }  // namespace edsc::conform

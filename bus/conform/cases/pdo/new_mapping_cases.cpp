@@ -9,7 +9,6 @@
 #include "conform/cases/pdo/tpdo_triggers.hpp"
 
 namespace edsc::conform {
-namespace pdo_area {
 namespace {
 
 /// Expects a mapped object that exists and may be mapped. Fails because of the EDS if its default mapping is wrong.
@@ -63,11 +62,11 @@ std::optional<SeenFrame> make_sent(Dut& dut, const Tpdo& tpdo) {
   if (!configure(dut, tpdo, {.event_timer = timer})) {
     dut.enter(NmtState::operational);
     settle(dut, tpdo);
-    const auto seen = dut.wait_for(tpdo.frames(), to_answer + milliseconds{timer});
+    const auto seen = dut.wait_for(tpdo.frames(), to_send + milliseconds{timer});
     dut.expect(seen.has_value(), tpdo.name() + " with a new mapping, by its event timer", "no frame");
     return seen;
   }
-  if (!dut.has(0x1005) || configure(dut, tpdo, {.type = 1})) return std::nullopt;
+  if (!dut.has(sync_cob_id) || configure(dut, tpdo, {.type = 1})) return std::nullopt;
   SyncSource sync{dut};
   dut.enter(NmtState::operational);
   settle(dut, tpdo);
@@ -187,8 +186,7 @@ constexpr CaseRow new_mapping_rows[] = {
 };
 
 }  // namespace
-}  // namespace pdo_area
 
-std::span<const CaseRow> new_mapping_cases() { return pdo_area::new_mapping_rows; }
+std::span<const CaseRow> new_mapping_cases() { return new_mapping_rows; }
 
 }  // namespace edsc::conform

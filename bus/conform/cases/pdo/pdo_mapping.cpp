@@ -12,7 +12,7 @@
 #include "device/pdo/pdo_defaults.hpp"
 #include "pdo/mapping_fault.hpp"
 
-namespace edsc::conform::pdo_area {
+namespace edsc::conform {
 namespace {
 
 using canopen::DataClass;
@@ -185,4 +185,4 @@ std::optional<std::uint64_t> other_value(const Dut& dut, const MappingValue& map
   return (range.low + other) & low_bits(mapped.bits);
 }
 
-}  // namespace edsc::conform::pdo_area
+}  // namespace edsc::conform

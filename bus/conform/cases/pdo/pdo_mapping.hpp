@@ -13,7 +13,7 @@
 #include "conform/dut/dut.hpp"
 #include "pdo/mapping.hpp"
 
-namespace edsc::conform::pdo_area {
+namespace edsc::conform {
 
 using canopen::NmtState;
 
@@ -70,4 +70,4 @@ struct Image {
 [[nodiscard]] std::uint64_t within_limits(const Dut& dut, std::uint16_t index, std::uint8_t sub_index,
                                           std::uint64_t value);
 
-}  // namespace edsc::conform::pdo_area
+}  // namespace edsc::conform

@@ -8,7 +8,6 @@
 #include "conform/cases/pdo/pdo_mapping.hpp"
 
 namespace edsc::conform {
-namespace pdo_area {
 namespace {
 
 using canopen::CobId;
@@ -122,8 +121,7 @@ constexpr CaseRow pdo_parameter_rows[] = {
 };
 
 }  // namespace
-}  // namespace pdo_area
 
-std::span<const CaseRow> pdo_parameter_cases() { return pdo_area::pdo_parameter_rows; }
+std::span<const CaseRow> pdo_parameter_cases() { return pdo_parameter_rows; }
 
 }  // namespace edsc::conform

@@ -10,7 +10,6 @@
 #include "conform/cases/pdo/remapping.hpp"
 
 namespace edsc::conform {
-namespace pdo_area {
 namespace {
 
 using Code = canopen::AbortCode;
@@ -229,8 +228,7 @@ constexpr CaseRow refused_mapping_rows[] = {
 };
 
 }  // namespace
-}  // namespace pdo_area
 
-std::span<const CaseRow> refused_mapping_cases() { return pdo_area::refused_mapping_rows; }
+std::span<const CaseRow> refused_mapping_cases() { return refused_mapping_rows; }
 
 }  // namespace edsc::conform

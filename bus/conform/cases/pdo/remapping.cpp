@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <canopen/pdo/pdo_mapping.hpp>
 
-namespace edsc::conform::pdo_area {
+namespace edsc::conform {
 namespace {
 
 bool is_read_and_written(const Dut& dut, std::uint16_t index, std::uint8_t sub_index) {
@@ -145,4 +145,4 @@ std::vector<MappingValue> new_mapping(const Dut& dut, const Remapping& remapping
   return reversed;
 }
 
-}  // namespace edsc::conform::pdo_area
+}  // namespace edsc::conform

@@ -10,7 +10,7 @@
 
 #include "conform/cases/pdo/pdo_mapping.hpp"
 
-namespace edsc::conform::pdo_area {
+namespace edsc::conform {
 
 /// A PDO whose mapping can be changed according to the EDS, and the procedure. `put_back` restores what was found.
 class Remapping {
@@ -74,4 +74,4 @@ class Remapping {
 /// one that is not yet mapped.
 [[nodiscard]] std::vector<MappingValue> new_mapping(const Dut& dut, const Remapping& remapping);
 
-}  // namespace edsc::conform::pdo_area
+}  // namespace edsc::conform

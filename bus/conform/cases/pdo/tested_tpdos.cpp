@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace edsc::conform::pdo_area {
+namespace edsc::conform {
 
 void expect_none(Dut& dut, const Tpdo& tpdo, const std::vector<SeenFrame>& frames, const std::string& when) {
   dut.expect(frames.empty(), fmt::format("no {} {}", tpdo.name(), when), frames_text(frames));
@@ -36,4 +36,4 @@ std::uint16_t timer_of(const Dut& dut, const Tpdo& tpdo) {
   return static_cast<std::uint16_t>(within_limits(dut, tpdo.index, timer_parameter, wanted_ms));
 }
 
-}  // namespace edsc::conform::pdo_area
+}  // namespace edsc::conform

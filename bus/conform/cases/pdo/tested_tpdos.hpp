@@ -8,7 +8,7 @@
 #include "conform/cases/pdo/tpdo.hpp"
 #include "conform/cases/pdo/tpdo_triggers.hpp"
 
-namespace edsc::conform::pdo_area {
+namespace edsc::conform {
 
 /// The delay of a TPDO by other frames on the bus.
 inline constexpr std::uint32_t wire_us = 1'000;
@@ -79,4 +79,4 @@ bool find_event(Dut& dut, const Tpdo& tpdo, Event& event, IsSent is_sent) {
 /// An event timer that the EDS allows, in ms.
 [[nodiscard]] std::uint16_t timer_of(const Dut& dut, const Tpdo& tpdo);
 
-}  // namespace edsc::conform::pdo_area
+}  // namespace edsc::conform

@@ -9,7 +9,7 @@
 
 #include "text/counted.hpp"
 
-namespace edsc::conform::pdo_area {
+namespace edsc::conform {
 namespace {
 
 using canopen::CobId;
@@ -223,4 +223,4 @@ canopen::Frame make_remote_frame(std::uint32_t cob_id, std::uint8_t size) {
   return frame;
 }
 
-}  // namespace edsc::conform::pdo_area
+}  // namespace edsc::conform

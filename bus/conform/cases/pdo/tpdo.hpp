@@ -12,13 +12,13 @@
 
 #include "conform/cases/pdo/pdo_mapping.hpp"
 
-namespace edsc::conform::pdo_area {
+namespace edsc::conform {
 
 inline constexpr std::uint8_t acyclic = 0, remote_synchronous = 252, remote = 253, event_driven = 255;
 
 /// The time that a device may need to send a TPDO after an event, a SYNC or a remote frame. CiA 301 does not specify a
 /// limit.
-inline constexpr Duration to_answer = milliseconds{500};
+inline constexpr Duration to_send = milliseconds{500};
 /// A TPDO that is not received within this time is considered not sent.
 inline constexpr Duration silence = milliseconds{100};
 
@@ -75,4 +75,4 @@ void settle(Dut& dut, const Tpdo& tpdo);
 [[nodiscard]] canopen::Frame make_frame(std::uint32_t cob_id, std::span<const std::uint8_t> data);
 [[nodiscard]] canopen::Frame make_remote_frame(std::uint32_t cob_id, std::uint8_t size);
 
-}  // namespace edsc::conform::pdo_area
+}  // namespace edsc::conform

@@ -7,23 +7,22 @@
 #include "conform/cases/pdo/tested_tpdos.hpp"
 
 namespace edsc::conform {
-namespace pdo_area {
 namespace {
 
 // ---- remote frames ----
 
 /// Whether node guarding shows that the bus transmits remote frames.
 bool answers_node_guarding(Dut& dut) {
-  if (!dut.has(0x100C) || (dut.has(0x1017) && dut.read_number(0x1017) != 0)) return false;
+  if (!dut.has(guard_time) || (dut.has(producer_heartbeat) && dut.read_number(producer_heartbeat) != 0)) return false;
   const Dut::Mark since = dut.mark();
   dut.send_remote(0x700U + dut.node().value(), 1);
-  return dut.wait_for(dut.error_control(), to_answer, since).has_value();
+  return dut.wait_for(dut.error_control(), to_send, since).has_value();
 }
 
 SeenFrame ask(Dut& dut, const Tpdo& tpdo, bool bus_is_known) {
   const Dut::Mark since = dut.mark();
   dut.send(make_remote_frame(tpdo.cob_id, tpdo.size()));
-  if (dut.wait_for(tpdo.frames(), to_answer, since)) {
+  if (dut.wait_for(tpdo.frames(), to_send, since)) {
     dut.pass_time(silence);
     const std::vector<SeenFrame> all = dut.received_since(since, tpdo.frames());
     dut.expect(all.size() == 1, fmt::format("one {} after a remote frame", tpdo.name()), frames_text(all));
@@ -33,7 +32,7 @@ SeenFrame ask(Dut& dut, const Tpdo& tpdo, bool bus_is_known) {
     dut.inconclusive(tpdo.name() +
                      " does not answer a remote frame, and it is unknown whether the bus transmits remote frames");
   }
-  dut.fail(tpdo.name() + " after a remote frame", fmt::format("no frame within {} ms", to_answer.count() / 1000));
+  dut.fail(tpdo.name() + " after a remote frame", fmt::format("no frame within {} ms", to_send.count() / 1000));
 }
 
 /// With bit 30 of the COB-ID set, a remote frame is not answered.
@@ -65,7 +64,7 @@ void expect_event(Dut& dut, const Tpdo& tpdo, Event& event, bool counts) {
   const Dut::Mark since = dut.mark();
   if (!event.apply()) no_stimulus(dut, tpdo);
   const std::string when = fmt::format("after {} has changed", event.object());
-  const SeenFrame seen = expect_frame(dut, tpdo, since, to_answer, when);
+  const SeenFrame seen = expect_frame(dut, tpdo, since, to_send, when);
   if (!counts) return;
   expect_present_data(dut, tpdo, seen, read_image(dut, tpdo.mapping));
   dut.pass_time(silence);
@@ -80,10 +79,10 @@ constexpr std::uint32_t inhibit_us = 100'000;
 void expect_inhibit_time(Dut& dut, const Tpdo& tpdo, Event& event, bool counts) {
   const Dut::Mark since = dut.mark();
   if (!event.apply()) no_stimulus(dut, tpdo);
-  (void)expect_frame(dut, tpdo, since, to_answer, "after an event");
+  (void)expect_frame(dut, tpdo, since, to_send, "after an event");
   const Dut::Mark after_first = dut.mark();
   if (!event.apply()) no_stimulus(dut, tpdo);
-  const Duration longest = to_answer + Duration{inhibit_us};
+  const Duration longest = to_send + Duration{inhibit_us};
   const SeenFrame last = expect_frame(dut, tpdo, after_first, longest, "after an event within the inhibit time");
   const std::vector<SeenFrame> all = dut.received_since(since, tpdo.frames());
   for (std::size_t i = 1; i < all.size(); ++i) {
@@ -106,7 +105,7 @@ void expect_period(Dut& dut, const Tpdo& tpdo, const std::vector<SeenFrame>& fra
 void sends_on_remote_frame(Dut& dut) {
   bool bus_is_known = false;
   std::vector<Transmission> transmissions{{.type = remote, .remote_frames = true}, {.remote_frames = true}};
-  if (dut.has(0x1005) && dut.allowed(Permission::outputs)) {
+  if (dut.has(sync_cob_id) && dut.allowed(Permission::outputs)) {
     transmissions.push_back({.type = remote_synchronous, .remote_frames = true});
   }
   for_each_tpdo(dut, transmissions, [&](const Tpdo& tpdo, const Transmission& wanted) {
@@ -134,7 +133,7 @@ void sends_on_event(Dut& dut) {
     const bool changes = changes_by_itself(dut, tpdo);
     Event event{dut, tpdo.mapping};
     if (!find_event(dut, tpdo, event,
-                    [&](Dut::Mark since) { return dut.wait_for(tpdo.frames(), to_answer, since).has_value(); })) {
+                    [&](Dut::Mark since) { return dut.wait_for(tpdo.frames(), to_send, since).has_value(); })) {
       without_stimulus = tpdo;
       return;
     }
@@ -189,8 +188,7 @@ constexpr CaseRow tpdo_event_rows[] = {
 };
 
 }  // namespace
-}  // namespace pdo_area
 
-std::span<const CaseRow> tpdo_event_cases() { return pdo_area::tpdo_event_rows; }
+std::span<const CaseRow> tpdo_event_cases() { return tpdo_event_rows; }
 
 }  // namespace edsc::conform

@@ -9,7 +9,6 @@
 #include "conform/cases/pdo/tested_tpdos.hpp"
 
 namespace edsc::conform {
-namespace pdo_area {
 namespace {
 
 /// Configures all TPDOs that support the parameters, in Pre-operational. Not applicable without one.
@@ -164,8 +163,7 @@ constexpr CaseRow tpdo_silence_rows[] = {
 };
 
 }  // namespace
-}  // namespace pdo_area
 
-std::span<const CaseRow> tpdo_silence_cases() { return pdo_area::tpdo_silence_rows; }
+std::span<const CaseRow> tpdo_silence_cases() { return tpdo_silence_rows; }
 
 }  // namespace edsc::conform

@@ -7,7 +7,6 @@
 #include "conform/cases/pdo/tested_tpdos.hpp"
 
 namespace edsc::conform {
-namespace pdo_area {
 namespace {
 
 /// Sends one SYNC and returns whether the TPDO follows: once, and within the synchronous window if one is set.
@@ -24,16 +23,13 @@ bool is_sent_at_sync(Dut& dut, const Tpdo& tpdo, SyncSource& sync, std::uint64_t
   return true;
 }
 
-std::uint64_t sync_window(Dut& dut) {
-  constexpr std::uint16_t window = 0x1007;
-  return dut.is_readable(window) ? dut.read_number(window) : 0;
-}
+std::uint64_t window_of(Dut& dut) { return dut.is_readable(sync_window) ? dut.read_number(sync_window) : 0; }
 
 /// Type n: at every n-th SYNC, and not without a SYNC.
 void expect_each_nth(Dut& dut, const Tpdo& tpdo, SyncSource& sync, unsigned n) {
   constexpr unsigned rounds = 3;
   expect_none(dut, tpdo, dut.collect(tpdo.frames(), silence), "without a SYNC");
-  const std::uint64_t window_us = sync_window(dut);
+  const std::uint64_t window_us = window_of(dut);
   std::optional<unsigned> last;
   unsigned count = 0;
   for (unsigned i = 1; i <= rounds * n; ++i) {
@@ -87,7 +83,7 @@ void sends_at_sync_after_event(Dut& dut) {
     bool sent = false;
     const bool found = find_event(dut, tpdo, event, [&](Dut::Mark) {
       expect_none(dut, tpdo, dut.collect(tpdo.frames(), silence), "of type 0 between an event and the next SYNC");
-      return sent = is_sent_at_sync(dut, tpdo, sync, sync_window(dut));
+      return sent = is_sent_at_sync(dut, tpdo, sync, window_of(dut));
     });
     if (!found) {
       without_stimulus = tpdo;
@@ -114,7 +110,7 @@ void sends_from_sync_start_value(Dut& dut) {
                   fmt::format("at the SYNC with counter {}, before the SYNC start value {}", counter, start.value));
     }
     for (int i = 0; i < 3; ++i) {
-      dut.expect(is_sent_at_sync(dut, tpdo, sync, sync_window(dut)),
+      dut.expect(is_sent_at_sync(dut, tpdo, sync, window_of(dut)),
                  fmt::format("{} at each SYNC beginning with counter {}", tpdo.name(), start.value), "no frame");
     }
   });
@@ -130,8 +126,7 @@ constexpr CaseRow tpdo_sync_rows[] = {
 };
 
 }  // namespace
-}  // namespace pdo_area
 
-std::span<const CaseRow> tpdo_sync_cases() { return pdo_area::tpdo_sync_rows; }
+std::span<const CaseRow> tpdo_sync_cases() { return tpdo_sync_rows; }
 
 }  // namespace edsc::conform

@@ -4,12 +4,11 @@
 
 #include "conform/cases/pdo/tpdo.hpp"
 
-namespace edsc::conform::pdo_area {
+namespace edsc::conform {
 namespace {
 
 using canopen::CobId;
 
-constexpr std::uint16_t sync_cob_id = 0x1005, sync_period = 0x1006, sync_counter = 0x1019;
 constexpr std::uint8_t wanted_overflow = 10;
 
 }  // namespace
@@ -20,7 +19,7 @@ SyncSource::SyncSource(Dut& dut, Counter counter) : dut_{dut}, since_{dut.mark()
   cob_id_ = static_cast<std::uint32_t>(cob_id & CobId::identifier);
   stop_production(cob_id);
   if (counter == Counter::enabled) enable_counter();
-  if (dut.is_readable(sync_counter, 0)) overflow_ = static_cast<std::uint8_t>(dut.read_number(sync_counter));
+  if (dut.is_readable(sync_overflow, 0)) overflow_ = static_cast<std::uint8_t>(dut.read_number(sync_overflow));
   since_ = dut.mark();
 }
 
@@ -36,11 +35,11 @@ void SyncSource::stop_production(std::uint64_t cob_id) {
 
 /// 1019h can be written only while 1006h is 0 (CiA 301, 7.5.2.22).
 void SyncSource::enable_counter() {
-  dut_.need(sync_counter);
-  if (dut_.read_number(sync_counter) != 0) return;
-  dut_.need_writable(sync_counter);
+  dut_.need(sync_overflow);
+  if (dut_.read_number(sync_overflow) != 0) return;
+  dut_.need_writable(sync_overflow);
   if (dut_.is_writable(sync_period, 0) && dut_.read_number(sync_period) != 0) dut_.write(sync_period, 0, 0);
-  dut_.write(sync_counter, 0, within_limits(dut_, sync_counter, 0, wanted_overflow));
+  dut_.write(sync_overflow, 0, within_limits(dut_, sync_overflow, 0, wanted_overflow));
 }
 
 void SyncSource::send() {
@@ -107,4 +106,4 @@ std::string Event::object() const {
   return label(candidates_.front().mapped.index, candidates_.front().mapped.sub_index);
 }
 
-}  // namespace edsc::conform::pdo_area
+}  // namespace edsc::conform

@@ -7,7 +7,7 @@
 
 #include "conform/cases/pdo/pdo_mapping.hpp"
 
-namespace edsc::conform::pdo_area {
+namespace edsc::conform {
 
 /// The SYNC producer of the test, with the CAN-ID of 1005h and the counter of 1019h. Stops the SYNC producer of the
 /// device. The case is not applicable without 1005h. Create it in Pre-operational or Operational.
@@ -70,4 +70,4 @@ class Event {
   bool is_changed_ = false;
 };
 
-}  // namespace edsc::conform::pdo_area
+}  // namespace edsc::conform

@@ -5,17 +5,13 @@
 #include <canopen/od/access.hpp>
 
 #include "conform/case.hpp"
-#include "conform/cases/sdo/sdo_area.hpp"
+#include "conform/cases/sdo/sdo_entries.hpp"
 #include "conform/cases/sdo/sdo_frames.hpp"
 #include "conform/cases/shared/entry_results.hpp"
 #include "text/counted.hpp"
 
 namespace edsc::conform {
-namespace sdo_area {
 namespace {
-
-constexpr std::uint16_t error_history = 0x1003;
-constexpr std::uint16_t default_server = 0x1200;
 
 /// Parameters of 1000h to 1FFFh that a case may write at any time.
 Entries plain_parameters(const Dut& dut) { return entries_with(dut, is_plain_parameter); }
@@ -182,11 +178,11 @@ void write_too_low(Dut& dut) {
 }
 
 void default_cob_ids(Dut& dut) {
-  dut.need(default_server, 1);
-  dut.need(default_server, 2);
+  dut.need(default_sdo_server, 1);
+  dut.need(default_sdo_server, 2);
   const unsigned node = dut.node().value();
-  dut.expect_equal(dut.read_number(default_server, 1), canopen::function_code::sdo_request + node, "1200h:01");
-  dut.expect_equal(dut.read_number(default_server, 2), canopen::function_code::sdo_response + node, "1200h:02");
+  dut.expect_equal(dut.read_number(default_sdo_server, 1), canopen::function_code::sdo_request + node, "1200h:01");
+  dut.expect_equal(dut.read_number(default_sdo_server, 2), canopen::function_code::sdo_response + node, "1200h:02");
 }
 
 constexpr CaseRow sdo_access_rows[] = {
@@ -212,8 +208,7 @@ constexpr CaseRow sdo_access_rows[] = {
 };
 
 }  // namespace
-}  // namespace sdo_area
 
-std::span<const CaseRow> sdo_access_cases() { return sdo_area::sdo_access_rows; }
+std::span<const CaseRow> sdo_access_cases() { return sdo_access_rows; }
 
 }  // namespace edsc::conform

@@ -5,11 +5,10 @@
 #include <canopen/od/access.hpp>
 
 #include "conform/case.hpp"
-#include "conform/cases/sdo/sdo_area.hpp"
+#include "conform/cases/sdo/sdo_entries.hpp"
 #include "conform/cases/sdo/sdo_frames.hpp"
 
 namespace edsc::conform {
-namespace sdo_area {
 namespace {
 
 void expect_block_written(Dut& dut, std::uint16_t index, std::uint64_t value, SentCrc crc) {
@@ -82,14 +81,14 @@ constexpr CaseRow sdo_block_rows[] = {
     {"2.20", "100Ch:00 is written in a block without CRC", "CiA 301, 7.2.4.3.8", Level::communication, none,
      with_index<write_in_block, guard_time>},
     {"2.21", "1017h:00 is written in a block without CRC", "CiA 301, 7.2.4.3.8", Level::communication, none,
-     with_index<write_in_block, heartbeat_time>},
+     with_index<write_in_block, producer_heartbeat>},
     {"2.22", "A long value is read in blocks without CRC", "CiA 301, 7.2.4.3.14", Level::read, none,
      read_in_blocks<false>},
     {"2.23", "A long value is read in blocks with CRC", "CiA 301, 7.2.4.3.16", Level::read, none, read_in_blocks<true>},
     {"2.24", "100Ch:00 is written in a block with CRC", "CiA 301, 7.2.4.3.11", Level::communication, none,
      with_index<write_in_block_with_crc, guard_time>},
     {"2.25", "1017h:00 is written in a block with CRC", "CiA 301, 7.2.4.3.11", Level::communication, none,
-     with_index<write_in_block_with_crc, heartbeat_time>},
+     with_index<write_in_block_with_crc, producer_heartbeat>},
     {"2.26", "A block upload with 128 segments in a block is refused", "CiA 301, 7.2.4.3.13", Level::read, none,
      wrong_block_size},
     {"2.27", "A block upload whose segment 128 is confirmed is refused", "CiA 301, 7.2.4.3.14", Level::read, none,
@@ -97,8 +96,7 @@ constexpr CaseRow sdo_block_rows[] = {
 };
 
 }  // namespace
-}  // namespace sdo_area
 
-std::span<const CaseRow> sdo_block_cases() { return sdo_area::sdo_block_rows; }
+std::span<const CaseRow> sdo_block_cases() { return sdo_block_rows; }
 
 }  // namespace edsc::conform

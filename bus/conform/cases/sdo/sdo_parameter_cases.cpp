@@ -6,10 +6,9 @@
 #include <utility>
 
 #include "conform/case.hpp"
-#include "conform/cases/sdo/sdo_area.hpp"
+#include "conform/cases/sdo/sdo_entries.hpp"
 
 namespace edsc::conform {
-namespace sdo_area {
 namespace {
 
 using canopen::CobId;
@@ -121,8 +120,7 @@ constexpr CaseRow sdo_parameter_rows[] = {
 };
 
 }  // namespace
-}  // namespace sdo_area
 
-std::span<const CaseRow> sdo_parameter_cases() { return sdo_area::sdo_parameter_rows; }
+std::span<const CaseRow> sdo_parameter_cases() { return sdo_parameter_rows; }
 
 }  // namespace edsc::conform

@@ -2,11 +2,10 @@
 #include <canopen/od/access.hpp>
 
 #include "conform/case.hpp"
-#include "conform/cases/sdo/sdo_area.hpp"
+#include "conform/cases/sdo/sdo_entries.hpp"
 #include "conform/cases/sdo/sdo_frames.hpp"
 
 namespace edsc::conform {
-namespace sdo_area {
 namespace {
 
 /// The server may upload a value of four bytes expedited or in a segment.
@@ -59,7 +58,7 @@ constexpr CaseRow sdo_segment_rows[] = {
     {"2.14", "100Ch:00 is written in a segment", "CiA 301, 7.2.4.3.4", Level::communication, none,
      with_index<write_segmented, guard_time>},
     {"2.15", "1017h:00 is written in a segment", "CiA 301, 7.2.4.3.4", Level::communication, none,
-     with_index<write_segmented, heartbeat_time>},
+     with_index<write_segmented, producer_heartbeat>},
     {"2.16", "A value of more than four bytes is uploaded in segments", "CiA 301, 7.2.4.3.6", Level::read, none,
      read_long_value},
     {"2.17", "A segment requested with the wrong toggle bit is refused", "CiA 301, 7.2.4.3.7", Level::read, none,
@@ -69,8 +68,7 @@ constexpr CaseRow sdo_segment_rows[] = {
 };
 
 }  // namespace
-}  // namespace sdo_area
 
-std::span<const CaseRow> sdo_segment_cases() { return sdo_area::sdo_segment_rows; }
+std::span<const CaseRow> sdo_segment_cases() { return sdo_segment_rows; }
 
 }  // namespace edsc::conform

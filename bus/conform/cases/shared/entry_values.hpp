@@ -15,6 +15,9 @@ inline constexpr std::uint32_t refuse_write_flag = 1;
 inline constexpr std::uint32_t refuse_read_flag = 2;
 [[nodiscard]] std::uint32_t flags_of(const Device& sheet, const LiveEntry& entry);
 
+/// Selects the entries that a case tests.
+using EntryFilter = bool (*)(const LiveEntry&);
+
 [[nodiscard]] bool is_communication(const LiveEntry& entry);  ///< 1000h to 1FFFh
 [[nodiscard]] bool is_application(const LiveEntry& entry);    ///< 2000h and above
 [[nodiscard]] bool is_domain(const LiveEntry& entry);

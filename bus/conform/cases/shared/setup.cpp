@@ -15,7 +15,6 @@ using canopen::NmtCommand;
 using canopen::NmtState;
 using canopen::NodeId;
 
-constexpr std::uint16_t sync_cob_id = 0x1005, sync_period = 0x1006, emcy = 0x1014, nmt_startup = 0x1F80;
 constexpr std::uint32_t produces_sync = CobId::no_rtr_bit;
 
 bool is_writable(const Dut& dut, std::uint16_t index, std::uint8_t sub_index) {
@@ -95,8 +94,8 @@ bool hears_other_nodes(Dut& dut, Duration span) {
 
 NodeId free_node_id(Dut& dut) {
   std::set<std::uint8_t> taken{dut.node().value()};
-  for (std::uint8_t sub_index = 1; dut.has(0x1016, sub_index); ++sub_index) {
-    taken.insert(static_cast<std::uint8_t>(dut.read_number(0x1016, sub_index) >> 16 & 0x7F));
+  for (std::uint8_t sub_index = 1; dut.has(consumer_heartbeat, sub_index); ++sub_index) {
+    taken.insert(static_cast<std::uint8_t>(dut.read_number(consumer_heartbeat, sub_index) >> 16 & 0x7F));
   }
   // Heartbeat times of more than a second are rare. In most networks the other CAN-IDs of a node include its node-ID.
   for (const SeenFrame& seen : dut.collect(anything, milliseconds{1200})) {

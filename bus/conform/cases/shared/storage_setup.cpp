@@ -7,8 +7,6 @@
 namespace edsc::conform {
 namespace {
 
-constexpr std::uint16_t store_parameters = 0x1010, restore_parameters = 0x1011;
-
 Bytes signature(std::string_view letters) { return Bytes(letters.begin(), letters.end()); }
 
 }  // namespace

@@ -35,7 +35,7 @@ void need_command(Dut& dut, std::uint16_t index, std::uint8_t sub_index);
 /// Runs a case after a reset, which loads the stored values. At the end the same values are stored again.
 template <class Check>
 void with_storage(Dut& dut, std::uint8_t sub_index, Check check) {
-  need_command(dut, 0x1010, sub_index);
+  need_command(dut, store_parameters, sub_index);
   dut.reset(canopen::NmtCommand::reset_node);
   const Dut::Values before = dut.values();
   const Storage storage{dut, sub_index};

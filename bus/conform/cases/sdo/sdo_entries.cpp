@@ -1,10 +1,10 @@
-#include "conform/cases/sdo/sdo_area.hpp"
+#include "conform/cases/sdo/sdo_entries.hpp"
 
 #include <algorithm>
 
 #include "conform/cases/sdo/sdo_frames.hpp"
 
-namespace edsc::conform::sdo_area {
+namespace edsc::conform {
 
 Entries draw(Dut& dut, Entries entries) {
   std::ranges::shuffle(entries, dut.random());
@@ -49,7 +49,7 @@ LiveEntry need_long_entry(Dut& dut) {
 
 std::uint64_t other_time(Dut& dut, std::uint16_t index) {
   const Entry& entry = dut.need_writable(index);
-  const std::uint16_t other = index == guard_time ? heartbeat_time : guard_time;
+  const std::uint16_t other = index == guard_time ? producer_heartbeat : guard_time;
   if (dut.is_writable(other) && dut.read_number(other) != 0) dut.write(other, 0, 0);
   const std::uint64_t present = dut.read_number(index);
   for (const std::uint64_t value : {1000U, 500U, 250U, 100U, 0U}) {
@@ -58,4 +58,4 @@ std::uint64_t other_time(Dut& dut, std::uint16_t index) {
   dut.inconclusive("the limits of " + label(index, 0) + " exclude 0, 100, 250, 500 and 1000 ms");
 }
 
-}  // namespace edsc::conform::sdo_area
+}  // namespace edsc::conform

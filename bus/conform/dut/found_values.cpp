@@ -1,4 +1,5 @@
-/// The values of the device before a case, and how they are put back.
+#include "conform/dut/found_values.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,15 +7,10 @@
 #include "configure/configuration_plan.hpp"
 #include "configure/configure_node.hpp"
 #include "configure/read_configuration.hpp"
-#include "conform/dut/dut.hpp"
-#include "online/interruption.hpp"
+#include "values/value_text.hpp"
 
 namespace edsc::conform {
 namespace {
-
-constexpr std::uint16_t verify_configuration = 0x1020;
-/// The sub-indices of 1020h. They are written last: the device sets them to 0 when another parameter changes.
-constexpr std::uint8_t verified[] = {1, 2};
 
 bool is_pdo_parameter(std::uint16_t index) { return index >= 0x1400 && index < 0x1C00; }
 
@@ -34,36 +30,9 @@ std::string titles_of(const std::vector<ConfigurationValue>& values) {
 
 }  // namespace
 
-Dut::Values Dut::values() {
-  Values found;
-  NodeConfiguration configuration = read_configuration(sdo_, sheet_, configuration_entries(sheet_), [](std::size_t) {});
-  for (ReadValue& value : configuration.values) {
-    found[{value.entry.index, value.entry.sub_index}] = std::move(value.bytes);
-  }
-  for (const std::uint8_t sub_index : verified) {
-    if (!has(verify_configuration, sub_index)) continue;
-    const SdoOutcome outcome = upload(verify_configuration, sub_index);
-    if (outcome.done()) found[{verify_configuration, sub_index}] = outcome.bytes;
-  }
-  return found;
-}
-
-void Dut::restore(const Values& wanted) {
-  Values parameters = wanted;
-  for (const std::uint8_t sub_index : verified) parameters.erase({verify_configuration, sub_index});
-  for (std::string& left : restore_values(parameters, true)) warn(std::move(left));
-  for (const std::uint8_t sub_index : verified) {
-    const auto found = wanted.find({verify_configuration, sub_index});
-    if (found == wanted.end() || upload(verify_configuration, sub_index).bytes == found->second) continue;
-    if (!command(verify_configuration, sub_index, found->second).done()) {
-      warn(label(verify_configuration, sub_index) + " could not be restored");
-    }
-  }
-}
-
-void Dut::remember(std::uint16_t index, std::uint8_t sub_index) {
+void FoundValues::remember(std::uint16_t index, std::uint8_t sub_index) {
   if (changed_.contains({index, sub_index})) return;
-  if (!is_pdo_parameter(index)) return remember_entry(live(index, sub_index));
+  if (!is_pdo_parameter(index)) return remember_entry(live_entry(&sheet_, index, sub_index));
   for (const std::uint16_t parameter : {index, other_parameter(index)}) {
     const Object* const object = sheet_.find(parameter);
     if (object == nullptr) continue;
@@ -73,13 +42,7 @@ void Dut::remember(std::uint16_t index, std::uint8_t sub_index) {
   }
 }
 
-ConfigurationResult Dut::write_in_order(const std::vector<ConfigurationValue>& values) {
-  for (const ConfigurationValue& value : values) remember(value.entry.index, value.entry.sub_index);
-  const ConfigurationHooks hooks{[](std::size_t, std::size_t) {}, [] { return false; }};
-  return configure_node(sdo_, plan_configuration(values, &sheet_), hooks);
-}
-
-void Dut::remember_entry(const LiveEntry& wanted) {
+void FoundValues::remember_entry(const LiveEntry& wanted) {
   const Key key{wanted.index, wanted.sub_index};
   if (changed_.contains(key) || unreadable_.contains(key) || is_left_out(wanted)) return;
   const SdoOutcome outcome = edsc::upload(sdo_, wanted);
@@ -90,8 +53,8 @@ void Dut::remember_entry(const LiveEntry& wanted) {
   }
 }
 
-/// Called before the first reset, which discards what is not stored.
-void Dut::remember_configuration() {
+void FoundValues::remember_before_reset() {
+  was_reset_ = true;
   if (configuration_known_) return;
   configuration_known_ = true;
   NodeConfiguration found = read_configuration(sdo_, sheet_, configuration_entries(sheet_), [](std::size_t) {});
@@ -102,9 +65,9 @@ void Dut::remember_configuration() {
   for (const auto& [key, bytes] : changed_) configuration_[key] = bytes;
 }
 
-std::vector<std::string> Dut::restore_values(const Values& wanted, bool application) {
+std::vector<std::string> FoundValues::restore(const Values& wanted, bool application) {
   std::vector<ConfigurationValue> values;
-  for (const auto& [key, bytes] : wanted) values.push_back({live(key.first, key.second), bytes, {}});
+  for (const auto& [key, bytes] : wanted) values.push_back({live_entry(&sheet_, key.first, key.second), bytes, {}});
   const ConfigurationHooks hooks{[](std::size_t, std::size_t) {}, [] { return false; }};
   const Comparison comparison = compare_configuration(sdo_, values, hooks);
   if (comparison.lost) return {titles_of(values) + ": the device does not answer"};
@@ -115,8 +78,10 @@ std::vector<std::string> Dut::restore_values(const Values& wanted, bool applicat
     const ComparedValue& compared = comparison.values[i];
     const bool changed = compared.differs && compared.known();
     if (compared.differs && !compared.known()) {
+      const SdoOutcome& found = compared.found;
       left.push_back(fmt::format("{} was {} and can no longer be read: {}", title(values[i].entry),
-                                 value_of(values[i].entry, values[i].bytes), outcome_text(compared.found)));
+                                 value_of(values[i].entry, values[i].bytes),
+                                 found.end == SdoEnd::refused ? abort_text(found.code) : failure_text(found)));
     }
     differs.push_back(changed && !kept);
     if (changed && kept) {
@@ -134,19 +99,15 @@ std::vector<std::string> Dut::restore_values(const Values& wanted, bool applicat
   return left;
 }
 
-std::vector<std::string> Dut::put_back() {
-  const Uninterrupted uninterrupted;
-  std::vector<std::string> left;
-  if (transfer_open_) end_transfer();
-  if (state_changed_) enter(canopen::NmtState::pre_operational);
-  std::map<Key, Bytes> wanted = changed_;
+std::vector<std::string> FoundValues::put_back(bool application) {
+  Values wanted = changed_;
   if (was_reset_) {
     for (const auto& [key, bytes] : configuration_) wanted[key] = bytes;
   }
-  if (!wanted.empty()) left = restore_values(wanted, allowed(Permission::application));
-  if (state_changed_ && found_state_ && *found_state_ != canopen::NmtState::pre_operational) enter(*found_state_);
+  std::vector<std::string> left;
+  if (!wanted.empty()) left = restore(wanted, application);
   changed_.clear();
-  was_reset_ = state_changed_ = false;
+  was_reset_ = false;
   return left;
 }
 

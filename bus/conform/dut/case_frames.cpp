@@ -1,7 +1,8 @@
-/// The frames of a case: those that the test sends, and those that it waits for.
-#include <algorithm>
+#include "conform/dut/case_frames.hpp"
 
-#include "conform/dut/dut.hpp"
+#include <algorithm>
+#include <canopen/can/cob_id.hpp>
+
 #include "online/interruption.hpp"
 
 namespace edsc::conform {
@@ -9,9 +10,24 @@ namespace edsc::conform {
 using canopen::Frame;
 using canopen::TimePoint;
 
-void Dut::send(const Frame& frame) { bus_.send_all(frame); }
+CaseFrames::CaseFrames(LiveBus& bus) : bus_{bus}, last_time_{bus.now()} {
+  bus_.on_frame = [this](const Frame& frame, TimePoint) { record(frame, bus_.received_at(), false); };
+  bus_.on_sent = [this](const Frame& frame, TimePoint at) { record(frame, at, true); };
+}
 
-void Dut::send(std::uint32_t can_id, std::span<const std::uint8_t> data) {
+CaseFrames::~CaseFrames() {
+  bus_.on_frame = nullptr;
+  bus_.on_sent = nullptr;
+}
+
+void CaseFrames::clear_frames() {
+  frames_.clear();
+  lag_ = 0;
+}
+
+void CaseFrames::send(const Frame& frame) { bus_.send_all(frame); }
+
+void CaseFrames::send(std::uint32_t can_id, std::span<const std::uint8_t> data) {
   Frame frame;
   frame.id = can_id;
   frame.extended = can_id > 0x7FF;
@@ -20,7 +36,7 @@ void Dut::send(std::uint32_t can_id, std::span<const std::uint8_t> data) {
   send(frame);
 }
 
-void Dut::send_remote(std::uint32_t can_id, std::uint8_t size) {
+void CaseFrames::send_remote(std::uint32_t can_id, std::uint8_t size) {
   Frame frame;
   frame.id = can_id;
   frame.extended = can_id > 0x7FF;
@@ -29,7 +45,7 @@ void Dut::send_remote(std::uint32_t can_id, std::uint8_t size) {
   send(frame);
 }
 
-void Dut::take_frame(Duration longest) {
+void CaseFrames::take_frame(Duration longest) {
   const TimePoint end = bus_.now() + longest;
   const bool came = bus_.receive(longest).has_value();
   const TimePoint present = bus_.now();
@@ -38,7 +54,7 @@ void Dut::take_frame(Duration longest) {
   if (present > due) lag_ = std::max<std::uint64_t>(lag_, (present - due).count());
 }
 
-std::optional<SeenFrame> Dut::wait_for(const Match& match, Duration span, Mark since) {
+std::optional<SeenFrame> CaseFrames::wait_for(const Match& match, Duration span, Mark since) {
   const TimePoint end = bus_.now() + span;
   for (;;) {
     for (; since < frames_.size(); ++since) {
@@ -52,14 +68,14 @@ std::optional<SeenFrame> Dut::wait_for(const Match& match, Duration span, Mark s
   }
 }
 
-std::vector<SeenFrame> Dut::collect(const Match& match, Duration span) {
+std::vector<SeenFrame> CaseFrames::collect(const Match& match, Duration span) {
   const Mark since = mark();
   const TimePoint end = bus_.now() + span;
   for (TimePoint present = bus_.now(); present < end; present = bus_.now()) take_frame(end - present);
   return received_since(since, match);
 }
 
-std::vector<SeenFrame> Dut::received_since(Mark since, const Match& match) const {
+std::vector<SeenFrame> CaseFrames::received_since(Mark since, const Match& match) const {
   std::vector<SeenFrame> found;
   for (; since < frames_.size(); ++since) {
     if (!frames_[since].sent && match(frames_[since].frame)) found.push_back(frames_[since]);
@@ -67,12 +83,12 @@ std::vector<SeenFrame> Dut::received_since(Mark since, const Match& match) const
   return found;
 }
 
-std::uint64_t Dut::now() const {
+std::uint64_t CaseFrames::now() const {
   const TimePoint present = bus_.now();
   return present > last_time_ ? elapsed_ + (present - last_time_).count() : elapsed_;
 }
 
-void Dut::record(const Frame& frame, TimePoint at, bool sent) {
+void CaseFrames::record(const Frame& frame, TimePoint at, bool sent) {
   if (at > last_time_) {
     elapsed_ += (at - last_time_).count();
     last_time_ = at;
@@ -80,28 +96,14 @@ void Dut::record(const Frame& frame, TimePoint at, bool sent) {
   frames_.push_back({frame, elapsed_, sent});
 }
 
-Dut::Match Dut::with_id(std::uint32_t can_id) {
+CaseFrames::Match CaseFrames::with_id(std::uint32_t can_id) {
   return [can_id](const Frame& frame) { return frame.id == can_id && !frame.extended && !frame.remote; };
 }
 
-Dut::Match Dut::with_cob_id(std::uint32_t cob_id) {
+CaseFrames::Match CaseFrames::with_cob_id(std::uint32_t cob_id) {
   const canopen::CobId id{cob_id};
   return
       [id](const Frame& frame) { return frame.id == id.can_id() && frame.extended == id.extended() && !frame.remote; };
-}
-
-Dut::Match Dut::error_control() const { return with_id(0x700U + node().value()); }
-
-Dut::Match Dut::boot_up() const {
-  return [id = 0x700U + node().value()](const Frame& frame) {
-    return with_id(id)(frame) && frame.size == 1 && frame.data[0] == 0;
-  };
-}
-
-Dut::Match Dut::heartbeat() const {
-  return [id = 0x700U + node().value()](const Frame& frame) {
-    return with_id(id)(frame) && frame.size == 1 && frame.data[0] != 0;
-  };
 }
 
 }  // namespace edsc::conform

@@ -9,12 +9,9 @@
 #include "conform/cases/shared/entry_values.hpp"
 #include "conform/dut/dut.hpp"
 
-namespace edsc::conform::sdo_area {
+namespace edsc::conform {
 
 namespace sdo = canopen::sdo;
-
-inline constexpr std::uint16_t device_type = 0x1000, guard_time = 0x100C, store_parameters = 0x1010,
-                               heartbeat_time = 0x1017;
 
 inline constexpr Permission none = Permission::none;
 
@@ -53,4 +50,4 @@ void expect_length(Dut& dut, const LiveEntry& entry, std::size_t size);
 /// A time that differs from the present one. Disables the other of guarding and heartbeat, which exclude each other.
 [[nodiscard]] std::uint64_t other_time(Dut& dut, std::uint16_t index);
 
-}  // namespace edsc::conform::sdo_area
+}  // namespace edsc::conform

@@ -1,0 +1,74 @@
+/// The frames on the bus during a case: those that the test sends, and those that it waits for.
+#pragma once
+
+#include <canopen/base/clock.hpp>
+#include <canopen/can/frame.hpp>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "conform/verdict.hpp"
+#include "online/live_bus.hpp"
+
+namespace edsc::conform {
+
+using canopen::Duration;
+
+/// Records each frame of a case. Time passes only while a member waits.
+class CaseFrames {
+ public:
+  /// A position in the recorded frames.
+  using Mark = std::size_t;
+  using Match = std::function<bool(const canopen::Frame&)>;
+
+  explicit CaseFrames(LiveBus& bus);
+  ~CaseFrames();
+  CaseFrames(const CaseFrames&) = delete;
+  CaseFrames& operator=(const CaseFrames&) = delete;
+
+  [[nodiscard]] Mark mark() const { return frames_.size(); }
+  void send(const canopen::Frame& frame);
+  void send(std::uint32_t can_id, std::span<const std::uint8_t> data);
+  void send_remote(std::uint32_t can_id, std::uint8_t size);
+  /// Returns the first matching frame that was received since the mark. Waits for at most `span`.
+  std::optional<SeenFrame> wait_for(const Match& match, Duration span, Mark since);
+  std::optional<SeenFrame> wait_for(const Match& match, Duration span) { return wait_for(match, span, mark()); }
+  /// Waits for `span` and returns all matching frames that were received.
+  std::vector<SeenFrame> collect(const Match& match, Duration span);
+  void pass_time(Duration span) {
+    (void)collect([](const canopen::Frame&) { return false; }, span);
+  }
+  /// Frames received since the mark.
+  [[nodiscard]] std::vector<SeenFrame> received_since(Mark since, const Match& match) const;
+  [[nodiscard]] std::uint64_t now() const;  ///< microseconds since the run began
+
+  [[nodiscard]] static Match with_id(std::uint32_t can_id);
+  /// Matches data frames with the CAN-ID of a COB-ID as an object holds it. Ignores bit 31 (valid).
+  [[nodiscard]] static Match with_cob_id(std::uint32_t cob_id);
+
+  /// By how much the test itself was late during this case, in microseconds.
+  [[nodiscard]] std::uint64_t lag() const { return lag_; }
+
+ protected:
+  /// Forgets the frames and the lag of the last case.
+  void clear_frames();
+  [[nodiscard]] const std::vector<SeenFrame>& frames() const { return frames_; }
+  /// The frame that `wait_for` has returned last.
+  [[nodiscard]] Mark last_match() const { return last_match_; }
+
+ private:
+  void record(const canopen::Frame& frame, canopen::TimePoint at, bool sent);
+  void take_frame(Duration longest);
+
+  LiveBus& bus_;
+  std::vector<SeenFrame> frames_;
+  canopen::TimePoint last_time_;
+  std::uint64_t elapsed_ = 0;  ///< microseconds since the run began, at last_time_
+  std::uint64_t lag_ = 0;
+  Mark last_match_ = 0;
+};
+
+}  // namespace edsc::conform
