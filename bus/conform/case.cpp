@@ -6,41 +6,39 @@ namespace edsc::conform {
 namespace {
 
 constexpr AreaRow area_rows[] = {
-    {"1", "EDS", {sheet_cases}},
-    {"2", "SDO", {sdo_access_cases, sdo_segment_cases, sdo_block_cases, sdo_parameter_cases}},
-    {"3",
-     "PDO",
-     {pdo_parameter_cases, tpdo_event_cases, tpdo_sync_cases, tpdo_silence_cases, new_mapping_cases,
-      refused_mapping_cases}},
-    {"4", "Object dictionary", {dictionary_cases, write_cases}},
-    {"5", "Emergency", {emergency_cases}},
-    {"6", "SYNC", {sync_cases}},
-    {"7", "Error control", {guarding_cases, heartbeat_cases, error_control_cases}},
-    {"8", "Stored parameters and CAN-IDs", {storage_cases}},
-    {"9", "NMT states", {state_cases}},
-    {"10", "NMT transitions", {transition_cases}},
-    {"11", "LSS", {lss_cases}},
+    {"1", "EDS"},           {"2", "SDO"},
+    {"3", "PDO"},           {"4", "Object dictionary"},
+    {"5", "Emergency"},     {"6", "SYNC"},
+    {"7", "Error control"}, {"8", "Stored parameters and CAN-IDs"},
+    {"9", "NMT states"},    {"10", "NMT transitions"},
+    {"11", "LSS"},
+};
+
+/// In the order in which they run. Tables of one area follow each other.
+constexpr std::span<const CaseRow> (*case_tables[])() = {
+    sheet_cases,           sdo_access_cases, sdo_segment_cases,   sdo_block_cases,    sdo_parameter_cases,
+    pdo_parameter_cases,   tpdo_event_cases, tpdo_sync_cases,     tpdo_silence_cases, new_mapping_cases,
+    refused_mapping_cases, dictionary_cases, write_cases,         emergency_cases,    sync_cases,
+    guarding_cases,        heartbeat_cases,  error_control_cases, storage_cases,      state_cases,
+    transition_cases,      lss_cases,
 };
 
 }  // namespace
 
 std::span<const AreaRow> areas() { return area_rows; }
 
-std::vector<const CaseRow*> cases_of(const AreaRow& area) {
-  std::vector<const CaseRow*> cases;
-  for (const CaseTable table : area.tables) {
-    if (table == nullptr) continue;
-    for (const CaseRow& row : table()) cases.push_back(&row);
-  }
-  return cases;
-}
-
 std::vector<const CaseRow*> all_cases() {
   std::vector<const CaseRow*> all;
-  for (const AreaRow& area : area_rows) {
-    for (const CaseRow* row : cases_of(area)) all.push_back(row);
+  for (const auto table : case_tables) {
+    for (const CaseRow& row : table()) all.push_back(&row);
   }
   return all;
+}
+
+std::vector<const CaseRow*> cases_of(const AreaRow& area) {
+  std::vector<const CaseRow*> cases = all_cases();
+  std::erase_if(cases, [&](const CaseRow* row) { return area_of(*row).id != area.id; });
+  return cases;
 }
 
 const AreaRow& area_of(const CaseRow& row) {

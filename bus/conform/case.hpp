@@ -2,7 +2,6 @@
 /// device.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -69,18 +68,21 @@ struct CaseRow {
   void (*run)(Dut&) = nullptr;
 };
 
-using CaseTable = std::span<const CaseRow> (*)();
+/// `run` of cases that differ in a value: `with<write_in_block, guard_time>` calls `write_in_block(dut, guard_time)`.
+template <auto steps, auto... arguments>
+void with(Dut& dut) {
+  steps(dut, arguments...);
+}
 
 struct AreaRow {
-  std::string_view id;                ///< `2`: the first part of the ids of its cases
-  std::string_view title;             ///< `SDO`
-  std::array<CaseTable, 6> tables{};  ///< in the order in which they run; the last ones may be null
+  std::string_view id;     ///< `2`: the first part of the ids of its cases
+  std::string_view title;  ///< `SDO`
 };
 
 /// The areas in the order in which they run.
 [[nodiscard]] std::span<const AreaRow> areas();
 
-/// The cases of an area; all cases, area by area.
+/// The cases of an area; all cases, area by area. Each in the order in which they run.
 [[nodiscard]] std::vector<const CaseRow*> cases_of(const AreaRow& area);
 [[nodiscard]] std::vector<const CaseRow*> all_cases();
 

@@ -36,8 +36,7 @@ void expect_value(Dut& dut, const Changed& changed, std::uint64_t value, const s
 }
 
 /// A wrong signature is refused, and nothing is stored.
-template <std::uint8_t sub_index>
-void wrong_save(Dut& dut) {
+void wrong_save(Dut& dut, std::uint8_t sub_index) {
   with_storage(dut, sub_index, [&dut](const Storage& storage) {
     const Changed changed = change_parameter(dut);
     storage.expect_refused(store_parameters);
@@ -47,8 +46,7 @@ void wrong_save(Dut& dut) {
 }
 
 /// After "save" the value remains after a reset, and after a power cycle if a stimulus can cause one.
-template <std::uint8_t sub_index>
-void save(Dut& dut) {
+void save(Dut& dut, std::uint8_t sub_index) {
   with_storage(dut, sub_index, [&dut](const Storage& storage) {
     const Changed changed = change_parameter(dut);
     storage.save();
@@ -64,8 +62,7 @@ void save(Dut& dut) {
 }
 
 /// A wrong signature is refused, and the stored value remains.
-template <std::uint8_t sub_index>
-void wrong_load(Dut& dut) {
+void wrong_load(Dut& dut, std::uint8_t sub_index) {
   need_command(dut, restore_parameters, sub_index);
   with_storage(dut, sub_index, [&dut](const Storage& storage) {
     const Changed changed = change_parameter(dut);
@@ -77,8 +74,7 @@ void wrong_load(Dut& dut) {
 }
 
 /// "load" restores the default values at the next reset.
-template <std::uint8_t sub_index>
-void load(Dut& dut) {
+void load(Dut& dut, std::uint8_t sub_index) {
   need_command(dut, restore_parameters, sub_index);
   with_storage(dut, sub_index, [&dut](const Storage& storage) {
     const Changed changed = change_parameter(dut);
@@ -121,21 +117,21 @@ void verify(Dut& dut) {
 
 constexpr CaseRow storage_rows[] = {
     {"8.1", "1010h:01 refuses a signature other than \"save\" and stores nothing", "CiA 301, 7.5.2.13",
-     Level::communication, Permission::store, wrong_save<Storage::all>},
+     Level::communication, Permission::store, with<wrong_save, Storage::all>},
     {"8.2", "\"save\" to 1010h:01 stores all parameters", "CiA 301, 7.5.2.13", Level::communication, Permission::store,
-     save<Storage::all>},
+     with<save, Storage::all>},
     {"8.3", "1011h:01 refuses a signature other than \"load\" and keeps the stored values", "CiA 301, 7.5.2.14",
-     Level::communication, Permission::store, wrong_load<Storage::all>},
+     Level::communication, Permission::store, with<wrong_load, Storage::all>},
     {"8.4", "\"load\" to 1011h:01 restores the default values at the next reset", "CiA 301, 7.5.2.14",
-     Level::communication, Permission::store, load<Storage::all>},
+     Level::communication, Permission::store, with<load, Storage::all>},
     {"8.5", "1010h:02 refuses a signature other than \"save\" and stores nothing", "CiA 301, 7.5.2.13",
-     Level::communication, Permission::store, wrong_save<Storage::communication>},
+     Level::communication, Permission::store, with<wrong_save, Storage::communication>},
     {"8.6", "\"save\" to 1010h:02 stores the communication parameters", "CiA 301, 7.5.2.13", Level::communication,
-     Permission::store, save<Storage::communication>},
+     Permission::store, with<save, Storage::communication>},
     {"8.7", "1011h:02 refuses a signature other than \"load\" and keeps the stored values", "CiA 301, 7.5.2.14",
-     Level::communication, Permission::store, wrong_load<Storage::communication>},
+     Level::communication, Permission::store, with<wrong_load, Storage::communication>},
     {"8.8", "\"load\" to 1011h:02 restores the default values at the next reset communication", "CiA 301, 7.5.2.14",
-     Level::communication, Permission::store, load<Storage::communication>},
+     Level::communication, Permission::store, with<load, Storage::communication>},
     {"8.9", "1020h is stored, and set to 0 when a parameter changes", "CiA 301, 7.5.2.23", Level::communication,
      Permission::store, verify},
     {"8.10", "COB-IDs refuse the restricted CAN-IDs", "CiA 301, 7.3.5, table 41", Level::communication,

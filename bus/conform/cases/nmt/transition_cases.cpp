@@ -42,8 +42,7 @@ void resets(Dut& dut) {
 }
 
 /// Tests the service in each other state and in the state itself.
-template <NmtState to>
-void service(Dut& dut) {
+void service(Dut& dut, NmtState to) {
   need_state(dut);
   for (const NmtState from : {NmtState::pre_operational, NmtState::operational, NmtState::stopped, to}) {
     expect_transition(dut, from, to);
@@ -54,11 +53,11 @@ constexpr CaseRow transition_rows[] = {
     {"10.1", "Reset node and reset communication lead from each state to a boot-up message and to Pre-operational",
      "CiA 301, 7.2.8.2.1.4, 7.2.8.2.1.5 and 7.3.2", Level::communication, Permission::none, resets},
     {"10.2", "Enter pre-operational leads from each state to Pre-operational", "CiA 301, 7.2.8.2.1.6 and 7.3.2",
-     Level::communication, Permission::none, service<NmtState::pre_operational>},
+     Level::communication, Permission::none, with<service, NmtState::pre_operational>},
     {"10.3", "Start remote node leads from each state to Operational", "CiA 301, 7.2.8.2.1.2 and 7.3.2",
-     Level::communication, Permission::none, service<NmtState::operational>},
+     Level::communication, Permission::none, with<service, NmtState::operational>},
     {"10.4", "Stop remote node leads from each state to Stopped", "CiA 301, 7.2.8.2.1.3 and 7.3.2",
-     Level::communication, Permission::none, service<NmtState::stopped>},
+     Level::communication, Permission::none, with<service, NmtState::stopped>},
 };
 
 }  // namespace

@@ -62,9 +62,42 @@ std::vector<MappingValue> some_of(Dut& dut, const std::vector<MappingValue>& obj
   return chosen;
 }
 
-void takes_objects(Dut& dut, PdoDirection direction, const std::vector<MappingValue>& objects, const char* none) {
+/// Objects of the EDS, and the reason if it has none.
+struct ObjectSet {
+  std::vector<MappingValue> (*objects)(const Dut&);
+  const char* none;
+};
+
+std::vector<MappingValue> with_access(const Dut& dut, canopen::Access first, canopen::Access second) {
+  return objects_where(
+      dut, [=](const Entry& entry) { return entry.pdo_mapping && (entry.access == first || entry.access == second); });
+}
+
+constexpr ObjectSet outputs{[](const Dut& dut) { return with_access(dut, canopen::Access::rww, canopen::Access::wo); },
+                            "the EDS has no object with PDOMapping=1 that is rww or wo"};
+constexpr ObjectSet inputs{[](const Dut& dut) { return with_access(dut, canopen::Access::rwr, canopen::Access::ro); },
+                           "the EDS has no object with PDOMapping=1 that is rwr or ro"};
+constexpr ObjectSet unmappable{
+    [](const Dut& dut) { return objects_where(dut, [](const Entry& entry) { return !entry.pdo_mapping; }); },
+    "the EDS has no object with PDOMapping=0"};
+
+std::vector<MappingValue> dummy_objects(const Dut& dut) {
+  std::vector<MappingValue> dummies;
+  const unsigned granularity = dut.sheet().information.capabilities.granularity.value_or(8);
+  for (const std::uint16_t index : dut.sheet().dummies) {
+    if (index >= std::size(canopen::dummy_bits)) continue;
+    const std::uint8_t bits = canopen::dummy_bits[index];
+    if (bits != 0 && (granularity == 0 || bits % granularity == 0)) dummies.push_back({index, 0, bits});
+  }
+  return dummies;
+}
+
+constexpr ObjectSet dummies{dummy_objects, "the EDS has no dummy object in [DummyUsage]"};
+
+void takes_objects(Dut& dut, PdoDirection direction, const ObjectSet* set) {
   std::vector<Remapping> all = remappings(dut, {direction});
-  if (objects.empty()) dut.not_applicable(none);
+  const std::vector<MappingValue> objects = set->objects(dut);
+  if (objects.empty()) dut.not_applicable(set->none);
   for (Remapping& remapping : all) {
     for (const MappingValue& mapped : some_of(dut, objects)) remapping.remap({mapped});
     remapping.put_back();
@@ -72,9 +105,10 @@ void takes_objects(Dut& dut, PdoDirection direction, const std::vector<MappingVa
 }
 
 /// The device refuses the entry or, at the latest, the mapping as a whole.
-void refuses_objects(Dut& dut, PdoDirection direction, const std::vector<MappingValue>& objects, const char* none) {
+void refuses_objects(Dut& dut, PdoDirection direction, const ObjectSet* set) {
   std::vector<Remapping> all = remappings(dut, {direction});
-  if (objects.empty()) dut.not_applicable(none);
+  const std::vector<MappingValue> objects = set->objects(dut);
+  if (objects.empty()) dut.not_applicable(set->none);
   for (Remapping& remapping : all) {
     for (const MappingValue& mapped : some_of(dut, objects)) {
       remapping.begin();
@@ -90,23 +124,6 @@ void refuses_objects(Dut& dut, PdoDirection direction, const std::vector<Mapping
     remapping.put_back();
   }
 }
-
-std::vector<MappingValue> with_access(const Dut& dut, canopen::Access first, canopen::Access second) {
-  return objects_where(
-      dut, [=](const Entry& entry) { return entry.pdo_mapping && (entry.access == first || entry.access == second); });
-}
-
-std::vector<MappingValue> outputs(const Dut& dut) {
-  return with_access(dut, canopen::Access::rww, canopen::Access::wo);
-}
-std::vector<MappingValue> inputs(const Dut& dut) { return with_access(dut, canopen::Access::rwr, canopen::Access::ro); }
-std::vector<MappingValue> unmappable(const Dut& dut) {
-  return objects_where(dut, [](const Entry& entry) { return !entry.pdo_mapping; });
-}
-
-constexpr const char* no_output = "the EDS has no object with PDOMapping=1 that is rww or wo";
-constexpr const char* no_input = "the EDS has no object with PDOMapping=1 that is rwr or ro";
-constexpr const char* no_unmappable = "the EDS has no object with PDOMapping=0";
 
 // ---- without the procedure ----
 
@@ -179,30 +196,6 @@ void refuses_too_many_bits(Dut& dut) {
   if (!any) dut.not_applicable(reason);
 }
 
-// ---- which objects ----
-
-void takes_output_in_rpdo(Dut& dut) { takes_objects(dut, PdoDirection::receive, outputs(dut), no_output); }
-void refuses_input_in_rpdo(Dut& dut) { refuses_objects(dut, PdoDirection::receive, inputs(dut), no_input); }
-void refuses_unmappable_in_rpdo(Dut& dut) {
-  refuses_objects(dut, PdoDirection::receive, unmappable(dut), no_unmappable);
-}
-void takes_input_in_tpdo(Dut& dut) { takes_objects(dut, PdoDirection::transmit, inputs(dut), no_input); }
-void refuses_output_in_tpdo(Dut& dut) { refuses_objects(dut, PdoDirection::transmit, outputs(dut), no_output); }
-void refuses_unmappable_in_tpdo(Dut& dut) {
-  refuses_objects(dut, PdoDirection::transmit, unmappable(dut), no_unmappable);
-}
-
-void takes_dummy_in_rpdo(Dut& dut) {
-  std::vector<MappingValue> dummies;
-  const unsigned granularity = dut.sheet().information.capabilities.granularity.value_or(8);
-  for (const std::uint16_t index : dut.sheet().dummies) {
-    if (index >= std::size(canopen::dummy_bits)) continue;
-    const std::uint8_t bits = canopen::dummy_bits[index];
-    if (bits != 0 && (granularity == 0 || bits % granularity == 0)) dummies.push_back({index, 0, bits});
-  }
-  takes_objects(dut, PdoDirection::receive, dummies, "the EDS has no dummy object in [DummyUsage]");
-}
-
 constexpr CaseRow refused_mapping_rows[] = {
     {"3.23", "A mapping entry is not changed while the PDO is valid and maps objects", "CiA 301, 7.5.2.36", with_writes,
      no_permission, refuses_entry_of_active_mapping},
@@ -213,18 +206,19 @@ constexpr CaseRow refused_mapping_rows[] = {
     {"3.26", "A mapping of more than 64 bits is refused", "CiA 301, 7.5.2.36", with_writes, no_permission,
      refuses_too_many_bits},
     {"3.27", "An RPDO can map an object that is rww or wo", "CiA 301, 7.5.2.36", with_writes, no_permission,
-     takes_output_in_rpdo},
+     with<takes_objects, PdoDirection::receive, &outputs>},
     {"3.28", "An RPDO does not map an object that is rwr or ro", "CiA 301, 7.5.2.36", with_writes, no_permission,
-     refuses_input_in_rpdo},
+     with<refuses_objects, PdoDirection::receive, &inputs>},
     {"3.29", "An RPDO does not map an object with PDOMapping=0", "CiA 301, 7.5.2.36", with_writes, no_permission,
-     refuses_unmappable_in_rpdo},
+     with<refuses_objects, PdoDirection::receive, &unmappable>},
     {"3.30", "A TPDO can map an object that is rwr or ro", "CiA 301, 7.5.2.38", with_writes, no_permission,
-     takes_input_in_tpdo},
+     with<takes_objects, PdoDirection::transmit, &inputs>},
     {"3.31", "A TPDO does not map an object that is rww or wo", "CiA 301, 7.5.2.38", with_writes, no_permission,
-     refuses_output_in_tpdo},
+     with<refuses_objects, PdoDirection::transmit, &outputs>},
     {"3.32", "A TPDO does not map an object with PDOMapping=0", "CiA 301, 7.5.2.38", with_writes, no_permission,
-     refuses_unmappable_in_tpdo},
-    {"3.33", "An RPDO can map a dummy object", "CiA 301, 7.4.7.1", with_writes, no_permission, takes_dummy_in_rpdo},
+     with<refuses_objects, PdoDirection::transmit, &unmappable>},
+    {"3.33", "An RPDO can map a dummy object", "CiA 301, 7.4.7.1", with_writes, no_permission,
+     with<takes_objects, PdoDirection::receive, &dummies>},
 };
 
 }  // namespace

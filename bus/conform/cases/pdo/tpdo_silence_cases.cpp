@@ -125,41 +125,33 @@ void silent_from_sync_start_value(Dut& dut, NmtState state) {
   });
 }
 
-using StateCase = void (*)(Dut&, NmtState);
-template <StateCase run>
-void stopped(Dut& dut) {
-  run(dut, NmtState::stopped);
-}
-template <StateCase run>
-void pre_operational(Dut& dut) {
-  run(dut, NmtState::pre_operational);
-}
+constexpr NmtState stopped = NmtState::stopped, pre_operational = NmtState::pre_operational;
 
 constexpr CaseRow tpdo_silence_rows[] = {
     {"3.9", "In Stopped a remote frame is not answered by a TPDO", "CiA 301, 7.3.2.2.5", with_writes, no_permission,
-     stopped<silent_on_remote_frame>},
+     with<silent_on_remote_frame, stopped>},
     {"3.10", "In Stopped no TPDO is sent for an event", "CiA 301, 7.3.2.2.5", with_writes, no_permission,
-     stopped<silent_on_event>},
+     with<silent_on_event, stopped>},
     {"3.11", "In Stopped no TPDO is sent by its event timer", "CiA 301, 7.3.2.2.5", with_writes, no_permission,
-     stopped<silent_by_event_timer>},
+     with<silent_by_event_timer, stopped>},
     {"3.12", "In Stopped no cyclic synchronous TPDO is sent", "CiA 301, 7.3.2.2.5", with_writes, with_sync,
-     stopped<silent_at_sync>},
+     with<silent_at_sync, stopped>},
     {"3.13", "In Stopped no acyclic synchronous TPDO is sent", "CiA 301, 7.3.2.2.5", with_writes, with_sync,
-     stopped<silent_at_sync_after_event>},
+     with<silent_at_sync_after_event, stopped>},
     {"3.14", "In Stopped no TPDO is sent at its SYNC start value", "CiA 301, 7.3.2.2.5", with_writes, with_sync,
-     stopped<silent_from_sync_start_value>},
+     with<silent_from_sync_start_value, stopped>},
     {"3.15", "In Pre-operational a remote frame is not answered by a TPDO", "CiA 301, 7.3.2.2.5", with_writes,
-     no_permission, pre_operational<silent_on_remote_frame>},
+     no_permission, with<silent_on_remote_frame, pre_operational>},
     {"3.16", "In Pre-operational no TPDO is sent for an event", "CiA 301, 7.3.2.2.5", with_writes, no_permission,
-     pre_operational<silent_on_event>},
+     with<silent_on_event, pre_operational>},
     {"3.17", "In Pre-operational no TPDO is sent by its event timer", "CiA 301, 7.3.2.2.5", with_writes, no_permission,
-     pre_operational<silent_by_event_timer>},
+     with<silent_by_event_timer, pre_operational>},
     {"3.18", "In Pre-operational no cyclic synchronous TPDO is sent", "CiA 301, 7.3.2.2.5", with_writes, with_sync,
-     pre_operational<silent_at_sync>},
+     with<silent_at_sync, pre_operational>},
     {"3.19", "In Pre-operational no acyclic synchronous TPDO is sent", "CiA 301, 7.3.2.2.5", with_writes, with_sync,
-     pre_operational<silent_at_sync_after_event>},
+     with<silent_at_sync_after_event, pre_operational>},
     {"3.20", "In Pre-operational no TPDO is sent at its SYNC start value", "CiA 301, 7.3.2.2.5", with_writes, with_sync,
-     pre_operational<silent_from_sync_start_value>},
+     with<silent_from_sync_start_value, pre_operational>},
 };
 
 }  // namespace

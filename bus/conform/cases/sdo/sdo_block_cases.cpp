@@ -24,8 +24,7 @@ void read_short_value_in_block(Dut& dut) {
 }
 
 /// In one block, in blocks of one segment, and with a repeated block.
-template <bool crc>
-void read_in_blocks(Dut& dut) {
+void read_in_blocks(Dut& dut, bool crc) {
   const LiveEntry entry = need_long_entry(dut);
   const BlockTransfer transfers[] = {
       {crc, sdo::largest_block, false}, {crc, 1, false}, {crc, sdo::largest_block, true}};
@@ -79,16 +78,17 @@ constexpr CaseRow sdo_block_rows[] = {
     {"2.19", "1000h:00 is read in a block without CRC", "CiA 301, 7.2.4.3.12", Level::read, none,
      read_short_value_in_block},
     {"2.20", "100Ch:00 is written in a block without CRC", "CiA 301, 7.2.4.3.8", Level::communication, none,
-     with_index<write_in_block, guard_time>},
+     with<write_in_block, guard_time>},
     {"2.21", "1017h:00 is written in a block without CRC", "CiA 301, 7.2.4.3.8", Level::communication, none,
-     with_index<write_in_block, producer_heartbeat>},
+     with<write_in_block, producer_heartbeat>},
     {"2.22", "A long value is read in blocks without CRC", "CiA 301, 7.2.4.3.14", Level::read, none,
-     read_in_blocks<false>},
-    {"2.23", "A long value is read in blocks with CRC", "CiA 301, 7.2.4.3.16", Level::read, none, read_in_blocks<true>},
+     with<read_in_blocks, false>},
+    {"2.23", "A long value is read in blocks with CRC", "CiA 301, 7.2.4.3.16", Level::read, none,
+     with<read_in_blocks, true>},
     {"2.24", "100Ch:00 is written in a block with CRC", "CiA 301, 7.2.4.3.11", Level::communication, none,
-     with_index<write_in_block_with_crc, guard_time>},
+     with<write_in_block_with_crc, guard_time>},
     {"2.25", "1017h:00 is written in a block with CRC", "CiA 301, 7.2.4.3.11", Level::communication, none,
-     with_index<write_in_block_with_crc, producer_heartbeat>},
+     with<write_in_block_with_crc, producer_heartbeat>},
     {"2.26", "A block upload with 128 segments in a block is refused", "CiA 301, 7.2.4.3.13", Level::read, none,
      wrong_block_size},
     {"2.27", "A block upload whose segment 128 is confirmed is refused", "CiA 301, 7.2.4.3.14", Level::read, none,

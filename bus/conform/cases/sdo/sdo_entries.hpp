@@ -15,12 +15,6 @@ namespace sdo = canopen::sdo;
 
 inline constexpr Permission none = Permission::none;
 
-/// A case for one of several objects.
-template <void (*run)(Dut&, std::uint16_t), std::uint16_t index>
-void with_index(Dut& dut) {
-  run(dut, index);
-}
-
 using Entries = std::vector<LiveEntry>;
 
 template <typename Condition>

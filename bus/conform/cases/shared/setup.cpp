@@ -52,6 +52,12 @@ bool shares_can_id(Dut& dut, const Pdo& pdo, CobId cob_id) {
 
 }  // namespace
 
+void expect_refused(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value, std::uint64_t present,
+                    const AbortRule& rule, const std::string& what) {
+  dut.expect_abort(dut.download(index, sub_index, value), rule, what);
+  dut.expect_equal(dut.read_number(index, sub_index), present, label(index, sub_index) + " afterwards");
+}
+
 void expect_default_cob_id(Dut& dut, std::uint16_t index, std::uint32_t standard) {
   const Entry& entry = dut.need(index);
   const std::uint64_t expected = dut.default_of(index).value_or(standard);

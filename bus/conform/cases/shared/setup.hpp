@@ -26,6 +26,10 @@ void and_undo(Check check, Undo undo) {
   undo();
 }
 
+/// Writes a value that the device must refuse, and expects that the entry still has its value.
+void expect_refused(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::uint64_t value, std::uint64_t present,
+                    const AbortRule& rule, const std::string& what);
+
 /// Expects the default COB-ID of an object: that of the EDS, else the standard one. Another COB-ID fails if its CAN-ID
 /// is restricted or if it cannot be written. Otherwise it may have been configured, and the case is inconclusive.
 void expect_default_cob_id(Dut& dut, std::uint16_t index, std::uint32_t standard);
