@@ -39,12 +39,22 @@ function(edsc_add_host_library name)
   target_include_directories(${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${EDSC_UNITY_BUILD} UNITY_BUILD_MODE GROUP)
   edsc_set_host_flags(${name})
+  edsc_group_by_folder(${ARGN})
+  if(EDSC_BUILD_FUZZ) # Report coverage to the fuzzer.
+    target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
+endfunction()
+
+# edsc_add_host_sources(NAME SOURCE...) adds sources to a library of edsc_add_host_library().
+function(edsc_add_host_sources name)
+  target_sources(${name} PRIVATE ${ARGN})
+  edsc_group_by_folder(${ARGN})
+endfunction()
+
+function(edsc_group_by_folder)
   list(FILTER ARGN EXCLUDE REGEX "^/")
   foreach(source IN LISTS ARGN)
     cmake_path(GET source PARENT_PATH folder)
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
   endforeach()
-  if(EDSC_BUILD_FUZZ) # Report coverage to the fuzzer.
-    target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
-  endif()
 endfunction()

@@ -8,11 +8,13 @@ set(document_dir ${CMAKE_INSTALL_DATADIR}/doc)
 
 if(TARGET edsc)
   install(TARGETS edsc RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-  set(shell_files ${PROJECT_BINARY_DIR}/generator/shell)
-  install(FILES ${shell_files}/edsc.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME edsc
-          COMPONENT program)
-  install(FILES ${shell_files}/edsc.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _edsc COMPONENT program)
-  install(FILES ${shell_files}/edsc.man DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME edsc.1 COMPONENT program)
+  if(NOT CMAKE_CROSSCOMPILING) # edsc writes them itself
+    set(shell_files ${PROJECT_BINARY_DIR}/generator/shell)
+    install(FILES ${shell_files}/edsc.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME edsc
+            COMPONENT program)
+    install(FILES ${shell_files}/edsc.zsh DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions RENAME _edsc COMPONENT program)
+    install(FILES ${shell_files}/edsc.man DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME edsc.1 COMPONENT program)
+  endif()
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${document_dir}/edsc RENAME copyright COMPONENT program)
   # The documents and the files that they refer to, in the layout of the sources; the schemas also in a folder for editors and
   # scripts.

@@ -47,7 +47,7 @@ struct CommandRow {
   AddOptions* add_options;
 };
 
-/// In the order of the help.
+/// In the order of the help. A program without access to a bus (EDSC_OFFLINE of CMake) does not have those for a bus.
 inline constexpr CommandRow commands[] = {
     {"EDS files", "generate", "generate C++ headers for one device", add_generate_options},
     {"EDS files", "check", "check EDS, DCF and XDD files", add_check_options},
@@ -57,6 +57,7 @@ inline constexpr CommandRow commands[] = {
     {"EDS files", "diff", "compare two EDS files; report breaking changes", add_diff_options},
     {"EDS files", "document", "write a device or a network as an HTML page or as Markdown", add_document_options},
     {"Networks", "network", "check, generate, simulate, verify and configure a network", add_network_options},
+#ifndef EDSC_OFFLINE
     {"Bus", "scan", "find and identify the nodes on a bus", add_scan_options},
     {"Bus", "read", "read objects of a node over SDO", add_read_options},
     {"Bus", "write", "write an object of a node over SDO", add_write_options},
@@ -69,6 +70,7 @@ inline constexpr CommandRow commands[] = {
     {"Bus", "conform", "test a node against CiA 301 and its EDS", add_conform_options},
     {"Bus", "bus", "virtual CAN buses on this machine, for socketcand clients", add_bus_options},
     {"Logs", "record", "write the frames of a bus as a candump log", add_record_options},
+#endif
     {"Logs", "decode", "decode the frames of a log", add_decode_options},
     {"Logs", "audit", "judge a log by the EDS files of its nodes", add_audit_options},
     {"Logs", "plot", "plot values of a log over time, as SVG", add_plot_options},

@@ -27,10 +27,14 @@ constexpr const char* examples = R"(Examples:
   edsc network check plant.json --times           with the worst-case response time of each message
   edsc network simulate plant.json --for 1h       load and response times seen beside those computed
   edsc network members                            every member of a network file with its meaning
-  edsc network generate plant.json -o build       DCFs, concise DCFs, C++ headers, DBC file, drawings
+  edsc network generate plant.json -o build       DCFs, concise DCFs, C++ headers, DBC file, drawings)"
+#ifndef EDSC_OFFLINE
+                                 R"(
   edsc network scan socketcan:can0 --sheets eds -o plant.json    the network file of the nodes on a bus
   edsc network verify socketcan:can0 plant.json                  what differs from it
-  edsc network apply socketcan:can0 plant.json --start           configure all nodes, then start them)";
+  edsc network apply socketcan:can0 plant.json --start           configure all nodes, then start them)"
+#endif
+    ;
 
 struct CheckSettings {
   std::vector<std::string> paths;
@@ -145,9 +149,11 @@ constexpr ActionRow actions[] = {
     {"simulate", "run the generated devices of a network on a simulated bus: load, response times and faults",
      add_network_simulate_options},
     {"members", "list the members of a network file", add_members_options},
+#ifndef EDSC_OFFLINE
     {"scan", "write a network file of the nodes on a bus", add_network_scan_options},
     {"verify", "compare the nodes on a bus with a network file", add_network_verify_options},
     {"apply", "configure the nodes on a bus as a network file states", add_network_apply_options},
+#endif
 };
 
 }  // namespace
