@@ -13,6 +13,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from made_fixtures import names_eds  # noqa: E402
+
 SOURCE_DIR, EDSC = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 COMPILER = ("gcc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wshadow", "-Werror")
 
@@ -64,7 +67,7 @@ class CHeader(unittest.TestCase):
         return subprocess.run([self.folder / "main"], check=True, capture_output=True, text=True, timeout=60).stdout.split()
 
     def test_the_headers_of_all_devices_compile(self) -> None:
-        sheets = [*(SOURCE_DIR / "eds").glob("*.eds"), *(SOURCE_DIR / "tests/fixtures").glob("*.eds")]
+        sheets = [*(SOURCE_DIR / "eds").glob("*.eds"), *(SOURCE_DIR / "tests/fixtures").glob("*.eds"), names_eds(self.folder)]
         compiled = 0
         for sheet in sheets:
             with self.subTest(sheet=sheet.name):

@@ -17,6 +17,9 @@ import tempfile
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from made_fixtures import names_eds  # noqa: E402
+
 SOURCE_DIR = Path(sys.argv[1]).resolve()
 EDSC = Path(sys.argv[2]).resolve()
 FIXTURES = SOURCE_DIR / "tests/fixtures"
@@ -80,6 +83,23 @@ def snapshot(folder: Path) -> dict[str, tuple[bytes, int]]:
     """The content and time stamp of each file below a folder."""
     return {str(path.relative_to(folder)): (path.read_bytes(), path.stat().st_mtime_ns)
             for path in folder.rglob("*") if path.is_file()}
+
+
+def with_mapping(kind: str, words: list[str]) -> str:
+    """Returns the EDS of WRONG with another mapping of its PDO, which is a TPDO or an RPDO."""
+    head, rest = WRONG.read_text().split("[1A00]\n", 1)
+    tail = rest[rest.index("[ManufacturerObjects]"):]
+    keys = "ObjectType=0x7\nDataType=0x{:04X}\nAccessType=rw\nDefaultValue={}\nPDOMapping=0\n\n"
+    text = (f"{head}[1A00]\nParameterName=TPDO mapping parameter\nObjectType=0x9\nSubNumber={len(words) + 1}\n\n"
+            f"[1A00sub0]\nParameterName=Number of mapped objects\n{keys.format(5, len(words))}")
+    for sub, word in enumerate(words, 1):
+        text += f"[1A00sub{sub}]\nParameterName=Mapping entry {sub}\n{keys.format(7, word)}"
+    text += tail
+    if kind == "TPDO":
+        return text
+    for of_tpdo, of_rpdo in (("TPDO", "RPDO"), ("1800", "1400"), ("1A00", "1600"), ("NODEID+0x180", "NODEID+0x200")):
+        text = text.replace(of_tpdo, of_rpdo)
+    return text
 
 
 class CommandLine(unittest.TestCase):
@@ -190,23 +210,20 @@ class BadInput(CommandLine):
                     "[data-type]", "[access-type]", "[unterminated-section]")
 
     def test_wrong_mappings_at_the_entry_that_is_wrong(self) -> None:
-        expected = {
-            "over_64_bits": ("pdo-size", "0x10010008"),
-            "rpdo_object_in_tpdo": ("pdo-direction", "0x20010020"),
-            "string": ("pdo-variable-length", "0x20020020"),
-            "tpdo_object_in_rpdo": ("pdo-direction", "0x20000020"),
-            "unknown_object": ("pdo-object", "0x2ABC0010"),
-            "unmappable_object": ("pdo-mappable", "0x20030010"),
-            "wrong_length": ("pdo-length", "0x20000010"),
-        }
-        files = {path.stem.removeprefix("wrong_mapping_"): path for path in FIXTURES.glob("wrong_mapping_*.eds")}
-        self.assertEqual(files.keys(), expected.keys())
-        for name, (rule, word) in expected.items():
-            with self.subTest(fixture=name):
-                lines = files[name].read_text().splitlines()
-                number = max(at for at, line in enumerate(lines, 1) if line == f"DefaultValue={word}")
-                result = self.edsc("generate", files[name], "-o", self.output)
-                self.expect(INPUT_HAS_ERRORS, result, f"{files[name].name}:{number}:14: error:", f"[{rule}]")
+        for rule, kind, *words in (  # the last word is wrong
+                ("pdo-size", "TPDO", "0x20000020", "0x20000020", "0x10010008"),  # 72 bits
+                ("pdo-direction", "TPDO", "0x10010008", "0x20010020"),  # an object that is rww
+                ("pdo-direction", "RPDO", "0x20010020", "0x20000020"),  # an object that is ro
+                ("pdo-variable-length", "TPDO", "0x20020020"),  # a VISIBLE_STRING
+                ("pdo-object", "TPDO", "0x20000020", "0x2ABC0010"),
+                ("pdo-mappable", "TPDO", "0x20000020", "0x20030010"),
+                ("pdo-length", "TPDO", "0x20000010")):  # 16 bits of an object of 32
+            with self.subTest(rule=rule, kind=kind):
+                sheet = self.write("wrong.eds", with_mapping(kind, words))
+                lines = sheet.read_text().splitlines()
+                number = max(at for at, line in enumerate(lines, 1) if line == f"DefaultValue={words[-1]}")
+                result = self.edsc("generate", sheet, "-o", self.output)
+                self.expect(INPUT_HAS_ERRORS, result, f"wrong.eds:{number}:14: error:", f"[{rule}]")
                 self.assertEqual(len(re.findall(r": error: ", result.stderr)), 1, result.stderr)
                 self.assertFalse(self.output.exists())
 
@@ -582,7 +599,7 @@ class Dump(CommandLine):
         self.assertIn("class_", [row.get("identifier") for row in device["cpp"]["types"]])
 
     def test_of_names_in_other_scripts_is_json(self) -> None:
-        device = json.loads(self.edsc("dump", FIXTURES / "names.eds").stdout)
+        device = json.loads(self.edsc("dump", names_eds(self.folder)).stdout)
         self.assertIn("速度", [row["name"] for row in device["objects"]])
 
     def test_that_cannot_be_written_is_no_success(self) -> None:

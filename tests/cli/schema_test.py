@@ -18,6 +18,7 @@ from pathlib import Path
 
 import jsonschema
 from cli_test import EDSC, FINE, FIXTURES, SMALL, SOURCE_DIR, CommandLine
+from made_fixtures import names_eds
 
 sys.path.insert(0, str(SOURCE_DIR / "tests/corpus"))
 from corpus_test import find_corpus  # noqa: E402
@@ -106,7 +107,7 @@ class Dump(CommandLine):
         self.assertEqual(self.check((SOURCE_DIR / "eds").glob("*.eds"), "--node-id", "5", "--cpp"), 8)
 
     def test_of_the_fixtures_fits(self) -> None:
-        paths = [path for path in FIXTURES.iterdir() if path.suffix in SUFFIXES]
+        paths = [names_eds(self.folder), *(path for path in FIXTURES.iterdir() if path.suffix in SUFFIXES)]
         self.assertGreaterEqual(self.check(paths), 20)
 
     def test_of_vendors_files_fits(self) -> None:
@@ -159,7 +160,8 @@ class OfCheckAndDiff(CommandLine):
         return found
 
     def test_findings_of_all_files_fit(self) -> None:
-        found = self.check(*sorted((SOURCE_DIR / "eds").glob("*.eds")), *sorted(FIXTURES.glob("*.eds")))
+        found = self.check(*sorted((SOURCE_DIR / "eds").glob("*.eds")), *sorted(FIXTURES.glob("*.eds")),
+                           names_eds(self.folder))
         self.assertTrue(found["diagnostics"])
 
     def test_allowed_findings_and_what_is_left_out_fit(self) -> None:

@@ -37,6 +37,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from support.compilers import SKIPPED, in_parallel  # noqa: E402
+from support.made_fixtures import names_eds  # noqa: E402
 
 NODE_ID = 5
 SHEETS_PER_PROGRAM = 12
@@ -71,9 +72,9 @@ def corpus_of(source_dir: Path) -> list[Job]:
         return [Job(corpus / row["path"], row["path"]) for row in csv.DictReader(manifest, delimiter="\t")]
 
 
-def own_sheets(source_dir: Path) -> list[Job]:
+def own_sheets(source_dir: Path, work: Path) -> list[Job]:
     found = [*sorted((source_dir / "eds").glob("*.eds")), *sorted((source_dir / "tests/fixtures").glob("*.eds"))]
-    return [Job(path, str(path.relative_to(source_dir))) for path in found]
+    return [*(Job(path, str(path.relative_to(source_dir))) for path in found), Job(names_eds(work), "tests/fixtures/names.eds")]
 
 
 def node_id_of(path: Path) -> int:
@@ -209,7 +210,7 @@ def arguments_of() -> argparse.Namespace:
 def main() -> int:
     arguments = arguments_of()
     driver = Driver(arguments)
-    jobs = [job for job in [*own_sheets(driver.source_dir), *corpus_of(driver.source_dir)[::arguments.each]]
+    jobs = [job for job in [*own_sheets(driver.source_dir, driver.work), *corpus_of(driver.source_dir)[::arguments.each]]
             if not arguments.only or any(text in job.title for text in arguments.only)]
     if not jobs:
         print(f"SKIPPED: no file whose path contains {' or '.join(arguments.only)}")
