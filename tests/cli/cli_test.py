@@ -593,7 +593,7 @@ class Dump(CommandLine):
         self.assertEqual(device["cpp"]["namespace"], "every_type")
 
     def test_has_identifiers_without_the_reserved_words_of_a_language(self) -> None:
-        device = json.loads(self.edsc("dump", FIXTURES / "names.eds", "--cpp").stdout)
+        device = json.loads(self.edsc("dump", names_eds(self.folder), "--cpp").stdout)
         first = next(row for row in device["objects"] if row["name"] == "class")
         self.assertEqual(first["identifier"], "class")
         self.assertIn("class_", [row["var"]["identifier"] for row in device["cpp"]["types"] if row["var"]])
