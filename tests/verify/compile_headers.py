@@ -22,6 +22,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from support.compilers import (ARM_GCC, CLANG, GCC, Compiler, compile_only, in_parallel, precompiled,  # noqa: E402
                                those_installed)
+from support.made_fixtures import names_eds  # noqa: E402
 
 # These are for programs of a PC: they throw the errors of its operating system, or print numbers of 64 bits, for which newlib
 # has no format.
@@ -57,9 +58,9 @@ class Job:
         return f"{self.compiler.name}, {self.what}:\n{result.stderr[:2000]}"
 
 
-def data_sheets(source_dir: Path) -> list[Path]:
+def data_sheets(source_dir: Path, scratch: Path) -> list[Path]:
     fixtures = [path for path in (source_dir / "tests/fixtures").glob("*.eds") if not path.name.startswith("wrong_")]
-    return sorted((source_dir / "eds").glob("*.eds")) + sorted(fixtures)
+    return sorted((source_dir / "eds").glob("*.eds")) + sorted([*fixtures, names_eds(scratch)], key=lambda path: path.name)
 
 
 def generate(edsc: Path, sheets: list[Path], output: Path) -> list[Path]:
@@ -149,7 +150,7 @@ def main() -> int:
     compilers = those_installed((GCC, CLANG, ARM_GCC))
     with tempfile.TemporaryDirectory() as temporary:
         scratch = Path(temporary)
-        devices = generate(edsc, data_sheets(source_dir), scratch / "generated")
+        devices = generate(edsc, data_sheets(source_dir, scratch), scratch / "generated")
         jobs = jobs_of_the_runtime(runtime, compilers, scratch)
         for compiler in compilers:
             if compiler == GCC:
