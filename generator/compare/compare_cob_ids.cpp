@@ -49,7 +49,7 @@ class CobIdComparison {
   std::vector<CobIdChange> compare() {
     const bool existed = exists(before_);
     if (!is_pdo(service_) && existed != exists(after_)) {
-      add(either<ChangeRule>(existed, "service-disabled", "service-enabled"));
+      add(existed ? ChangeRule{"service-disabled"} : ChangeRule{"service-enabled"});
     } else if (!existed) {
       if (((before_.bits ^ after_.bits) & ~std::uint64_t{bit_31}) != 0 || before_.plus_node_id != after_.plus_node_id) {
         add("default-value");
@@ -69,8 +69,8 @@ class CobIdComparison {
   void compare_can_ids() {
     const bool same_number = ((before_.bits ^ after_.bits) & can_id_bits) == 0;
     if (same_number && before_.plus_node_id == after_.plus_node_id) return;
-    changes_.push_back({either<ChangeRule>(is_pdo(service_), "pdo-cob-id", "service-cob-id"), can_id_text(before_),
-                        can_id_text(after_)});
+    changes_.push_back({is_pdo(service_) ? ChangeRule{"pdo-cob-id"} : ChangeRule{"service-cob-id"},
+                        can_id_text(before_), can_id_text(after_)});
   }
 
   void compare_flags() {
@@ -96,7 +96,7 @@ class CobIdComparison {
 std::vector<CobIdChange> compare_cob_ids(const std::optional<Value>& before, const std::optional<Value>& after,
                                          const canopen::DataTypeRow& type, CobIdService service) {
   if (before && after) return CobIdComparison{*before, *after, type, service}.compare();
-  return {{either<ChangeRule>(is_pdo(service), "pdo-cob-id", "service-cob-id"), value_text(before, type),
+  return {{is_pdo(service) ? ChangeRule{"pdo-cob-id"} : ChangeRule{"service-cob-id"}, value_text(before, type),
            value_text(after, type)}};
 }
 

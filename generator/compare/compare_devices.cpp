@@ -71,8 +71,8 @@ class DeviceComparison {
     compare("identity", "VendorNumber", before_.vendor_number, after_.vendor_number, "0x{:08X}");
     compare("identity", "ProductNumber", before_.product_number, after_.product_number, "0x{:08X}");
     const bool major = before_.revision_number >> 16 != after_.revision_number >> 16;
-    compare(either<ChangeRule>(major, "revision-major", "revision-minor"), "RevisionNumber", before_.revision_number,
-            after_.revision_number, "0x{:08X}");
+    compare(major ? ChangeRule{"revision-major"} : ChangeRule{"revision-minor"}, "RevisionNumber",
+            before_.revision_number, after_.revision_number, "0x{:08X}");
     if (before_.node_id != after_.node_id) {
       const auto text = [](const auto& id) { return id ? fmt::format("{}", *id) : std::string{"none"}; };
       add_device_change("node-id", text(before_.node_id), text(after_.node_id));
@@ -125,7 +125,7 @@ class DeviceComparison {
   void compare_objects(const Object* a, const Object* b) {
     if (a == nullptr || b == nullptr) {
       const Object& there = a != nullptr ? *a : *b;
-      changes_.add(either<ChangeRule>(a != nullptr, "object-removed", "object-added"), index_label(there.index),
+      changes_.add(a != nullptr ? ChangeRule{"object-removed"} : ChangeRule{"object-added"}, index_label(there.index),
                    there.name, a != nullptr ? a->position : Position{before_.source},
                    b != nullptr ? b->position : Position{after_.source});
       return;
@@ -148,7 +148,7 @@ class DeviceComparison {
                      bool has_sub_indices) {
     if (a == nullptr || b == nullptr) {
       const Entry& there = a != nullptr ? *a : *b;
-      changes_.add(either<ChangeRule>(a != nullptr, "entry-removed", "entry-added"),
+      changes_.add(a != nullptr ? ChangeRule{"entry-removed"} : ChangeRule{"entry-added"},
                    entry_label(there.index, there.sub_index), there.name,
                    a != nullptr ? a->position : old_object.position, b != nullptr ? b->position : new_object.position);
       return;
@@ -165,7 +165,7 @@ class DeviceComparison {
     const bool compiles = old_name == new_name;
     if (compiles && a.name == b.name) return;
     Change& change =
-        changes_.add(either<ChangeRule>(compiles, "name", "identifier"), label, b.name, a.position, b.position);
+        changes_.add(compiles ? ChangeRule{"name"} : ChangeRule{"identifier"}, label, b.name, a.position, b.position);
     change.old_value = compiles ? fmt::format("\"{}\"", a.name) : old_name;
     change.new_value = compiles ? fmt::format("\"{}\"", b.name) : new_name;
   }

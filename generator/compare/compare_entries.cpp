@@ -113,7 +113,9 @@ class EntryComparison {
     const canopen::AccessRow& new_row = canopen::row_of(after_.access);
     const bool loses = (old_row.readable && !new_row.readable) || (old_row.writable && !new_row.writable);
     const bool gains = (!old_row.readable && new_row.readable) || (!old_row.writable && new_row.writable);
-    add(either<ChangeRule>(loses, "access-reduced", either<ChangeRule>(gains, "access-extended", "access-other")),
+    add(loses   ? ChangeRule{"access-reduced"}
+        : gains ? ChangeRule{"access-extended"}
+                : ChangeRule{"access-other"},
         before_.access_position, after_.access_position, std::string{old_row.name}, std::string{new_row.name});
   }
 
@@ -123,7 +125,7 @@ class EntryComparison {
       return canopen::allows(before_.mappable(), direction) && !canopen::allows(after_.mappable(), direction);
     };
     const bool reduced = loses(Mappable::tpdo) || loses(Mappable::rpdo);
-    add(either<ChangeRule>(reduced, "mapping-reduced", "mapping-extended"), before_.mapping_position,
+    add(reduced ? ChangeRule{"mapping-reduced"} : ChangeRule{"mapping-extended"}, before_.mapping_position,
         after_.mapping_position, mappable_text(before_), mappable_text(after_));
   }
 
@@ -137,8 +139,9 @@ class EntryComparison {
     if (old_number == new_number && !follows_node_id) return;
     const bool narrowed = follows_node_id || (is_low ? new_number > old_number : new_number < old_number);
     const bool written = canopen::writable(before_.access) || in_rpdo_;
-    const auto rule = either<ChangeRule>(!written, "limit-read-only",
-                                         either<ChangeRule>(narrowed, "limit-narrowed", "limit-widened"));
+    const ChangeRule rule = !written   ? ChangeRule{"limit-read-only"}
+                            : narrowed ? ChangeRule{"limit-narrowed"}
+                                       : ChangeRule{"limit-widened"};
     Change& change =
         add(rule, place_of(old_limit, before_), place_of(new_limit, after_),
             fmt::format("{} {}", which, value_text(old_limit, *before_.type)), value_text(new_limit, *after_.type));
@@ -184,8 +187,8 @@ class EntryComparison {
   /// CiA 301, 7.5.2.21: the high word counts the changes of the CANopen behaviour.
   void compare_revision() {
     const auto major = [](const std::optional<Value>& value) { return value ? value->bits >> 16 : 0; };
-    add(either<ChangeRule>(major(before_.default_value) != major(after_.default_value), "revision-major",
-                           "revision-minor"),
+    add(major(before_.default_value) != major(after_.default_value) ? ChangeRule{"revision-major"}
+                                                                    : ChangeRule{"revision-minor"},
         place_of(before_.default_value, before_), place_of(after_.default_value, after_),
         value_text(before_.default_value, *before_.type), value_text(after_.default_value, *after_.type));
   }

@@ -61,7 +61,8 @@ class PdoComparison {
   void compare() {
     compare_state();
     compare_cob_id();
-    compare_parameter(transmission_type_sub_index, either<ChangeRule>(is_used_, "pdo-transmission", "default-value"));
+    compare_parameter(transmission_type_sub_index,
+                      is_used_ ? ChangeRule{"pdo-transmission"} : ChangeRule{"default-value"});
     compare_timing();
     compare_layout();
   }
@@ -74,7 +75,7 @@ class PdoComparison {
 
   void compare_state() {
     if (on_by_default(before_) == on_by_default(after_)) return;
-    report(cob_id_sub_index, either<ChangeRule>(on_by_default(before_), "pdo-disabled", "pdo-enabled"));
+    report(cob_id_sub_index, on_by_default(before_) ? ChangeRule{"pdo-disabled"} : ChangeRule{"pdo-enabled"});
   }
 
   /// CAN-ID and flags, except for the valid bit of the PDO.
@@ -88,7 +89,7 @@ class PdoComparison {
     const CobIdService service = after_.direction == PdoDirection::receive ? CobIdService::rpdo : CobIdService::tpdo;
     for (CobIdChange& found : compare_cob_ids(old_id, new_id, type, service)) {
       const ChangeRule rule =
-          either<ChangeRule>(found.rule == ChangeRule{"pdo-cob-id"} && !is_used_, "default-value", found.rule);
+          found.rule == ChangeRule{"pdo-cob-id"} && !is_used_ ? ChangeRule{"default-value"} : found.rule;
       Change& change =
           add(rule, old_id ? old_id->position : before_.position, new_id ? new_id->position : after_.position);
       if (rule == ChangeRule{"default-value"} && new_entry != nullptr) change.name = new_entry->name;
@@ -141,7 +142,7 @@ class PdoComparison {
     const bool ignores_more = after_.direction == PdoDirection::transmit || old_layout.empty();
     const bool extended = old_end == old_layout.end() && ignores_more;
     const auto first = static_cast<std::size_t>(old_end - old_layout.begin());
-    Change& change = add(either<ChangeRule>(extended, "pdo-layout-extended", "pdo-layout"),
+    Change& change = add(extended ? ChangeRule{"pdo-layout-extended"} : ChangeRule{"pdo-layout"},
                          mapping_position(before_, first), mapping_position(after_, first));
     change.breaks.pdo = change.breaks.pdo && is_used_;
     change.old_value = layout_text(old_layout);

@@ -104,11 +104,4 @@ class RuleOf : public RuleId {
   }
 };
 
-/// One of two rules: `either<ErrorRule>(is_late, "late", "early")`. Clang 14 ends with a segmentation fault if a
-/// conditional expression has two rules that are made from texts.
-template <class OneRule>
-[[nodiscard]] constexpr OneRule either(bool is_first, OneRule first, OneRule second) {
-  return is_first ? first : second;
-}
-
 }  // namespace edsc

@@ -96,7 +96,7 @@ std::optional<AnyRule> rule_of(const Dut& dut, const LiveEntry& entry) {
   const Device& sheet = dut.sheet();
   for (const ConditionalParameter& parameter : conditional_parameters()) {
     if (is_locked(sheet, parameter, entry))
-      return either<AnyRule>(is_implied(sheet, parameter), "implied-option", "never-writable");
+      return is_implied(sheet, parameter) ? AnyRule{"implied-option"} : AnyRule{"never-writable"};
   }
   if (is_of_static_mapping(sheet, entry)) return AnyRule{"never-writable"};
   if (entry.index == sync_overflow && dut.has(sync_period) && !dut.is_writable(sync_period))
