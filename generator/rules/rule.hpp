@@ -6,9 +6,19 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <optional>
 #include <span>
 #include <string_view>
+
+// Clang before 16 ends with a segmentation fault where a rule is made at compile time within an expression. It makes
+// them when the program runs; other compilers report an unknown id.
+#if defined(__clang__) && __clang_major__ < 16
+#define EDSC_RULES_AT_RUN_TIME
+#define EDSC_CONSTEVAL constexpr
+#else
+#define EDSC_CONSTEVAL consteval
+#endif
 
 namespace edsc {
 
@@ -75,8 +85,13 @@ class RuleId {
 
 namespace rule_table {
 /// Names in the compiler's error for an unknown id, or a severity that the row does not allow.
+#ifdef EDSC_RULES_AT_RUN_TIME
+[[noreturn]] inline void no_such_rule() { std::abort(); }
+[[noreturn]] inline void severity_is_not_in_the_row_of_the_rule() { std::abort(); }
+#else
 void no_such_rule();
 void severity_is_not_in_the_row_of_the_rule();
+#endif
 
 template <Severity severity, Severity... others>
 inline constexpr bool is_one_of = ((severity == others) || ...);
@@ -87,7 +102,7 @@ inline constexpr bool is_one_of = ((severity == others) || ...);
 template <const auto& table, Severity... severities>
 class RuleOf : public RuleId {
  public:
-  consteval RuleOf(const char* id) : RuleId{row_with(id)} {
+  EDSC_CONSTEVAL RuleOf(const char* id) : RuleId{row_with(id)} {
     if (!(row().allows(severities) && ...)) rule_table::severity_is_not_in_the_row_of_the_rule();
   }
   /// A rule with several severities converts to a rule with some of them.
@@ -97,7 +112,7 @@ class RuleOf : public RuleId {
       : RuleId{other} {}
 
  private:
-  static consteval const Rule& row_with(std::string_view id) {
+  static EDSC_CONSTEVAL const Rule& row_with(std::string_view id) {
     const auto found = find_rule(table, id);
     if (!found) rule_table::no_such_rule();
     return found->row();
