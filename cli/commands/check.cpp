@@ -59,17 +59,17 @@ void print_example(std::string_view title, const std::vector<std::string>& block
 }
 
 int explain(const Rule& rule, const std::string& format) {
-  const std::vector<RuleExample>& examples = examples_of(RuleId{rule});
+  const std::vector<RuleExample>& of_rule = examples_of(RuleId{rule});
   if (format == "text") {
     fmt::print("{}: {}\n{}\nSource: {}\nDocumentation, with examples: {}\n", rule.id, to_string(rule.severity),
                rule.title, rule.source, url_of(rule));
-    for (const RuleExample& example : examples) {
+    for (const RuleExample& example : of_rule) {
       print_example("Wrong", example.wrong);
       print_example("Right", example.right);
     }
   } else {
     nlohmann::ordered_json json = to_json(rule);
-    for (const RuleExample& example : examples) {
+    for (const RuleExample& example : of_rule) {
       json["examples"].push_back({{"wrong", example.wrong}, {"right", example.right}});
     }
     fmt::print("{}\n", json_text(json));
