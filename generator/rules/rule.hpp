@@ -97,8 +97,9 @@ template <Severity severity, Severity... others>
 inline constexpr bool is_one_of = ((severity == others) || ...);
 }  // namespace rule_table
 
-/// The id of a row of `table` whose findings may have each of these severities. It is made from its text; a text that
-/// the table does not have does not compile.
+/// The id of a row of `table` whose findings may have each of these severities. It is made from its text. An id that
+/// the table does not have, or a severity that its row does not allow, does not compile; a program that Clang before 16
+/// has compiled ends when it uses one.
 template <const auto& table, Severity... severities>
 class RuleOf : public RuleId {
  public:
