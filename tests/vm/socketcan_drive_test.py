@@ -38,7 +38,10 @@ def dialogue(bus: Bus) -> None:
     for _ in range(3):
         expect("heartbeat", bus.receive(0x700 + NODE), "05")
     bus.send(0x000, "82 00")
-    expect("reset communication", bus.receive(0x700 + NODE), "00")
+    following = bus.receive(0x700 + NODE)
+    while following == "05":  # a heartbeat that the drive sent before it received the command
+        following = bus.receive(0x700 + NODE)
+    expect("reset communication", following, "00")
 
 
 def main() -> int:
