@@ -58,6 +58,44 @@ inline constexpr PermissionRow permission_options[] = {
     {Permission::outputs, "--outputs"},
 };
 
+/// What a case needs of the bus, the host and the device, besides the behaviour that it tests. A failure without it
+/// proves nothing: the case is inconclusive.
+enum class Condition : std::uint8_t {
+  none = 0,
+  state = 1,          ///< the device is in the NMT state of the last NMT command
+  remote_frames = 2,  ///< the bus carries remote frames
+  usable_value = 4,   ///< an object has a value that the case can use
+  stimulus = 8,       ///< a stimulus exists and comes in time
+  punctual = 16,      ///< the test, and a device on the same host, are not late
+  alone = 32,         ///< no other node is on the bus
+  error_free = 64,    ///< 1001h:00 is 0: an error may change the NMT state (1029h)
+  reachable = 128,    ///< the device responds with its node-ID; each case needs it
+};
+
+[[nodiscard]] constexpr Condition operator|(Condition a, Condition b) {
+  return static_cast<Condition>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+[[nodiscard]] constexpr bool includes(Condition all, Condition some) {
+  return (static_cast<unsigned>(all) & static_cast<unsigned>(some)) == static_cast<unsigned>(some);
+}
+
+struct ConditionRow {
+  Condition condition;
+  std::string_view name;  ///< in JSON
+  std::string_view text;  ///< in reports
+};
+
+inline constexpr ConditionRow conditions[] = {
+    {Condition::state, "state", "NMT state"},
+    {Condition::remote_frames, "remote_frames", "remote frames"},
+    {Condition::usable_value, "usable_value", "usable value"},
+    {Condition::stimulus, "stimulus", "stimulus"},
+    {Condition::punctual, "punctual", "delay"},
+    {Condition::alone, "alone", "other nodes"},
+    {Condition::error_free, "error_free", "error of the device"},
+    {Condition::reachable, "reachable", "presence"},
+};
+
 /// `run` returns if the device passes. A member of Dut ends it with any other verdict.
 struct CaseRow {
   std::string_view id;      ///< `2.5`: area and number
@@ -66,6 +104,8 @@ struct CaseRow {
   Level level = Level::read;
   Permission needs = Permission::none;
   void (*run)(Dut&) = nullptr;
+  Condition relies_on = Condition::none;  ///< besides `reachable`
+  std::string_view cause{};               ///< id of the case whose failure also fails this one
 };
 
 /// `run` of cases that differ in a value: `with<write_in_block, guard_time>` calls `write_in_block(dut, guard_time)`.

@@ -29,8 +29,14 @@ bool is_selected(const CaseRow& row, const std::vector<std::string>& only) {
          std::ranges::any_of(only, [&](const std::string& pattern) { return matches(pattern, row.id); });
 }
 
-/// Runs the case and puts the values of the device back. Throws Interrupted and BusLost.
-CaseResult run_case(const CaseRow& row, Dut& dut) {
+void set_unmet(CaseResult& result, Unmet unmet) {
+  result.verdict = Verdict::inconclusive;
+  result.condition = unmet.condition;
+  result.reason = std::move(unmet.reason);
+}
+
+/// Runs the case once and puts the values of the device back. Throws Interrupted and BusLost.
+CaseResult run_once(const CaseRow& row, Dut& dut) {
   CaseResult result;
   result.row = &row;
   dut.begin_case(row);
@@ -43,13 +49,74 @@ CaseResult run_case(const CaseRow& row, Dut& dut) {
     result.got = std::move(end.got);
     result.rule = end.rule;
     result.failed_entries = std::move(end.failed_entries);
+    result.condition = end.condition;
+  }
+  const bool is_of_device = result.verdict == Verdict::failed && result.rule.text().empty();
+  if (is_of_device) {
+    if (auto unmet = dut.unmet_condition(row)) set_unmet(result, std::move(*unmet));
+  }
+  if (result.verdict == Verdict::passed) {
+    // Silence after a remote frame that was not transmitted proves nothing.
+    if (auto unmet = dut.unmet_remote_frames(row)) set_unmet(result, std::move(*unmet));
   }
   dut.end_case(result);
   return result;
 }
 
+std::string why_twins(canopen::NodeId node) {
+  return fmt::format(
+      "each request is answered twice: two devices have node-ID {}, or the device sends each response twice",
+      node.value());
+}
+
+/// Why the run cannot continue after a case; empty: it can.
+std::string why_lost(const CaseResult& result, Dut& dut) {
+  const unsigned node = dut.node().value();
+  const auto other = dut.other_boot_up();
+  if (!dut.responds()) {
+    std::string reason =
+        fmt::format("node {} no longer responds since case {} ({})", node, result.row->id, result.row->title);
+    if (other) reason += fmt::format("; a boot-up message of node {} was received during it", other->value());
+    return reason;
+  }
+  if (result.verdict == Verdict::failed && dut.has_twin()) return why_twins(dut.node());
+  return {};
+}
+
+/// A failure that ends the run proves nothing about the requirement of the case.
+void end_run(CaseResult& result, std::string reason, RunReport& report) {
+  if (result.verdict == Verdict::failed) {
+    result.verdict = Verdict::inconclusive;
+    result.condition = Condition::reachable;
+    result.reason = reason;
+  }
+  report.lost = std::move(reason);
+}
+
+/// Runs the case, and again if it has failed: a failure must repeat.
+CaseResult run_case(const CaseRow& row, Dut& dut, RunReport& report) {
+  CaseResult first = run_once(row, dut);
+  if (std::string reason = why_lost(first, dut); !reason.empty()) {
+    end_run(first, std::move(reason), report);
+    return first;
+  }
+  if (first.verdict != Verdict::failed || !first.rule.text().empty()) return first;
+  dut.start_again();
+  CaseResult second = run_once(row, dut);
+  second.not_put_back.insert(second.not_put_back.end(), first.not_put_back.begin(), first.not_put_back.end());
+  if (std::string reason = why_lost(second, dut); !reason.empty()) end_run(second, std::move(reason), report);
+  if (second.verdict == Verdict::failed) return second;
+  const auto judged = first.judged_frames();
+  second.first_run = FirstRun{std::move(first.expected), std::move(first.got), {judged.begin(), judged.end()}};
+  if (second.verdict != Verdict::inconclusive) {
+    second.reason = fmt::format("failed, and the repetition has the verdict {}", row_of(second.verdict).text);
+    second.verdict = Verdict::inconclusive;
+  }
+  return second;
+}
+
 void run_selected(const std::vector<const CaseRow*>& rows, Dut& dut, const RunSettings& settings, RunReport& report) {
-  for (std::size_t i = 0; i != rows.size(); ++i) {
+  for (std::size_t i = 0; i != rows.size() && report.lost.empty(); ++i) {
     settings.began(*rows[i], i, rows.size());
     CaseResult result;
     if (std::string missing = missing_permission(*rows[i], settings.dut); !missing.empty()) {
@@ -57,7 +124,7 @@ void run_selected(const std::vector<const CaseRow*>& rows, Dut& dut, const RunSe
       result.verdict = Verdict::not_run;
       result.reason = std::move(missing);
     } else {
-      result = run_case(*rows[i], dut);
+      result = run_case(*rows[i], dut, report);
     }
     report.not_put_back.insert(report.not_put_back.end(), result.not_put_back.begin(), result.not_put_back.end());
     report.cases.push_back(std::move(result));
@@ -87,12 +154,17 @@ void refuse_enabled_drive(SdoAccess& node, const Device& sheet, const Identity& 
                   settings.node.value(), reason)};
 }
 
-/// Reads the identity of the device. Returns false if it does not answer.
-bool find_device(LiveBus& bus, const Device& sheet, const DutSettings& settings, RunReport& report) {
+/// Reads the identity of the device. Returns false if the run cannot begin: the device does not respond in time, or two
+/// devices respond.
+bool find_device(LiveBus& bus, const Device& sheet, const DutSettings& settings, Dut& dut, RunReport& report) {
   SdoAccess access{bus, settings.node, settings.sdo};
-  const SdoOutcome answer = access.upload(0x1000, 0);
-  if (answer.end == SdoEnd::no_answer) {
-    report.lost = fmt::format("node {} does not answer", settings.node.value());
+  if (access.upload(device_type, 0).end == SdoEnd::no_answer) {
+    report.lost = fmt::format("node {} does not respond within {} ms", settings.node.value(), settings.sdo.timeout_ms);
+    if (dut.responds()) report.lost += "; it responds later: give a longer --timeout";
+    return false;
+  }
+  if (dut.has_twin()) {
+    report.lost = why_twins(settings.node);
     return false;
   }
   const Identity found = read_identity(access).identity;
@@ -112,8 +184,9 @@ void run_cases(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const RunSet
   std::vector<const CaseRow*> rows = all_cases();
   std::erase_if(rows, [&](const CaseRow* row) { return !is_selected(*row, settings.only); });
   try {
-    if (!find_device(bus, sheet, settings.dut, report)) return;
     Dut dut{bus, sheet, stimuli, settings.dut};
+    dut.on_record = [&report](const SeenFrame& seen) { report.frames.push_back(seen); };
+    if (!find_device(bus, sheet, settings.dut, dut, report)) return;
     try {
       report.not_put_back = dut.find_state();
       run_selected(rows, dut, settings, report);

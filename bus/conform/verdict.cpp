@@ -28,7 +28,59 @@ std::string shell_word(std::string_view word) {
   return quoted + '\'';
 }
 
+/// The failed case at the end of the chain of `CaseRow::cause`.
+const CaseResult& root_of(const std::vector<CaseResult>& cases, const CaseResult& failed) {
+  const CaseResult* root = &failed;
+  for (std::size_t i = 0; i != cases.size() && !root->row->cause.empty(); ++i) {
+    const auto above = std::ranges::find_if(cases, [&](const CaseResult& result) {
+      return result.row->id == root->row->cause && result.verdict == Verdict::failed;
+    });
+    if (above == cases.end()) break;
+    root = &*above;
+  }
+  return *root;
+}
+
+std::string cause_text(const CaseResult& root) {
+  if (!root.rule.text().empty()) {
+    return fmt::format("the EDS: {}; rule {} of edsc check reports it", root.got, root.rule.text());
+  }
+  return fmt::format("{} {}: {}", root.row->id, root.row->title, root.got);
+}
+
 }  // namespace
+
+std::vector<Cause> RunReport::causes() const {
+  std::vector<Cause> found;
+  std::vector<const CaseResult*> roots;
+  for (const CaseResult& result : cases) {
+    if (result.verdict != Verdict::failed) continue;
+    const CaseResult& root = root_of(cases, result);
+    const auto has_same_cause = [&](const CaseResult* other) {
+      return other == &root || (!root.rule.text().empty() && other->rule.text() == root.rule.text());
+    };
+    const auto place = std::ranges::find_if(roots, has_same_cause) - roots.begin();
+    if (static_cast<std::size_t>(place) == roots.size()) {
+      roots.push_back(&root);
+      found.push_back({cause_text(root), {}});
+    }
+    found[static_cast<std::size_t>(place)].cases.push_back(&result);
+  }
+  return found;
+}
+
+std::vector<MissingCondition> RunReport::missing_conditions() const {
+  std::vector<MissingCondition> found;
+  for (const CaseResult& result : cases) {
+    if (result.verdict != Verdict::inconclusive || result.condition == Condition::none) continue;
+    auto place = std::ranges::find_if(found, [&](const MissingCondition& missing) {
+      return missing.condition == result.condition && missing.reason == result.reason;
+    });
+    if (place == found.end()) place = found.insert(place, {result.condition, result.reason, {}});
+    place->cases.push_back(&result);
+  }
+  return found;
+}
 
 std::size_t RunReport::count(Verdict verdict) const {
   return static_cast<std::size_t>(

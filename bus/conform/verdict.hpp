@@ -22,7 +22,7 @@ enum class Verdict : std::uint8_t {
   failed,
   not_applicable,  ///< the EDS does not have what the case tests, or the program of the device omits it
   deviates,        ///< failed, as the file of deviations declares
-  inconclusive,    ///< no result: a stimulus is missing, or the computer of the test was too slow
+  inconclusive,    ///< no result: a condition of the case does not hold, or a repetition has another verdict
   not_run,         ///< the run may not do what the case needs
 };
 
@@ -52,10 +52,19 @@ struct SeenFrame {
   bool sent = false;     ///< by the test
 };
 
+/// A failure that a repetition of the case did not confirm.
+struct FirstRun {
+  std::string expected;
+  std::string got;
+  std::vector<SeenFrame> frames;  ///< until the failure
+};
+
 struct CaseResult {
   const CaseRow* row = nullptr;
   Verdict verdict = Verdict::passed;
   std::string reason;                        ///< why it neither passed nor failed: `1017h:00 does not exist in the EDS`
+  Condition condition = Condition::none;     ///< that does not hold, of an inconclusive case
+  std::optional<FirstRun> first_run;         ///< of a case whose repetition has another verdict
   std::string expected;                      ///< of a failure: `0609 0011h, sub-index does not exist`
   std::string got;                           ///< of a failure: `no answer within 500 ms`
   RuleId rule;                               ///< of `edsc check`, if an error in the EDS is the cause of the failure
@@ -75,9 +84,27 @@ struct CaseResult {
   }
 };
 
+/// Failed cases with one cause.
+struct Cause {
+  std::string text;  ///< the failure of the first case, or the rule of `edsc check`
+  std::vector<const CaseResult*> cases;
+};
+
+/// Inconclusive cases that rely on the same condition, for the same reason.
+struct MissingCondition {
+  Condition condition;
+  std::string reason;
+  std::vector<const CaseResult*> cases;
+};
+
 /// The results of a run, as its reports show them.
 struct RunReport {
-  std::string bus;  ///< the address
+  std::string title;          ///< of the report, as the user gives it; may be empty
+  std::string operator_name;  ///< the person who tests; may be empty
+  std::string place;          ///< where; may be empty
+  std::string host;           ///< name of the computer of the test
+  std::int64_t started = 0;   ///< seconds since 1970-01-01 00:00 UTC; 0: not known
+  std::string bus;            ///< the address
   std::uint8_t node = 0;
   std::string sheet;            ///< path as it was given
   std::string options;          ///< path of the options file if it was given
@@ -91,12 +118,17 @@ struct RunReport {
   std::uint32_t seed = 0;
   std::string version;  ///< of edsc
   std::vector<CaseResult> cases;
+  std::vector<SeenFrame> frames;               ///< of the whole run, also between cases
   std::vector<std::string> unused_deviations;  ///< declared, but the case passed: an error
   std::vector<std::string> not_put_back;       ///< at the end of the run
   bool interrupted = false;
-  std::string lost;  ///< why the run ended early: the bus is lost, or the device does not answer
+  std::string lost;  ///< why the run ended early: the bus is lost, or the device does not respond
 
   [[nodiscard]] std::size_t count(Verdict verdict) const;
+  /// The causes of the failed cases, in the order of their first case.
+  [[nodiscard]] std::vector<Cause> causes() const;
+  /// The conditions that did not hold, in the order of their first case.
+  [[nodiscard]] std::vector<MissingCondition> missing_conditions() const;
   /// Cases ran and none failed, no deviation is unused, all values are put back and the run is complete.
   [[nodiscard]] bool passed() const;
 };

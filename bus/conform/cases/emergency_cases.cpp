@@ -58,7 +58,9 @@ Raised raise(Dut& dut) {
   Raised error{emcy_cob_id(dut), generic_error, true, dut.mark(), {}};
   if (!dut.stimuli().emergency(generic_error, generic_bit)) {
     const std::optional<ShortRpdo> rpdo = find_rpdo(dut);
-    if (!rpdo) dut.inconclusive("the device has no valid RPDO: the case needs a stimulus that causes an error");
+    if (!rpdo)
+      dut.inconclusive(Condition::stimulus,
+                       "the device has no valid RPDO: the case needs a stimulus that causes an error");
     dut.need_permission(Permission::outputs);
     dut.enter(NmtState::operational);
     error = {error.cob_id, canopen::emergency_code::pdo_length, false, dut.mark(), {}};
@@ -207,11 +209,11 @@ constexpr CaseRow emergency_rows[] = {
     {"5.3", "The error history 1003h has as many errors as 1003h:00 says", "CiA 301, 7.5.2.4", Level::read,
      Permission::none, read_history},
     {"5.4", "An error sends one EMCY with its code", "CiA 301, 7.2.7.1 and 7.2.7.3", Level::communication,
-     Permission::none, force_message},
+     Permission::none, force_message, Condition::state | Condition::stimulus},
     {"5.5", "The error register 1001h equals that of the last EMCY", "CiA 301, 7.2.7.3.1 and 7.5.2.2",
-     Level::communication, Permission::none, register_follows},
+     Level::communication, Permission::none, register_follows, Condition::state | Condition::stimulus, "5.4"},
     {"5.6", "The error history 1003h begins with the error of the last EMCY", "CiA 301, 7.5.2.4", Level::communication,
-     Permission::none, history_follows},
+     Permission::none, history_follows, Condition::state | Condition::stimulus, "5.4"},
     {"5.7", "A write of 0 to 1003h:00 deletes the errors, and other values are refused", "CiA 301, 7.5.2.4",
      Level::communication, Permission::none, delete_history},
 };

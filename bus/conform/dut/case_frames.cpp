@@ -55,7 +55,9 @@ void CaseFrames::take_frame(Duration longest) {
 }
 
 std::optional<SeenFrame> CaseFrames::wait_for(const Match& match, Duration span, Mark since) {
-  const TimePoint end = bus_.now() + span;
+  constexpr std::uint64_t slow = 20'000;
+  const std::uint64_t more = slowest_response_ > slow ? slowest_response_ : 0;
+  const TimePoint end = bus_.now() + span + Duration{static_cast<std::uint32_t>(more)};
   for (;;) {
     for (; since < frames_.size(); ++since) {
       if (frames_[since].sent || !match(frames_[since].frame)) continue;
@@ -94,6 +96,25 @@ void CaseFrames::record(const Frame& frame, TimePoint at, bool sent) {
     last_time_ = at;
   }
   frames_.push_back({frame, elapsed_, sent});
+  on_record(frames_.back());
+  measure_response(frame, sent);
+}
+
+void CaseFrames::measure_responses(std::uint32_t request_id, std::uint32_t response_id) {
+  request_id_ = request_id;
+  response_id_ = response_id;
+}
+
+void CaseFrames::measure_response(const Frame& frame, bool sent) {
+  if (sent && with_id(request_id_)(frame)) {
+    requested_at_ = elapsed_;
+  } else if (!sent && requested_at_ && with_id(response_id_)(frame)) {
+    const std::uint64_t took = elapsed_ - *requested_at_;
+    const bool is_first = slowest_response_ == 0;
+    fastest_response_ = is_first ? took : std::min(fastest_response_, took);
+    slowest_response_ = std::max(slowest_response_, took);
+    requested_at_.reset();
+  }
 }
 
 CaseFrames::Match CaseFrames::with_id(std::uint32_t can_id) {

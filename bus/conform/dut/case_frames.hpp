@@ -33,7 +33,8 @@ class CaseFrames {
   void send(const canopen::Frame& frame);
   void send(std::uint32_t can_id, std::span<const std::uint8_t> data);
   void send_remote(std::uint32_t can_id, std::uint8_t size);
-  /// Returns the first matching frame that was received since the mark. Waits for at most `span`.
+  /// Returns the first matching frame that was received since the mark. Waits for at most `span`, and longer for a
+  /// device whose responses are slow: see `slowest_response`. To test silence, use `collect`.
   std::optional<SeenFrame> wait_for(const Match& match, Duration span, Mark since);
   std::optional<SeenFrame> wait_for(const Match& match, Duration span) { return wait_for(match, span, mark()); }
   /// Waits for `span` and returns all matching frames that were received.
@@ -49,10 +50,19 @@ class CaseFrames {
   /// Matches data frames with the CAN-ID of a COB-ID as an object holds it. Ignores bit 31 (valid).
   [[nodiscard]] static Match with_cob_id(std::uint32_t cob_id);
 
+  /// Called with each frame on the bus, also between cases.
+  std::function<void(const SeenFrame&)> on_record = [](const SeenFrame&) {};
+
   /// By how much the test itself was late during this case, in microseconds.
   [[nodiscard]] std::uint64_t lag() const { return lag_; }
+  /// By how much the responses of the device varied during the run, in microseconds: the computer of the device, which
+  /// may be that of the test, was late by that much.
+  [[nodiscard]] std::uint64_t device_lag() const { return slowest_response_ - fastest_response_; }
+  [[nodiscard]] std::uint64_t slowest_response() const { return slowest_response_; }
 
  protected:
+  /// Frames with these CAN-IDs are requests, each with one response.
+  void measure_responses(std::uint32_t request_id, std::uint32_t response_id);
   /// Forgets the frames and the lag of the last case.
   void clear_frames();
   [[nodiscard]] const std::vector<SeenFrame>& frames() const { return frames_; }
@@ -61,6 +71,7 @@ class CaseFrames {
 
  private:
   void record(const canopen::Frame& frame, canopen::TimePoint at, bool sent);
+  void measure_response(const canopen::Frame& frame, bool sent);
   void take_frame(Duration longest);
 
   LiveBus& bus_;
@@ -69,6 +80,9 @@ class CaseFrames {
   std::uint64_t elapsed_ = 0;  ///< microseconds since the run began, at last_time_
   std::uint64_t lag_ = 0;
   Mark last_match_ = 0;
+  std::uint32_t request_id_ = 0, response_id_ = 0;
+  std::optional<std::uint64_t> requested_at_;
+  std::uint64_t fastest_response_ = 0, slowest_response_ = 0;  ///< microseconds
 };
 
 }  // namespace edsc::conform

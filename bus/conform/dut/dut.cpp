@@ -33,6 +33,18 @@ constexpr Duration to_follow = milliseconds{50};
 /// The time that a device may need to start.
 constexpr Duration to_start = milliseconds{5000};
 
+/// The state that an NMT command leads to. A reset leads to one that 1F80h may select.
+std::optional<NmtState> state_after(NmtCommand command) {
+  switch (command) {
+    case NmtCommand::start: return NmtState::operational;
+    case NmtCommand::stop: return NmtState::stopped;
+    case NmtCommand::enter_pre_operational: return NmtState::pre_operational;
+    case NmtCommand::reset_node:
+    case NmtCommand::reset_communication: break;
+  }
+  return std::nullopt;
+}
+
 std::uint32_t seed_of(std::uint32_t seed, std::string_view id) {
   for (const char letter : id) seed = seed * 31 + static_cast<unsigned char>(letter);
   return seed;
@@ -58,7 +70,10 @@ Dut::Dut(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const DutSettings&
       settings_{settings},
       sdo_{bus, settings.node, settings.sdo},
       found_values_{sdo_, sheet},
-      random_{settings.seed} {}
+      random_{settings.seed} {
+  const auto sdo_server = canopen::default_sdo(settings.node);
+  measure_responses(sdo_server.request.can_id(), sdo_server.response.can_id());
+}
 
 // ---- the EDS ----
 
@@ -247,6 +262,7 @@ void Dut::nmt(NmtCommand command) {
   const bool resets = command == NmtCommand::reset_node || command == NmtCommand::reset_communication;
   if (resets) found_values_.remember_before_reset();
   state_changed_ = true;
+  commanded_ = state_after(command);
   send(canopen::nmt_frame(command, node()));
 }
 
@@ -309,7 +325,10 @@ void Dut::fail_by_sheet(AnyRule rule, std::string expected, std::string got) {
   throw CaseEnd{Verdict::failed, {}, std::move(expected), std::move(got), rule};
 }
 void Dut::not_applicable(std::string reason) { throw CaseEnd{Verdict::not_applicable, std::move(reason), {}, {}}; }
-void Dut::inconclusive(std::string reason) { throw CaseEnd{Verdict::inconclusive, std::move(reason), {}, {}}; }
+void Dut::inconclusive(std::string reason) { inconclusive(Condition::none, std::move(reason)); }
+void Dut::inconclusive(Condition condition, std::string reason) {
+  throw CaseEnd{Verdict::inconclusive, std::move(reason), {}, {}, {}, {}, condition};
+}
 
 void Dut::need_part(std::string_view name) {
   if (std::ranges::find(settings_.omitted, name) == settings_.omitted.end()) return;
@@ -358,9 +377,12 @@ void Dut::expect_time(std::uint64_t measured, std::uint64_t low, std::uint64_t h
   const std::uint64_t wider = tolerance().count();
   if (measured + wider >= low && measured <= high + wider) return;
   const std::uint64_t misses = measured < low ? low - measured : measured - high;
-  if (misses <= lag() + settings_.tolerance.count()) {
-    inconclusive(fmt::format("{}: measured {}, but the test itself was late by {}", what, milliseconds_text(measured),
-                             milliseconds_text(lag())));
+  const auto is_explained = [&] { return misses <= lag() + device_lag() + wider; };
+  if (!is_explained()) measure_device_lag();
+  if (is_explained()) {
+    inconclusive(Condition::punctual,
+                 fmt::format("{}: measured {}, but the test was late by {}, the device by {}", what,
+                             milliseconds_text(measured), milliseconds_text(lag()), milliseconds_text(device_lag())));
   }
   fail(fmt::format("{}: {} to {}", what, milliseconds_text(low), milliseconds_text(high)), milliseconds_text(measured));
 }
@@ -374,9 +396,116 @@ void Dut::begin_case(const CaseRow& row) {
   warnings_.clear();
   next_answer_ = 0;
   failed_.reset();
+  commanded_.reset();
   case_began_ = now();
   random_.seed(seed_of(settings_.seed, row.id));
   stimuli_.begin_case(row.id);
+}
+
+std::optional<std::string> Dut::unmet_error_free() {
+  if (!is_readable(error_register)) return std::nullopt;
+  const SdoOutcome outcome = upload(error_register);
+  if (!outcome.done() || number_of(outcome.bytes) == 0) return std::nullopt;
+  return fmt::format("1001h:00 is {:02X}h: the device has an error, which may change its NMT state (1029h)",
+                     number_of(outcome.bytes));
+}
+
+std::optional<std::string> Dut::unmet_state() {
+  if (!commanded_) return std::nullopt;
+  std::optional<NmtState> found;
+  try {
+    if (commanded_ == NmtState::stopped || watch_state()) found = state();
+  } catch (const CaseEnd&) {
+    return std::nullopt;  // 1017h cannot be used as the EDS says: a case reports it
+  }
+  if (!found || found == commanded_) return std::nullopt;
+  std::string reason = fmt::format("the device is {}, not {} after the NMT command", canopen::to_text(*found),
+                                   canopen::to_text(*commanded_));
+  if (const auto error = unmet_error_free()) reason += "; " + *error;
+  return reason;
+}
+
+std::optional<std::string> Dut::late() const {
+  constexpr std::uint64_t may_be_late = 20'000;
+  if (lag() + device_lag() <= may_be_late) return std::nullopt;
+  return fmt::format("the computer of the test or of the device is too slow or too busy: more than {} late",
+                     milliseconds_text(may_be_late));
+}
+
+/// Reads 1000h:00 several times. The time of each response is measured.
+void Dut::measure_device_lag() {
+  if (commanded_ == NmtState::stopped) return;
+  constexpr unsigned requests = 20;
+  for (unsigned i = 0; i < requests; ++i) {
+    if (!upload(device_type).done()) return;
+    pass_time(milliseconds{5});
+  }
+}
+
+std::optional<Unmet> Dut::unmet_remote_frames(const CaseRow& row) const {
+  if (!includes(row.relies_on, Condition::remote_frames) || settings_.simulated || remote_frames_carried_) {
+    return std::nullopt;
+  }
+  return Unmet{Condition::remote_frames,
+               "no remote frame was answered in this run: the bus may not carry remote frames"};
+}
+
+std::optional<Unmet> Dut::unmet_condition(const CaseRow& row) {
+  const auto unmet = [&](Condition condition, std::optional<std::string> reason) -> std::optional<Unmet> {
+    if (!reason) return std::nullopt;
+    return Unmet{condition, std::move(*reason)};
+  };
+  if (auto found = unmet_remote_frames(row)) return found;
+  if (includes(row.relies_on, Condition::state)) {
+    if (auto found = unmet(Condition::state, unmet_state())) return found;
+  }
+  if (includes(row.relies_on, Condition::error_free)) {
+    if (auto found = unmet(Condition::error_free, unmet_error_free())) return found;
+  }
+  if (includes(row.relies_on, Condition::punctual)) {
+    if (!late()) measure_device_lag();
+    if (auto found = unmet(Condition::punctual, late())) return found;
+  }
+  return std::nullopt;
+}
+
+bool Dut::responds() {
+  constexpr unsigned longest_ms = 3000;
+  sdo_.set_timeout(std::max(settings_.sdo.timeout_ms, longest_ms));
+  const SdoOutcome outcome = sdo_.upload(device_type, 0);
+  sdo_.set_timeout(settings_.sdo.timeout_ms);
+  return outcome.end != SdoEnd::no_answer;
+}
+
+bool Dut::has_twin() {
+  constexpr unsigned tries = 3;
+  const Match response = with_id(canopen::default_sdo(node()).response.can_id());
+  for (unsigned i = 0; i < tries; ++i) {
+    const Mark since = mark();
+    if (sdo_.upload(device_type, 0).end == SdoEnd::no_answer) return false;
+    pass_time(milliseconds{50});
+    if (received_since(since, response).size() < 2) return false;
+  }
+  return true;
+}
+
+std::optional<canopen::NodeId> Dut::other_boot_up() const {
+  for (const SeenFrame& seen : frames()) {
+    const std::uint32_t id = seen.frame.id & 0x7FU;
+    const bool is_boot_up =
+        !seen.sent && id != 0 && with_id(0x700U + id)(seen.frame) && seen.frame.size == 1 && seen.frame.data[0] == 0;
+    if (is_boot_up && id != node().value()) return canopen::NodeId{static_cast<std::uint8_t>(id)};
+  }
+  return std::nullopt;
+}
+
+void Dut::start_again() {
+  if (settings_.level == Level::read) return;
+  // A reset node also resets the application. Without the permission to write it, it could not be put back.
+  nmt(allowed(Permission::application) ? NmtCommand::reset_node : NmtCommand::reset_communication);
+  const Mark since = mark();
+  (void)wait_for(boot_up(), milliseconds{2000}, since);
+  pass_time(to_follow);
 }
 
 void Dut::end_case(CaseResult& result) {

@@ -53,6 +53,13 @@ struct CaseEnd {
   std::string got;
   RuleId rule{};                               ///< of `edsc check` that reports the cause in the EDS
   std::vector<EntryAddress> failed_entries{};  ///< all of them, of a case that tries many
+  Condition condition{};                       ///< that does not hold, of an inconclusive case
+};
+
+/// A condition of a case that does not hold, and how that was seen.
+struct Unmet {
+  Condition condition;
+  std::string reason;
 };
 
 struct DutSettings {
@@ -175,15 +182,20 @@ class Dut : public CaseFrames {
   void expect_done(const SdoOutcome& outcome, const std::string& what);
   void expect_equal(std::uint64_t got, std::uint64_t expected, const std::string& what);
   /// Expects a measured time, in microseconds, within limits widened by the tolerance. Inconclusive if it misses the
-  /// limits by no more than the tolerance and the lag of the test together.
+  /// limits by no more than the tolerance, the lag of the test and the lag of the device together.
   void expect_time(std::uint64_t measured, std::uint64_t low, std::uint64_t high, const std::string& what);
   void warn(std::string text) { warnings_.push_back(std::move(text)); }
   [[noreturn]] void not_applicable(std::string reason);
   /// Ends the case as not applicable if the program of the device omits this part.
   void need_part(std::string_view name);
   [[noreturn]] void inconclusive(std::string reason);
+  /// Ends the case as inconclusive because a condition does not hold.
+  [[noreturn]] void inconclusive(Condition condition, std::string reason);
   /// Ends the case as inconclusive if the run does not have the permission.
   void need_permission(Permission permission);
+
+  /// A remote frame was answered: the bus carries them.
+  void note_remote_frame_answered() { remote_frames_carried_ = true; }
 
   /// By how much a time may differ: the tolerance of the run.
   [[nodiscard]] Duration tolerance() const;
@@ -198,6 +210,19 @@ class Dut : public CaseFrames {
 
   /// The result names what could not be put back. Throws Interrupted, BusLost.
   void begin_case(const CaseRow& row);
+  /// After a failure: the first condition of the case that does not hold. Call it before `end_case`.
+  [[nodiscard]] std::optional<Unmet> unmet_condition(const CaseRow& row);
+  /// Whether the case relies on remote frames that the bus may not carry: none was answered.
+  [[nodiscard]] std::optional<Unmet> unmet_remote_frames(const CaseRow& row) const;
+  /// Whether the device responds to an SDO request. Gives a slow device several seconds.
+  [[nodiscard]] bool responds();
+  /// Whether the device sends two responses to each request, so that two devices may have the node-ID.
+  [[nodiscard]] bool has_twin();
+  /// Another node-ID with which a device has sent a boot-up message during the case.
+  [[nodiscard]] std::optional<canopen::NodeId> other_boot_up() const;
+  /// Resets the device, as far as the permissions allow, so that a case begins again from a known state. Does not fail
+  /// without a boot-up message.
+  void start_again();
   void end_case(CaseResult& result);
   /// Puts back what was changed and not yet put back: at an interruption, and at the end. Returns what could not be.
   std::vector<std::string> put_back();
@@ -206,6 +231,10 @@ class Dut : public CaseFrames {
 
  private:
   [[nodiscard]] LiveEntry live(std::uint16_t index, std::uint8_t sub_index) const;
+  [[nodiscard]] std::optional<std::string> unmet_state();
+  [[nodiscard]] std::optional<std::string> unmet_error_free();
+  [[nodiscard]] std::optional<std::string> late() const;
+  void measure_device_lag();
 
   const Device& sheet_;
   Stimuli& stimuli_;
@@ -220,6 +249,8 @@ class Dut : public CaseFrames {
   bool transfer_open_ = false;
   std::optional<Mark> failed_;                    ///< where the case failed
   bool guarded_ = false;                          ///< the state is read by node guarding
+  bool remote_frames_carried_ = false;            ///< seen in this run
+  std::optional<canopen::NmtState> commanded_;    ///< by the last NMT command of this case
   Mark next_answer_ = 0;                          ///< of `answer`
   std::optional<canopen::NmtState> found_state_;  ///< before the run
 };

@@ -85,7 +85,8 @@ bool Slave::in_sequence(Command first, std::span<const std::uint32_t> words, Com
 
 void need_silent_bus(Dut& dut) {
   if (hears_other_nodes(dut, milliseconds{1200})) {
-    dut.inconclusive("the service also addresses the other nodes on the bus; test the device alone on the bus");
+    dut.inconclusive(Condition::alone,
+                     "the service also addresses the other nodes on the bus; test the device alone on the bus");
   }
 }
 

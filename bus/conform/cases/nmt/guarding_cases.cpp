@@ -49,7 +49,8 @@ void toggle(Dut& dut) {
 void foreign_requests(Dut& dut) {
   need_guarding(dut);
   if (hears_other_nodes(dut, milliseconds{1200})) {
-    dut.inconclusive("other nodes are on the bus and must not be guarded; test the device alone on the bus");
+    dut.inconclusive(Condition::alone,
+                     "other nodes are on the bus and must not be guarded; test the device alone on the bus");
   }
   dut.enter(NmtState::pre_operational);
   (void)guard(dut);
@@ -59,7 +60,7 @@ void foreign_requests(Dut& dut) {
     const bool follows = (seen.frame.data[0] & 0x7FU) == static_cast<unsigned>(NmtState::stopped);
     dut.expect(!follows, "no answer to a request for another node-ID", fmt::format("one on {:X}h", seen.frame.id));
   }
-  dut.inconclusive("another node is on the bus; test the device alone on the bus");
+  dut.inconclusive(Condition::alone, "another node is on the bus; test the device alone on the bus");
 }
 
 void write_guarding(Dut& dut) {
@@ -104,15 +105,16 @@ constexpr CaseRow guarding_rows[] = {
     {"7.1", "100Ch and 100Dh can be read", "CiA 301, 7.5.2.11 and 7.5.2.12", Level::communication, Permission::none,
      read_guarding},
     {"7.2", "A remote frame of node guarding is answered once, with the NMT state", "CiA 301, 7.2.8.3.2.1",
-     Level::communication, Permission::none, answer},
+     Level::communication, Permission::none, answer, Condition::remote_frames},
     {"7.3", "The toggle bit is 0 after a reset and alternates", "CiA 301, 7.2.8.3.2.1", Level::communication,
-     Permission::none, toggle},
+     Permission::none, toggle, Condition::remote_frames, "7.2"},
     {"7.4", "Remote frames of node guarding for other node-IDs are not answered", "CiA 301, 7.2.8.3.2.1 and 7.3.5",
-     Level::communication, Permission::none, foreign_requests},
+     Level::communication, Permission::none, foreign_requests, Condition::remote_frames | Condition::alone, "7.2"},
     {"7.5", "100Ch and 100Dh keep the written values", "CiA 301, 7.5.2.11 and 7.5.2.12", Level::communication,
      Permission::none, write_guarding},
     {"7.6", "After a node life time without guarding requests the device sends an EMCY with code 8130h",
-     "CiA 301, 7.2.8.3.2.1", Level::communication, Permission::none, life_guarding},
+     "CiA 301, 7.2.8.3.2.1", Level::communication, Permission::none, life_guarding,
+     Condition::remote_frames | Condition::punctual, "7.2"},
 };
 
 }  // namespace

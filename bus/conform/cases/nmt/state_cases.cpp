@@ -121,11 +121,12 @@ constexpr CaseRow state_rows[] = {
     {"9.1", "After a reset the device sends one boot-up message and has its power-on values",
      "CiA 301, 7.2.8.3.3 and 7.3.2.2.1", Level::communication, Permission::none, boot_up},
     {"9.2", "After its boot-up message the device is Pre-operational: SDO, SYNC, EMCY and error control, but no PDO",
-     "CiA 301, 7.3.2.2.2 and 7.3.2.2.5", Level::communication, Permission::none, pre_operational},
+     "CiA 301, 7.3.2.2.2 and 7.3.2.2.5", Level::communication, Permission::none, pre_operational,
+     Condition::error_free | Condition::punctual, "9.1"},
     {"9.3", "In Operational all services are active", "CiA 301, 7.3.2.2.3 and 7.3.2.2.5", Level::communication,
-     Permission::none, operational},
+     Permission::none, operational, Condition::error_free | Condition::punctual},
     {"9.4", "In Stopped only NMT and error control are active", "CiA 301, 7.3.2.2.4 and 7.3.2.2.5",
-     Level::communication, Permission::none, stopped},
+     Level::communication, Permission::none, stopped, Condition::error_free | Condition::punctual},
 };
 
 }  // namespace

@@ -51,13 +51,17 @@ void service(Dut& dut, NmtState to) {
 
 constexpr CaseRow transition_rows[] = {
     {"10.1", "Reset node and reset communication lead from each state to a boot-up message and to Pre-operational",
-     "CiA 301, 7.2.8.2.1.4, 7.2.8.2.1.5 and 7.3.2", Level::communication, Permission::none, resets},
+     "CiA 301, 7.2.8.2.1.4, 7.2.8.2.1.5 and 7.3.2", Level::communication, Permission::none, resets,
+     Condition::error_free | Condition::punctual, "9.1"},
     {"10.2", "Enter pre-operational leads from each state to Pre-operational", "CiA 301, 7.2.8.2.1.6 and 7.3.2",
-     Level::communication, Permission::none, with<service, NmtState::pre_operational>},
+     Level::communication, Permission::none, with<service, NmtState::pre_operational>,
+     Condition::error_free | Condition::punctual},
     {"10.3", "Start remote node leads from each state to Operational", "CiA 301, 7.2.8.2.1.2 and 7.3.2",
-     Level::communication, Permission::none, with<service, NmtState::operational>},
+     Level::communication, Permission::none, with<service, NmtState::operational>,
+     Condition::error_free | Condition::punctual},
     {"10.4", "Stop remote node leads from each state to Stopped", "CiA 301, 7.2.8.2.1.3 and 7.3.2",
-     Level::communication, Permission::none, with<service, NmtState::stopped>},
+     Level::communication, Permission::none, with<service, NmtState::stopped>,
+     Condition::error_free | Condition::punctual},
 };
 
 }  // namespace

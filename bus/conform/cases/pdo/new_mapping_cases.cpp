@@ -108,7 +108,7 @@ void expect_received_as_mapped(Dut& dut, Remapping& remapping, const std::vector
   const auto cob_id = static_cast<std::uint32_t>(dut.read_number(index, cob_id_parameter));
   if (dut.has(index, type_parameter) && dut.read_number(index, type_parameter) < 254) {
     if (!dut.is_writable(index, type_parameter)) return;
-    dut.write(index, type_parameter, event_driven);
+    dut.write(index, type_parameter, within_limits(dut, index, type_parameter, event_driven));
   }
   std::vector<std::uint64_t> values;
   std::uint64_t salt = 0;
@@ -182,7 +182,7 @@ constexpr CaseRow new_mapping_rows[] = {
     {"3.21", "Each object that a PDO maps exists and may be mapped", "CiA 301, 7.5.2.36", Level::read, no_permission,
      mapping_fits_dictionary},
     {"3.22", "A new mapping by the procedure of CiA 301 is accepted and used", "CiA 301, 7.5.2.36", with_writes,
-     with_sync, takes_new_mapping},
+     with_sync, takes_new_mapping, Condition::state},
 };
 
 }  // namespace

@@ -27,6 +27,7 @@ bool changes_by_itself(Dut& dut, const Tpdo& tpdo) {
 
 void no_stimulus(Dut& dut, const Tpdo& tpdo) {
   dut.inconclusive(
+      Condition::stimulus,
       fmt::format("no stimulus changes an object of {} ({}); use --stimulus with a command that changes one",
                   tpdo.name(), objects_text(tpdo.mapping)));
 }

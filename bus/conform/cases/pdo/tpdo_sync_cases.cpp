@@ -118,11 +118,11 @@ void sends_from_sync_start_value(Dut& dut) {
 
 constexpr CaseRow tpdo_sync_rows[] = {
     {"3.6", "In Operational a cyclic synchronous TPDO is sent at every n-th SYNC", "CiA 301, 7.5.2.37", with_writes,
-     with_sync, sends_at_each_nth_sync},
+     with_sync, sends_at_each_nth_sync, Condition::state},
     {"3.7", "In Operational an acyclic synchronous TPDO is sent at the SYNC after an event", "CiA 301, 7.5.2.37",
-     with_writes, with_sync, sends_at_sync_after_event},
+     with_writes, with_sync, sends_at_sync_after_event, Condition::state | Condition::stimulus, "3.6"},
     {"3.8", "In Operational a synchronous TPDO waits for its SYNC start value", "CiA 301, 7.5.2.37", with_writes,
-     with_sync, sends_from_sync_start_value},
+     with_sync, sends_from_sync_start_value, Condition::state, "3.6"},
 };
 
 }  // namespace

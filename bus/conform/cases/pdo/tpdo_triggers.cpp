@@ -44,8 +44,8 @@ void SyncSource::enable_counter() {
 
 void SyncSource::send() {
   if (!dut_.received_since(since_, Dut::with_cob_id(cob_id_)).empty()) {
-    dut_.inconclusive(
-        fmt::format("another node produces SYNC (CAN-ID {:X}h); stop it for this case", CobId{cob_id_}.can_id()));
+    dut_.inconclusive(Condition::alone, fmt::format("another node produces SYNC (CAN-ID {:X}h); stop it for this case",
+                                                    CobId{cob_id_}.can_id()));
   }
   sent_at_ = dut_.now();
   const std::uint8_t counter[] = {next_};
@@ -60,7 +60,7 @@ std::vector<SeenFrame> SyncSource::send_and_collect(const Dut::Match& match) {
   return dut_.received_since(since, match);
 }
 
-Event::Event(Dut& dut, const std::vector<MappingValue>& mapping) : stimuli_{dut.stimuli()} {
+Event::Event(Dut& dut, const std::vector<MappingValue>& mapping) : dut_{dut} {
   for (const MappingValue& mapped : mapping) {
     if (mapped.index < 0x2000 || !dut.is_readable(mapped.index, mapped.sub_index)) continue;
     const SdoOutcome outcome = dut.upload(mapped.index, mapped.sub_index);
@@ -75,8 +75,8 @@ Event::~Event() {
 }
 
 bool Event::set(const Candidate& candidate, bool changed) {
-  return stimuli_.set(candidate.mapped.index, candidate.mapped.sub_index,
-                      changed ? candidate.changed : candidate.present);
+  return dut_.stimuli().set(candidate.mapped.index, candidate.mapped.sub_index,
+                            changed ? candidate.changed : candidate.present);
 }
 
 bool Event::apply() {
@@ -88,6 +88,16 @@ bool Event::apply() {
   works_ = true;
   is_changed_ = !is_changed_;
   return true;
+}
+
+bool Event::read_back() {
+  if (candidates_.empty()) return true;
+  const Candidate& candidate = candidates_.front();
+  const SdoOutcome outcome = dut_.upload(candidate.mapped.index, candidate.mapped.sub_index);
+  if (!outcome.done()) return true;
+  const bool was_changed = is_changed_;
+  is_changed_ = outcome.bytes == candidate.changed;
+  return is_changed_ == was_changed;
 }
 
 bool Event::use_next() {

@@ -51,6 +51,9 @@ class Event {
 
   /// Changes the object between two values. Returns false if no stimulus changes any of the objects.
   [[nodiscard]] bool apply();
+  /// Reads the object, so that the next change is one: the application may have written its own value. Returns whether
+  /// the object still has the value that was set last.
+  bool read_back();
   /// Selects the next object, because a change of the present one is not an event. Returns false if there is no other
   /// object; the present one remains selected.
   [[nodiscard]] bool use_next();
@@ -64,7 +67,7 @@ class Event {
 
   [[nodiscard]] bool set(const Candidate& candidate, bool changed);
 
-  Stimuli& stimuli_;
+  Dut& dut_;
   std::vector<Candidate> candidates_;  ///< the first one is selected
   bool works_ = false;
   bool is_changed_ = false;

@@ -41,8 +41,16 @@ LiveEntry need_long_entry(Dut& dut) {
   Entries entries = long_entries(dut);
   const auto is_constant = [](const LiveEntry& e) { return e.entry->access == canopen::Access::constant; };
   std::stable_partition(entries.begin(), entries.end(), is_constant);
+  const LiveEntry* short_entry = nullptr;
+  constexpr std::size_t most_expedited = 4;
   for (const LiveEntry& entry : entries) {
-    if (is_segmented(dut, entry)) return entry;
+    if (!is_segmented(dut, entry)) continue;
+    const SdoOutcome present = dut.upload(entry.index, entry.sub_index);
+    if (!present.done() || present.bytes.size() > most_expedited) return entry;
+    short_entry = &entry;
+  }
+  if (short_entry != nullptr) {
+    dut.inconclusive(Condition::usable_value, title(*short_entry) + " has a value of at most 4 bytes");
   }
   dut.not_applicable("no readable entry of the EDS has a value of more than 4 bytes");
 }

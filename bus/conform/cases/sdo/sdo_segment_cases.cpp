@@ -60,11 +60,11 @@ constexpr CaseRow sdo_segment_rows[] = {
     {"2.15", "1017h:00 is written in a segment", "CiA 301, 7.2.4.3.4", Level::communication, none,
      with<write_segmented, producer_heartbeat>},
     {"2.16", "A value of more than four bytes is uploaded in segments", "CiA 301, 7.2.4.3.6", Level::read, none,
-     read_long_value},
+     read_long_value, Condition::usable_value},
     {"2.17", "A segment requested with the wrong toggle bit is refused", "CiA 301, 7.2.4.3.7", Level::read, none,
-     wrong_toggle_bit},
+     wrong_toggle_bit, Condition::usable_value, "2.16"},
     {"2.18", "Randomly selected long values are completely uploaded in segments", "CiA 301, 7.2.4.3.7", Level::read,
-     none, read_segmented},
+     none, read_segmented, Condition::usable_value, "2.16"},
 };
 
 }  // namespace

@@ -110,7 +110,7 @@ NodeId free_node_id(Dut& dut) {
   for (std::uint8_t node = 127; node > 0; --node) {
     if (!taken.contains(node)) return NodeId{node};
   }
-  dut.inconclusive("no free node-ID on this bus");
+  dut.inconclusive(Condition::alone, "no free node-ID on this bus");
 }
 
 std::optional<Parameter> harmless_parameter(const Dut& dut) {
@@ -194,6 +194,10 @@ void expect_state_after_boot_up(Dut& dut) {
     const std::uint64_t bits = dut.read_number(nmt_startup);
     if ((bits & master) != 0 && dut.state() == NmtState::operational) return;
     if ((bits & (master | no_self_start)) == 0) return dut.expect_state(NmtState::operational);
+  }
+  // A transition of table 38 of CiA 301 is "automatically", by local control.
+  if (dut.state() == NmtState::operational) {
+    return dut.warn("the device is Operational after its boot-up message, without an NMT command");
   }
   dut.expect_state(NmtState::pre_operational);
 }

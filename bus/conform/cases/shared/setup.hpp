@@ -71,8 +71,8 @@ void start_sync(Dut& dut, std::uint32_t cob_id, Duration period);
 
 /// Resets the device and fails unless it sends exactly one boot-up message.
 void expect_one_boot_up(Dut& dut, canopen::NmtCommand command);
-/// Fails if the device is not Pre-operational after its boot-up message. Operational is also accepted if 1F80h allows
-/// the device to start by itself. Call `watch_state` before.
+/// Fails if the device is not Pre-operational after its boot-up message. Operational is also accepted: with a warning,
+/// unless 1F80h demands it, because a device may start by local control. Call `watch_state` before.
 void expect_state_after_boot_up(Dut& dut);
 
 }  // namespace edsc::conform
