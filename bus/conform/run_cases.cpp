@@ -69,13 +69,17 @@ std::string why_twins(canopen::NodeId node) {
       node.value());
 }
 
-/// Why the run cannot continue after a case; empty: it can.
-std::string why_lost(const CaseResult& result, Dut& dut) {
-  const unsigned node = dut.node().value();
+/// Why the run cannot continue after a case; empty: it can. A device that is silent may respond again after a reset.
+std::string why_lost(CaseResult& result, Dut& dut) {
   const auto other = dut.other_boot_up();
   if (!dut.responds()) {
-    std::string reason =
-        fmt::format("node {} no longer responds since case {} ({})", node, result.row->id, result.row->title);
+    dut.start_again();
+    if (dut.responds()) {
+      result.warnings.emplace_back("after the case the device responded only when it was reset");
+      return {};
+    }
+    std::string reason = fmt::format("node {} no longer responds since case {} ({})", dut.node().value(),
+                                     result.row->id, result.row->title);
     if (other) reason += fmt::format("; a boot-up message of node {} was received during it", other->value());
     return reason;
   }

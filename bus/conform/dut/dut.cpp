@@ -481,10 +481,14 @@ bool Dut::has_twin() {
   constexpr unsigned tries = 3;
   const Match response = with_id(canopen::default_sdo(node()).response.can_id());
   for (unsigned i = 0; i < tries; ++i) {
-    const Mark since = mark();
-    if (sdo_.upload(device_type, 0).end == SdoEnd::no_answer) return false;
-    pass_time(milliseconds{50});
-    if (received_since(since, response).size() < 2) return false;
+    for (const std::uint16_t index : {device_type, error_register}) {
+      sdo::Data initiate{0x40};
+      sdo::put_multiplexer(initiate, index, 0);
+      request(initiate);
+      const std::size_t responses = collect(response, milliseconds{50}).size();
+      end_transfer(index, 0);
+      if (responses < 2) return false;
+    }
   }
   return true;
 }
