@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <map>
 #include <memory>
 
@@ -24,6 +25,7 @@
 #include "shared/live_options.hpp"
 #include "shared/output.hpp"
 #include "shared/with_bus.hpp"
+#include "system/host_name.hpp"
 #include "system/run_program.hpp"
 
 namespace edsc {
@@ -52,6 +54,7 @@ struct Settings : NodeSettings {
   std::vector<std::string> only;
   std::vector<std::string> stimuli;
   std::string deviations, html, junit, json, log;
+  std::string title, operator_name, place;
   bool list = false;
   bool quiet = false;
   std::uint32_t seed = 1;
@@ -258,6 +261,11 @@ int run_conform(const Settings& settings) {
   report.product = loaded->device->product_name;
   report.vendor = loaded->device->vendor_name;
   report.version = EDSC_VERSION;
+  report.title = settings.title;
+  report.operator_name = settings.operator_name;
+  report.place = settings.place;
+  report.host = host_name();
+  report.started = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   return with_bus(settings.bus, [&](LiveBus& bus) {
     run_and_print(bus, settings, *loaded, run, *deviations, report);
     write_reports(settings, report, *loaded->device);
@@ -275,8 +283,10 @@ void add_conform_options(Command command, int& exit_code) {
   const Option sheet =
       command.add_option("FILE", settings.sheet, "description of the node: EDS, DCF, XDD or XDC").required();
   add_options_option(command, settings.options);
-  add_choice(command, "--level", settings.level, {"read", "communication", "all"},
-             "what the test may do to the node: read, communication or all");
+  std::vector<std::string> names;
+  for (const conform::LevelRow& row : conform::levels) names.emplace_back(row.name);
+  add_choice(command, "--level", settings.level, names,
+             fmt::format("what the test may do to the node: {}", fmt::join(names, ", ")).c_str());
   command.add_flag("--store", settings.store,
                    "store and restore parameters (1010h, 1011h), then restore the original values");
   command.add_flag("--application", settings.application, "write objects from 2000h, then restore the original values");
@@ -304,6 +314,9 @@ void add_conform_options(Command command, int& exit_code) {
   command.add_option("--junit", settings.junit, "write it as JUnit XML").type_name("FILE");
   command.add_option("--json", settings.json, "write it as JSON").type_name("FILE");
   command.add_option("--log", settings.log, "write the frames as a candump log").type_name("FILE");
+  command.add_option("--title", settings.title, "title of the report").type_name("TEXT");
+  command.add_option("--operator", settings.operator_name, "who tests, for the report").type_name("NAME");
+  command.add_option("--place", settings.place, "where the test is done, for the report").type_name("TEXT");
   command.add_option("--seed", settings.seed, "seed of the randomly chosen accesses").show_default();
   command.add_flag("--quiet", settings.quiet, "print only failures and the result");
   add_timeout_option(command, settings.sdo.timeout_ms);

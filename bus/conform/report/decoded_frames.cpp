@@ -12,25 +12,25 @@
 
 namespace edsc::conform {
 
-void decode_frames(const CaseResult& result, std::uint8_t node, const Device& sheet,
+void decode_frames(std::span<const SeenFrame> frames, std::uint8_t node, const Device& sheet,
                    const std::function<void(const SeenFrame&, const Message&)>& use) {
   Decoder decoder{{KnownNode{node, &sheet}}};
   Message message;
-  for (const SeenFrame& seen : result.judged_frames()) {
+  for (const SeenFrame& seen : frames) {
     decoder.decode({seen.frame, true, static_cast<std::int64_t>(seen.at)}, message);
     use(seen, message);
   }
 }
 
-std::vector<std::string> frame_lines(const CaseResult& result, std::uint8_t node, const Device& sheet,
+std::vector<std::string> frame_lines(std::span<const SeenFrame> frames, std::uint8_t node, const Device& sheet,
                                      std::size_t max_frames) {
   std::vector<std::string> lines;
-  std::size_t left_out = result.judged_frames().size() - std::min(result.judged_frames().size(), max_frames);
+  std::size_t left_out = frames.size() - std::min(frames.size(), max_frames);
   if (left_out > 0)
     lines.push_back(fmt::format("{} not shown; --log writes all frames", counted(left_out, "earlier frame")));
   const NodeLabels labels;
-  const std::size_t width = result.judged_frames().empty() ? 0 : time_text(result.judged_frames().back().at).size();
-  decode_frames(result, node, sheet, [&](const SeenFrame& seen, const Message& message) {
+  const std::size_t width = frames.empty() ? 0 : time_text(frames.back().at).size();
+  decode_frames(frames, node, sheet, [&](const SeenFrame& seen, const Message& message) {
     if (left_out > 0) {
       --left_out;
       return;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,15 +13,15 @@
 
 namespace edsc::conform {
 
-/// Calls `use` with each frame of the case, in the order of the bus. The message is valid until `use` returns. PDOs are
-/// decoded with the mapping of the EDS and the changes that the case itself has written.
-void decode_frames(const CaseResult& result, std::uint8_t node, const Device& sheet,
+/// Calls `use` with each frame, in the order of the bus. The message is valid until `use` returns. PDOs are
+/// decoded with the mapping of the EDS and the changes that these frames have written.
+void decode_frames(std::span<const SeenFrame> frames, std::uint8_t node, const Device& sheet,
                    const std::function<void(const SeenFrame&, const Message&)>& use);
 
-/// The last frames of a case, one per line, without line end: `12.003481 TX 705 05    HEART    node 5  operational`. If
+/// The last of the frames, one per line, without line end: `12.003481 TX 705 05    HEART    node 5  operational`. If
 /// earlier frames are left out, the first line has their number.
-[[nodiscard]] std::vector<std::string> frame_lines(const CaseResult& result, std::uint8_t node, const Device& sheet,
-                                                   std::size_t max_frames);
+[[nodiscard]] std::vector<std::string> frame_lines(std::span<const SeenFrame> frames, std::uint8_t node,
+                                                   const Device& sheet, std::size_t max_frames);
 
 /// TX: sent by the test; RX: received.
 [[nodiscard]] constexpr std::string_view direction_text(const SeenFrame& seen) { return seen.sent ? "TX" : "RX"; }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "backend/render.hpp"
 #include "conform/report/decoded_frames.hpp"
@@ -38,10 +39,10 @@ json frame_view(const SeenFrame& seen, const Message& message) {
                                           : "sent"}};
 }
 
-json frames_view(const CaseResult& result, const RunReport& run, const Device& sheet) {
-  std::size_t left_out = result.judged_frames().size() - std::min(result.judged_frames().size(), max_html_frames);
+json frames_view(std::span<const SeenFrame> seen_frames, const RunReport& run, const Device& sheet) {
+  std::size_t left_out = seen_frames.size() - std::min(seen_frames.size(), max_html_frames);
   json frames = json::array();
-  decode_frames(result, run.node, sheet, [&](const SeenFrame& seen, const Message& message) {
+  decode_frames(seen_frames, run.node, sheet, [&](const SeenFrame& seen, const Message& message) {
     if (left_out > 0) {
       --left_out;
     } else {
@@ -52,7 +53,6 @@ json frames_view(const CaseResult& result, const RunReport& run, const Device& s
 }
 
 std::string frames_remark(std::size_t frames) {
-  if (frames == 0) return "no frames";
   if (frames <= max_html_frames) return {};
   return fmt::format("{} not shown; --log writes all frames", counted(frames - max_html_frames, "earlier frame"));
 }
@@ -64,9 +64,43 @@ std::string note_of(const CaseResult& result) {
   return "warning: " + result.warnings.front();
 }
 
+/// Adds the frames, if there are any, under a heading.
+void add_frames(json& tables, std::string_view heading, std::span<const SeenFrame> frames, const RunReport& run,
+                const Device& sheet) {
+  if (frames.empty()) return;
+  tables.push_back({{"heading", heading},
+                    {"remark", shown(frames_remark(frames.size()))},
+                    {"frames", frames_view(frames, run, sheet)}});
+}
+
+json case_link(const CaseResult* result) { return {{"id", result->row->id}}; }
+
+json case_links(const std::vector<const CaseResult*>& cases) {
+  json links = json::array();
+  for (const CaseResult* result : cases) links.push_back(case_link(result));
+  return links;
+}
+
+json causes_view(const RunReport& run) {
+  json causes = json::array();
+  for (const Cause& cause : run.causes()) causes.push_back({{"text", cause.text}, {"cases", case_links(cause.cases)}});
+  return causes;
+}
+
+json conditions_view(const RunReport& run) {
+  json view = json::array();
+  for (const MissingCondition& missing : run.missing_conditions()) {
+    view.push_back({{"text", condition_text(missing)}, {"cases", case_links(missing.cases)}});
+  }
+  return view;
+}
+
 json case_view(const CaseResult& result, const RunReport& run, const Device& sheet) {
   const CaseRow& row = *result.row;
   const bool ran = result.verdict != Verdict::not_run;
+  json tables = json::array();
+  if (result.first_run) add_frames(tables, "first run", result.first_run->frames, run, sheet);
+  add_frames(tables, result.first_run ? "repetition" : "frames", result.judged_frames(), run, sheet);
   return {{"id", row.id},
           {"title", row.title},
           {"verdict", row_of(result.verdict).name},
@@ -82,9 +116,8 @@ json case_view(const CaseResult& result, const RunReport& run, const Device& she
           {"not_put_back", result.not_put_back},
           {"lag", duration_text(result.lag)},
           {"repeat", repeat_command(run, row)},
-          {"remark", shown(frames_remark(result.judged_frames().size()))},
-          {"has_frames", !result.judged_frames().empty()},
-          {"frames", frames_view(result, run, sheet)}};
+          {"first_run", shown(result.first_run ? first_run_text(*result.first_run) : "")},
+          {"tables", std::move(tables)}};
 }
 
 json count_view(const VerdictRow& row, std::size_t count) {
@@ -126,6 +159,15 @@ std::string html_report(const RunReport& run, const Device& sheet) {
                      {"sentence", result_sentence(run)},
                      {"has_problems", !problems.empty()},
                      {"problems", problems},
+                     {"title", shown(run.title)},
+                     {"date", shown(local_time_text(run))},
+                     {"operator", shown(run.operator_name)},
+                     {"place", shown(run.place)},
+                     {"host", shown(run.host)},
+                     {"causes_sentence", shown(causes_sentence(run))},
+                     {"causes", causes_view(run)},
+                     {"has_conditions", !run.missing_conditions().empty()},
+                     {"conditions", conditions_view(run)},
                      {"product", run.product.empty() ? fmt::format("node {}", run.node) : run.product},
                      {"vendor", shown(run.vendor)},
                      {"identity", shown(run.read_identity)},

@@ -1,6 +1,8 @@
 #include "conform/report/json_report.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "conform/report/decoded_frames.hpp"
 #include "conform/report/report_facts.hpp"
@@ -30,19 +32,67 @@ json frame_object(const SeenFrame& seen, const Message& message) {
           {"problem", message.problem}};
 }
 
+json frame_objects(std::span<const SeenFrame> frames, const RunReport& run, const Device& sheet) {
+  json objects = json::array();
+  decode_frames(frames, run.node, sheet,
+                [&](const SeenFrame& seen, const Message& message) { objects.push_back(frame_object(seen, message)); });
+  return objects;
+}
+
+/// Null unless a repetition has another verdict.
+json first_run_object(const CaseResult& result, const RunReport& run, const Device& sheet) {
+  if (!result.first_run) return nullptr;
+  const FirstRun& first = *result.first_run;
+  return {{"expected", first.expected}, {"got", first.got}, {"frames", frame_objects(first.frames, run, sheet)}};
+}
+
+json ids(const std::vector<const CaseResult*>& cases) {
+  json list = json::array();
+  for (const CaseResult* result : cases) list.push_back(result->row->id);
+  return list;
+}
+
+/// Null for no condition.
+json condition_name(Condition condition) {
+  if (condition == Condition::none) return nullptr;
+  return std::ranges::find(conditions, condition, &ConditionRow::condition)->name;
+}
+
+json condition_names(Condition all) {
+  json names = json::array();
+  for (const ConditionRow& row : conditions) {
+    if (includes(all, row.condition)) names.push_back(row.name);
+  }
+  return names;
+}
+
+json causes_array(const RunReport& run) {
+  json causes = json::array();
+  for (const Cause& cause : run.causes()) causes.push_back({{"text", cause.text}, {"cases", ids(cause.cases)}});
+  return causes;
+}
+
+json missing_conditions_array(const RunReport& run) {
+  json missing_conditions = json::array();
+  for (const MissingCondition& missing : run.missing_conditions()) {
+    missing_conditions.push_back(
+        {{"condition", condition_name(missing.condition)}, {"reason", missing.reason}, {"cases", ids(missing.cases)}});
+  }
+  return missing_conditions;
+}
+
 json case_object(const CaseResult& result, const RunReport& run, const Device& sheet) {
   const CaseRow& row = *result.row;
-  json frames = json::array();
-  decode_frames(result, run.node, sheet,
-                [&](const SeenFrame& seen, const Message& message) { frames.push_back(frame_object(seen, message)); });
   return {{"id", row.id},
           {"area", area_of(row).id},
           {"title", row.title},
           {"clause", row.clause},
           {"level", row_of(row.level).name},
           {"needs", permission_names(row.needs)},
+          {"relies_on", condition_names(row.relies_on)},
           {"verdict", row_of(result.verdict).name},
           {"reason", text_or_null(result.reason)},
+          {"condition", condition_name(result.condition)},
           {"expected", text_or_null(result.expected)},
           {"got", text_or_null(result.got)},
           {"rule", text_or_null(std::string{result.rule.text()})},
@@ -53,7 +103,8 @@ json case_object(const CaseResult& result, const RunReport& run, const Device& s
           {"took_us", result.took},
           {"lag_us", result.lag},
           {"repeat", repeat_command(run, row)},
-          {"frames", std::move(frames)}};
+          {"first_run", first_run_object(result, run, sheet)},
+          {"frames", frame_objects(result.judged_frames(), run, sheet)}};
 }
 
 /// Null for a device on a bus.
@@ -83,6 +134,11 @@ std::string json_report(const RunReport& run, const Device& sheet) {
       {"version", 1},
       {"edsc", run.version},
       {"passed", run.passed()},
+      {"title", text_or_null(run.title)},
+      {"operator", text_or_null(run.operator_name)},
+      {"place", text_or_null(run.place)},
+      {"host", text_or_null(run.host)},
+      {"started", text_or_null(run.started == 0 ? "" : utc_text(run) + 'Z')},
       {"bus", run.bus},
       {"node_id", run.node},
       {"eds",
@@ -101,6 +157,8 @@ std::string json_report(const RunReport& run, const Device& sheet) {
       {"unused_deviations", run.unused_deviations},
       {"not_put_back", run.not_put_back},
       {"verdicts", std::move(totals)},
+      {"causes", causes_array(run)},
+      {"missing_conditions", missing_conditions_array(run)},
       {"areas", std::move(areas)},
       {"cases", std::move(cases)}};
   return json_text(report) + '\n';

@@ -35,10 +35,15 @@ void set_lines(pugi::xml_node node, const std::vector<std::string>& lines) {
 }
 
 /// Texts of a result with any verdict.
-void add_remarks(pugi::xml_node test, const CaseResult& result) {
+void add_remarks(pugi::xml_node test, const CaseResult& result, const RunReport& run, const Device& sheet) {
   std::vector<std::string> lines;
   for (const std::string& warning : result.warnings) lines.push_back("warning: " + warning);
   for (const std::string& left : result.not_put_back) lines.push_back("not put back: " + left);
+  if (result.first_run) {
+    lines.push_back("first run: " + first_run_text(*result.first_run));
+    const std::vector<std::string> frames = frame_lines(result.first_run->frames, run.node, sheet, max_junit_frames);
+    lines.insert(lines.end(), frames.begin(), frames.end());
+  }
   if (!lines.empty()) set_lines(test.append_child("system-out"), lines);
 }
 
@@ -48,7 +53,7 @@ void add_failure(pugi::xml_node test, const CaseResult& result, const RunReport&
   set(failure, "type", result.row->clause);
   std::vector<std::string> lines = {fmt::format("clause: {}", result.row->clause),
                                     fmt::format("expected: {}", result.expected), fmt::format("got: {}", result.got)};
-  const std::vector<std::string> frames = frame_lines(result, run.node, sheet, max_junit_frames);
+  const std::vector<std::string> frames = frame_lines(result.judged_frames(), run.node, sheet, max_junit_frames);
   lines.insert(lines.end(), frames.begin(), frames.end());
   lines.push_back(fmt::format("repeat with: {}", repeat_command(run, *result.row)));
   set_lines(failure, lines);
@@ -64,7 +69,13 @@ void add_case(pugi::xml_node suite, const CaseResult& result, const RunReport& r
   } else if (result.verdict != Verdict::passed) {
     set(test.append_child("skipped"), "message", message_of(result));
   }
-  add_remarks(test, result);
+  add_remarks(test, result, run, sheet);
+}
+
+/// When and where the run began.
+void set_origin(pugi::xml_node suite, const RunReport& run) {
+  if (run.started != 0) set(suite, "timestamp", utc_text(run));
+  if (!run.host.empty()) set(suite, "hostname", run.host);
 }
 
 struct SuiteCounts {
@@ -93,6 +104,7 @@ SuiteCounts counts_of(const AreaCount& count, const RunReport& run) {
 void add_area(pugi::xml_node suites, const AreaCount& count, const RunReport& run, const Device& sheet) {
   pugi::xml_node suite = suites.append_child("testsuite");
   set(suite, "name", fmt::format("{} {}", count.area->id, count.area->title));
+  set_origin(suite, run);
   set_counts(suite, counts_of(count, run));
   for (const CaseResult& result : run.cases) {
     if (&area_of(*result.row) == count.area) add_case(suite, result, run, sheet);
@@ -114,6 +126,10 @@ void add_properties(pugi::xml_node suite, const RunReport& run) {
       {"seed", fmt::format("{}", run.seed)},
       {"max_lag", duration_text(max_lag(run))},
       {"edsc", run.version},
+      {"title", run.title},
+      {"operator", run.operator_name},
+      {"place", run.place},
+      {"causes", causes_sentence(run)},
   };
   pugi::xml_node properties = suite.append_child("properties");
   for (const auto& [name, value] : rows) {
@@ -121,6 +137,16 @@ void add_properties(pugi::xml_node suite, const RunReport& run) {
     pugi::xml_node property = properties.append_child("property");
     set(property, "name", name);
     set(property, "value", value);
+  }
+  for (const Cause& cause : run.causes()) {
+    pugi::xml_node property = properties.append_child("property");
+    set(property, "name", "cause");
+    set(property, "value", fmt::format("{} (cases {})", cause.text, case_ids(cause.cases)));
+  }
+  for (const MissingCondition& missing : run.missing_conditions()) {
+    pugi::xml_node property = properties.append_child("property");
+    set(property, "name", "inconclusive");
+    set(property, "value", fmt::format("{} (cases {})", condition_text(missing), case_ids(missing.cases)));
   }
 }
 
@@ -143,6 +169,7 @@ SuiteCounts add_run(pugi::xml_node suites, const RunReport& run) {
   SuiteCounts counts;
   pugi::xml_node suite = suites.append_child("testsuite");
   set(suite, "name", "run");
+  set_origin(suite, run);
   const std::vector<RunCheck> checks = run_checks(run);
   counts.tests = checks.size();
   for (const RunCheck& check : checks) counts.failures += check.problems.empty() ? 0 : 1;

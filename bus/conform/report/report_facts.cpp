@@ -1,8 +1,10 @@
 #include "conform/report/report_facts.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <iterator>
 
 #include "text/counted.hpp"
@@ -75,6 +77,37 @@ std::string result_sentence(const RunReport& run) {
     separator = ", ";
   }
   return text;
+}
+
+std::string causes_sentence(const RunReport& run) {
+  const std::size_t failed = run.count(Verdict::failed);
+  if (failed == 0) return {};
+  return fmt::format("{}, {}", counted(failed, "failed case"), counted(run.causes().size(), "cause"));
+}
+
+std::string case_ids(const std::vector<const CaseResult*>& cases) {
+  std::string text;
+  for (const CaseResult* result : cases) text.append(text.empty() ? "" : ", ").append(result->row->id);
+  return text;
+}
+
+std::string condition_text(const MissingCondition& missing) {
+  const auto row = std::ranges::find(conditions, missing.condition, &ConditionRow::condition);
+  return fmt::format("{}: {}", row->text, missing.reason);
+}
+
+std::string local_time_text(const RunReport& run) {
+  if (run.started == 0) return {};
+  return fmt::format("{:%Y-%m-%d %H:%M:%S %z}", fmt::localtime(static_cast<std::time_t>(run.started)));
+}
+
+std::string utc_text(const RunReport& run) {
+  if (run.started == 0) return {};
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}", fmt::gmtime(static_cast<std::time_t>(run.started)));
+}
+
+std::string first_run_text(const FirstRun& first) {
+  return fmt::format("expected {}; got {}", first.expected, first.got);
 }
 
 std::vector<std::string_view> permission_names(Permission permissions) {

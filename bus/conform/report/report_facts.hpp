@@ -16,6 +16,23 @@ namespace edsc::conform {
 /// `3 of 127 cases failed; 101 passed, 20 not applicable, 3 not run`
 [[nodiscard]] std::string result_sentence(const RunReport& run);
 
+/// `18 failed cases, 5 causes`; empty without a failed case.
+[[nodiscard]] std::string causes_sentence(const RunReport& run);
+
+/// `2.20, 2.21, 2.24`
+[[nodiscard]] std::string case_ids(const std::vector<const CaseResult*>& cases);
+
+/// `remote frames: no remote frame was answered in this run...`
+[[nodiscard]] std::string condition_text(const MissingCondition& missing);
+
+/// The begin of the run, in local time with the offset from UTC: `2026-11-27 14:03:12 +0100`. Empty if not known.
+[[nodiscard]] std::string local_time_text(const RunReport& run);
+/// The same in UTC: `2026-11-27T13:03:12`.
+[[nodiscard]] std::string utc_text(const RunReport& run);
+
+/// The case failed at first, and a repetition has not confirmed that: what it had expected, and got.
+[[nodiscard]] std::string first_run_text(const FirstRun& first);
+
 /// `level communication with store and outputs`
 [[nodiscard]] std::string level_text(const RunReport& run);
 

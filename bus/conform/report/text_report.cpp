@@ -35,6 +35,10 @@ std::string colored(std::string_view text, std::string_view color, std::size_t w
   return fmt::format("{}{}{}{:{}}", color, text, no_color, "", blanks);
 }
 
+std::string counted_cases(const std::vector<const CaseResult*>& cases) {
+  return fmt::format("{} {}", cases.size() == 1 ? "case" : "cases", case_ids(cases));
+}
+
 /// Appends a detail line, unless the text is empty.
 void append_detail(std::string& out, std::string_view name, std::string_view text) {
   if (text.empty()) return;
@@ -46,6 +50,10 @@ void append_detail(std::string& out, std::string_view name, std::string_view tex
 std::string TextReport::head() const {
   std::string out;
   const std::string device = run_.vendor.empty() ? run_.product : fmt::format("{}, {}", run_.product, run_.vendor);
+  append_detail(out, "title", run_.title);
+  append_detail(out, "date", local_time_text(run_));
+  append_detail(out, "operator", run_.operator_name);
+  append_detail(out, "place", run_.place);
   append_detail(out, "device", device);
   append_detail(out, "EDS", run_.sheet);
   append_detail(out, "SHA-256", run_.sheet_hash);
@@ -89,19 +97,26 @@ std::string TextReport::of(const CaseResult& result) const {
   append_detail(out, "reason", result.deviation);
   for (const std::string& warning : result.warnings) append_detail(out, "warning", warning);
   for (const std::string& left : result.not_put_back) append_detail(out, "not put back", left);
+  if (result.first_run) append_frames(out, "first run", first_run_text(*result.first_run), result.first_run->frames);
   if (result.verdict != Verdict::failed) return out;
   append_detail(out, "clause", row.clause);
   append_detail(out, "expected", result.expected);
   append_detail(out, "got", result.got);
   if (!result.rule.text().empty())
     append_detail(out, "EDS", fmt::format("rule {} of edsc check reports it", result.rule.text()));
-  std::string_view name = "frames";
-  for (const std::string& line : frame_lines(result, run_.node, sheet_, max_frames)) {
+  append_frames(out, "", "", result.judged_frames());
+  append_detail(out, "repeat with", repeat_command(run_, row));
+  return out;
+}
+
+void TextReport::append_frames(std::string& out, std::string_view name, std::string_view text,
+                               std::span<const SeenFrame> frames) const {
+  append_detail(out, name, text);
+  name = "frames";
+  for (const std::string& line : frame_lines(frames, run_.node, sheet_, max_frames)) {
     append_detail(out, name, line);
     name = "";
   }
-  append_detail(out, "repeat with", repeat_command(run_, row));
-  return out;
 }
 
 std::string TextReport::table() const {
@@ -137,6 +152,15 @@ std::string TextReport::summary() const {
   out += '\n';
   if (!run_.read_identity.empty()) append_detail(out, "identity", run_.read_identity);
   append_detail(out, "differs", run_.identity);
+  append_detail(out, "causes", causes_sentence(run_));
+  for (const Cause& cause : run_.causes()) {
+    append_detail(out, "cause", cause.text);
+    if (cause.cases.size() > 1) append_detail(out, "", counted_cases(cause.cases));
+  }
+  for (const MissingCondition& missing : run_.missing_conditions()) {
+    append_detail(out, "inconclusive", condition_text(missing));
+    append_detail(out, "", counted_cases(missing.cases));
+  }
   append_detail(out, "test lag", fmt::format("{} at most", duration_text(max_lag(run_))));
   for (const std::string& problem : run_problems(run_)) append_detail(out, "problem", problem);
   const bool passed = run_.passed();

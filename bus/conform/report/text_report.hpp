@@ -1,7 +1,9 @@
 /// The report of a run for a terminal, printed in parts during the run.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "conform/verdict.hpp"
 #include "device/device.hpp"
@@ -28,6 +30,9 @@ class TextReport {
 
  private:
   [[nodiscard]] std::string table() const;
+  /// A line with the text, and the last frames.
+  void append_frames(std::string& out, std::string_view name, std::string_view text,
+                     std::span<const SeenFrame> frames) const;
 
   const RunReport& run_;
   const Device& sheet_;

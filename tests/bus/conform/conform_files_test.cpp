@@ -158,7 +158,7 @@ TEST(ConformLog, IsReadByTheDecoder) {
   remote.frame.size = 8;
   SeenFrame extended = seen(13'000'001, false, 0x1234567, {1});
   extended.frame.extended = true;
-  run.cases[2].frames = {remote, extended};
+  run.frames.insert(run.frames.end(), {remote, extended});
   EXPECT_EQ(candump_log(run),
             "(12.003481) can0 605#4004100000000000\n"
             "(12.004000) can0 585#8004100011000906\n"

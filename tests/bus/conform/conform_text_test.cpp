@@ -51,6 +51,100 @@ TEST(ConformRun, PassesWithoutFailureAndProblem) {
   }
 }
 
+// 8.4 fails because 3.7 does, 5.4 for a reason of its own.
+inline constexpr CaseRow caused_row{
+    "8.4", "Values are restored", "CiA 301, 7.5.2.14", Level::communication, Permission::store, nullptr, Condition{},
+    "3.7"};
+
+TEST(ConformRun, GroupsFailuresByTheirCause) {
+  RunReport run;
+  run.cases.push_back(failure(caused_row, "2000", "0"));
+  run.cases.push_back(failure(sync_row, "a TPDO", "no frame"));
+  run.cases.push_back(failure(outputs_row, "an EMCY", "none"));
+  const std::vector<Cause> causes = run.causes();
+  ASSERT_EQ(causes.size(), 2u);
+  EXPECT_EQ(causes[0].text, "3.7 A TPDO of type 0 is sent after an event: no frame");
+  EXPECT_EQ(case_ids(causes[0].cases), "8.4, 3.7");
+  EXPECT_EQ(case_ids(causes[1].cases), "5.4");
+  EXPECT_EQ(causes_sentence(run), "3 failed cases, 2 causes");
+}
+
+TEST(ConformRun, HasAFailureAsItsOwnCauseIfTheCauseHasPassed) {
+  RunReport run;
+  run.cases.push_back(failure(caused_row, "2000", "0"));
+  run.cases.push_back(result_of(sync_row, Verdict::passed));
+  ASSERT_EQ(run.causes().size(), 1u);
+  EXPECT_EQ(run.causes()[0].text, "8.4 Values are restored: 0");
+}
+
+TEST(ConformRun, GroupsFailuresByTheRuleThatReportsThem) {
+  RunReport run;
+  run.cases.push_back(failure(sync_row, "1005h", "it does not exist in the EDS"));
+  run.cases.push_back(failure(outputs_row, "1005h", "it does not exist in the EDS"));
+  for (CaseResult& result : run.cases) result.rule = AnyRule{"pdo-sync"};
+  ASSERT_EQ(run.causes().size(), 1u);
+  EXPECT_EQ(run.causes()[0].cases.size(), 2u);
+}
+
+TEST(ConformRun, ReportsAConditionOnce) {
+  RunReport run;
+  for (const CaseRow* row : {&guarding_row, &sync_row, &save_row}) {
+    run.cases.push_back(result_of(*row, Verdict::inconclusive, "no remote frame was answered"));
+    run.cases.back().condition = Condition::remote_frames;
+  }
+  run.cases.back().reason = "another reason";
+  const std::vector<MissingCondition> missing = run.missing_conditions();
+  ASSERT_EQ(missing.size(), 2u);
+  EXPECT_EQ(condition_text(missing[0]), "remote frames: no remote frame was answered");
+  EXPECT_EQ(case_ids(missing[0].cases), "2.14, 3.7");
+}
+
+TEST(ConformCases, NameACaseAsTheirCause) {
+  const std::vector<const CaseRow*> rows = all_cases();
+  for (const CaseRow* row : rows) {
+    if (row->cause.empty()) continue;
+    EXPECT_NE(row->cause, row->id);
+    EXPECT_TRUE(std::ranges::any_of(rows, [&](const CaseRow* other) { return other->id == row->cause; })) << row->id;
+  }
+}
+
+TEST(ConformReports, HaveTheDateAndWhoTested) {
+  RunReport run = every_verdict();
+  run.title = "Pump of line 3";
+  run.operator_name = "A. Tester";
+  run.place = "hall 2";
+  run.host = "bench-1";
+  run.started = 1'000'000'000;  // 2001-09-09 01:46:40 UTC
+  EXPECT_EQ(utc_text(run), "2001-09-09T01:46:40");
+  const auto json = nlohmann::json::parse(json_report(run, sheet().device));
+  EXPECT_EQ(json["started"], "2001-09-09T01:46:40Z");
+  EXPECT_EQ(json["operator"], "A. Tester");
+  const std::string junit = junit_report(run, sheet().device);
+  EXPECT_NE(junit.find(R"(timestamp="2001-09-09T01:46:40" hostname="bench-1")"), std::string::npos) << junit;
+  const std::string html = html_report(run, sheet().device);
+  const std::string head = TextReport{run, sheet().device, false}.head();
+  for (const std::string& text : {run.title, run.operator_name, run.place, local_time_text(run)}) {
+    EXPECT_NE(html.find(text), std::string::npos) << text;
+    EXPECT_NE(head.find(text), std::string::npos) << text;
+  }
+}
+
+TEST(ConformReports, ShowBothRunsOfACaseWhoseVerdictChanges) {
+  RunReport run = every_verdict();
+  CaseResult& result = run.cases[4];
+  result.first_run = FirstRun{"a TPDO", "no frame", {seen(11'000'000, true, 0x080, {})}};
+  result.frames = {seen(14'000'000, true, 0x080, {})};
+  const auto json = nlohmann::json::parse(json_report(run, sheet().device))["cases"][4];
+  EXPECT_EQ(json["first_run"]["got"], "no frame");
+  EXPECT_EQ(json["first_run"]["frames"].size(), 1u);
+  EXPECT_EQ(json["frames"].size(), 1u);
+  for (const std::string& report : {TextReport{run, sheet().device, false}.of(result), html_report(run, sheet().device),
+                                    junit_report(run, sheet().device)}) {
+    EXPECT_NE(report.find("expected a TPDO; got no frame"), std::string::npos) << report;
+    EXPECT_NE(report.find("11.000000"), std::string::npos) << report;
+  }
+}
+
 TEST(ConformRun, NamesTheCommandThatRepeatsACase) {
   RunReport run = every_verdict();
   EXPECT_EQ(repeat_command(run, read_row),
@@ -144,6 +238,8 @@ TEST(ConformText, SumsUpByArea) {
             "       all                                3       1       1               1\n"
             "\n"
             "       identity      vendor-ID 0000 0319h\n"
+            "       causes        1 failed case, 1 cause\n"
+            "       cause         2.6 A missing object is refused: 0609 0011h, sub-index does not exist\n"
             "       test lag      0.1 ms at most\n"
             "       problem       unused deviation: pump.json:4: case 8.4 passed: restored after a power cycle\n"
             "failed: 1 of 3 cases failed; 1 passed, 1 not applicable\n");

@@ -86,6 +86,7 @@ inline RunReport every_verdict() {
   run.cases.back().deviation = "sent at every SYNC (manual, page 12)";
   run.cases.push_back(result_of(sync_row, Verdict::inconclusive, "needs a stimulus"));
   run.cases.push_back(result_of(outputs_row, Verdict::not_run, "needs --outputs"));
+  run.frames = run.cases[1].frames;
   return run;
 }
 
@@ -96,12 +97,13 @@ inline const std::string hostile =
 inline RunReport hostile_run() {
   RunReport run = every_verdict();
   for (std::string* text : {&run.bus, &run.sheet, &run.sheet_hash, &run.product, &run.vendor, &run.identity,
-                            &run.read_identity, &run.lost}) {
+                            &run.read_identity, &run.lost, &run.title, &run.operator_name, &run.place, &run.host}) {
     *text = hostile;
   }
   for (CaseResult& result : run.cases) {
     result.reason = result.expected = result.got = result.deviation = hostile;
     result.warnings = result.not_put_back = {hostile};
+    result.first_run = FirstRun{hostile, hostile, {}};
   }
   // An SDO download of these bytes that the server has accepted.
   run.cases.front().frames = {seen(1, true, 0x605, {0x23, 0x08, 0x10, 0, '<', 0x1B, '&', 0xFF}),
