@@ -91,13 +91,13 @@ bool Event::apply() {
 }
 
 bool Event::read_back() {
-  if (candidates_.empty()) return true;
+  if (candidates_.empty() || !dut_.simulated()) return true;
   const Candidate& candidate = candidates_.front();
   const SdoOutcome outcome = dut_.upload(candidate.mapped.index, candidate.mapped.sub_index);
   if (!outcome.done()) return true;
-  const bool was_changed = is_changed_;
-  is_changed_ = outcome.bytes == candidate.changed;
-  return is_changed_ == was_changed;
+  const bool is_overwritten = outcome.bytes == (is_changed_ ? candidate.present : candidate.changed);
+  if (is_overwritten) is_changed_ = !is_changed_;
+  return !is_overwritten;
 }
 
 bool Event::use_next() {

@@ -51,8 +51,8 @@ class Event {
 
   /// Changes the object between two values. Returns false if no stimulus changes any of the objects.
   [[nodiscard]] bool apply();
-  /// Reads the object, so that the next change is one: the application may have written its own value. Returns whether
-  /// the object still has the value that was set last.
+  /// Reads the object, so that the next change is one: the application may have written the former value. Returns false
+  /// if it has. A user's command may change any object: then returns true.
   bool read_back();
   /// Selects the next object, because a change of the present one is not an event. Returns false if there is no other
   /// object; the present one remains selected.
