@@ -42,11 +42,11 @@ LiveEntry need_long_entry(Dut& dut) {
   const auto is_constant = [](const LiveEntry& e) { return e.entry->access == canopen::Access::constant; };
   std::stable_partition(entries.begin(), entries.end(), is_constant);
   const LiveEntry* short_entry = nullptr;
-  constexpr std::size_t most_expedited = 4;
+  constexpr std::size_t max_expedited = 4;
   for (const LiveEntry& entry : entries) {
     if (!is_segmented(dut, entry)) continue;
     const SdoOutcome present = dut.upload(entry.index, entry.sub_index);
-    if (!present.done() || present.bytes.size() > most_expedited) return entry;
+    if (!present.done() || present.bytes.size() > max_expedited) return entry;
     short_entry = &entry;
   }
   if (short_entry != nullptr) {
