@@ -124,13 +124,22 @@ void fastscan_configured(Dut& dut) {
              "one");
 }
 
-/// Configures the node-ID of a slave without one and expects its boot-up message.
+/// Resets all nodes on a bus on which the device is alone: a slave without node-ID may ignore its own.
+void reset_all(Dut& dut) {
+  constexpr std::uint8_t all_nodes = 0;
+  dut.send(0, Bytes{static_cast<std::uint8_t>(NmtCommand::reset_communication), all_nodes});
+  (void)dut.wait_for(dut.boot_up(), milliseconds{5000});
+}
+
+/// Configures the node-ID of a slave without one and expects its boot-up message. If it is missing, the device is reset
+/// so that the following cases find it.
 void give_node_id(Dut& dut, const Slave& slave) {
   slave.configure(dut.node());
   const Dut::Mark since = dut.mark();
   slave.wait();
-  dut.expect(dut.wait_for(dut.boot_up(), milliseconds{5000}, since).has_value(),
-             "a boot-up message with the new node-ID", "none");
+  const bool is_booted = dut.wait_for(dut.boot_up(), milliseconds{5000}, since).has_value();
+  if (!is_booted) reset_all(dut);
+  dut.expect(is_booted, "a boot-up message with the new node-ID", "none");
   dut.pass_time(milliseconds{50});
 }
 
@@ -250,9 +259,18 @@ void new_node_id(Dut& dut) {
   and_undo(move, move_back);
 }
 
+/// Not applicable if the device does not have the service, which is optional.
+void need_bit_timing(Dut& dut, const Slave& slave) {
+  constexpr std::uint32_t reserved = 10U << 8;
+  if (!slave.ask(Command::configure_bit_timing, reserved)) {
+    dut.not_applicable("the device does not answer configure bit timing parameters");
+  }
+}
+
 /// Reserved indices of table 0, and reserved tables.
 void wrong_bit_timing(Dut& dut) {
-  with_slave(dut, [](const Slave& slave) {
+  with_slave(dut, [&dut](const Slave& slave) {
+    need_bit_timing(dut, slave);
     for (const auto& [table, index] :
          {std::pair{0, 5}, std::pair{0, 10}, std::pair{0, 255}, std::pair{1, 0}, std::pair{127, 0}}) {
       slave.expect_error(Command::configure_bit_timing, static_cast<std::uint32_t>(table | index << 8), 1,
@@ -285,13 +303,10 @@ void store(Dut& dut) {
 }
 
 /// Whether the bit rate to be activated is known: in simulated time each is, because no frame depends on it. On a bus
-/// the present one cannot be read, and another one would separate the device from it. Not applicable if the device does
-/// not have the service, which is optional.
+/// the present one cannot be read, and another one would separate the device from it.
 bool configures_bit_rate(Dut& dut, const Slave& slave) {
-  constexpr std::uint32_t reserved = 10U << 8, any = 0;
-  if (!slave.ask(Command::configure_bit_timing, reserved)) {
-    dut.not_applicable("the device does not answer configure bit timing parameters");
-  }
+  need_bit_timing(dut, slave);
+  constexpr std::uint32_t any = 0;
   if (!dut.simulated()) return false;
   const auto configured = slave.ask(Command::configure_bit_timing, any);
   return configured && configured->data[1] == 0;
