@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "conform/cases/shared/every_frame.hpp"
 #include "conform/drive.hpp"
 #include "online/identity.hpp"
 #include "online/interruption.hpp"
@@ -42,6 +43,7 @@ CaseResult run_once(const CaseRow& row, Dut& dut) {
   dut.begin_case(row);
   try {
     row.run(dut);
+    expect_valid_frames(dut);
   } catch (CaseEnd& end) {
     result.verdict = end.verdict;
     result.reason = std::move(end.reason);

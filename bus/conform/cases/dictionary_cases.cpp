@@ -214,7 +214,10 @@ void check_structures(Dut& dut) {
     const LiveEntry entry{object.index, structure_sub_index, object.find(structure_sub_index), nullptr, object.name};
     const SdoOutcome outcome = dut.upload(object.index, structure_sub_index);
     const bool missing = outcome.end == SdoEnd::refused && entry.entry == nullptr;
-    if (missing) continue;
+    if (missing) {
+      results.expect_abort(entry, outcome, abort_rule::no_sub_index, "read");
+      continue;
+    }
     results.count();
     results.expect_done(entry, outcome);
     const ObjectStructure expected = structure_of(object);

@@ -256,11 +256,25 @@ struct Refusal {
   bool denies_access = false;  ///< the device says that the entry is not writable, or has another size or none
 };
 
-/// Abort codes that contradict the AccessType or the DataType of the EDS. Others may depend on the application.
+/// Abort codes that contradict the AccessType or the DataType of the EDS, or a correct request. Others may depend on
+/// the application.
 bool denies_access(AbortCode code) {
-  constexpr std::array codes = {AbortCode::unsupported_access, AbortCode::read_only,       AbortCode::no_object,
-                                AbortCode::no_sub_index,       AbortCode::length_mismatch, AbortCode::length_too_high,
-                                AbortCode::length_too_low};
+  constexpr std::array codes = {AbortCode::unsupported_access,
+                                AbortCode::read_only,
+                                AbortCode::write_only,
+                                AbortCode::no_object,
+                                AbortCode::no_sub_index,
+                                AbortCode::length_mismatch,
+                                AbortCode::length_too_high,
+                                AbortCode::length_too_low,
+                                AbortCode::toggle_bit,
+                                AbortCode::command_specifier,
+                                AbortCode::block_size,
+                                AbortCode::sequence_number,
+                                AbortCode::crc,
+                                AbortCode::not_mappable,
+                                AbortCode::pdo_length,
+                                AbortCode::sent_as_zero};
   return std::ranges::find(codes, code) != codes.end();
 }
 
