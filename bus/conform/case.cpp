@@ -16,11 +16,31 @@ constexpr AreaRow area_rows[] = {
 
 /// In the order in which they run. Tables of one area follow each other.
 constexpr std::span<const CaseRow> (*case_tables[])() = {
-    sheet_cases,           sdo_access_cases, sdo_segment_cases,   sdo_block_cases,    sdo_parameter_cases,
-    pdo_parameter_cases,   tpdo_event_cases, tpdo_sync_cases,     tpdo_silence_cases, new_mapping_cases,
-    refused_mapping_cases, dictionary_cases, write_cases,         emergency_cases,    sync_cases,
-    guarding_cases,        heartbeat_cases,  error_control_cases, storage_cases,      state_cases,
-    transition_cases,      lss_cases,
+    sheet_cases,
+    sdo_access_cases,
+    sdo_segment_cases,
+    sdo_block_cases,
+    sdo_parameter_cases,
+    sdo_protocol_cases,
+    pdo_parameter_cases,
+    tpdo_event_cases,
+    tpdo_sync_cases,
+    tpdo_silence_cases,
+    new_mapping_cases,
+    refused_mapping_cases,
+    rpdo_cases,
+    dictionary_cases,
+    write_cases,
+    emergency_cases,
+    emergency_register_cases,
+    sync_cases,
+    guarding_cases,
+    heartbeat_cases,
+    error_control_cases,
+    storage_cases,
+    state_cases,
+    transition_cases,
+    lss_cases,
 };
 
 }  // namespace

@@ -49,5 +49,6 @@ struct Mutant {
 [[nodiscard]] std::vector<Mutant> pdo_mutants();
 [[nodiscard]] std::vector<Mutant> control_mutants();
 [[nodiscard]] std::vector<Mutant> network_mutants();
+[[nodiscard]] std::vector<Mutant> new_case_mutants();
 
 }  // namespace edsc::conform

@@ -1,55 +1,10 @@
 /// Heartbeat producer and consumer (CiA 301, 7.2.8.3.2.2 and 7.2.8.2.2).
-#include <fmt/format.h>
-
-#include <canopen/can/node_id.hpp>
-
 #include "conform/case.hpp"
 #include "conform/cases/nmt/error_control.hpp"
+#include "conform/cases/nmt/heartbeat_source.hpp"
 
 namespace edsc::conform {
 namespace {
-
-using canopen::NodeId;
-
-/// A heartbeat producer that the test simulates, and the entry of 1016h that monitors it.
-class Producer {
- public:
-  explicit Producer(Dut& dut) : dut_{dut} {
-    const std::optional<Value>& limit = dut.need_writable(consumer_heartbeat, 1).high_limit;
-    node_ = free_node_id(dut);
-    if (limit && limit->bits < value(milliseconds{0xFFFF})) {
-      dut.not_applicable(fmt::format("the EDS limits 1016h:01 to {:X}h, which is too low for a node-ID", limit->bits));
-    }
-  }
-
-  void watch(Duration time, std::uint8_t sub_index = 1) const {
-    dut_.write(consumer_heartbeat, sub_index, value(time));
-  }
-
-  [[nodiscard]] std::uint64_t value(Duration time) const {
-    return std::uint64_t{node_.value()} << 16 | time.count() / 1000;
-  }
-
-  /// Sends one heartbeat and returns the time.
-  std::uint64_t beat(NmtState state = NmtState::operational) const {
-    dut_.send(0x700U + node_.value(), Bytes{static_cast<std::uint8_t>(state)});
-    return dut_.now();
-  }
-
-  /// Sends `count` heartbeats with this period and returns the time of the last one.
-  std::uint64_t beats(Duration period, unsigned count) const {
-    std::uint64_t last = beat();
-    for (unsigned i = 1; i < count; ++i) {
-      dut_.pass_time(period);
-      last = beat();
-    }
-    return last;
-  }
-
- private:
-  Dut& dut_;
-  NodeId node_;
-};
 
 constexpr Duration watched = milliseconds{200};
 
@@ -88,7 +43,7 @@ void stop_heartbeat(Dut& dut) {
 
 void duplicate_consumer(Dut& dut) {
   dut.need_writable(consumer_heartbeat, 2);
-  const Producer producer{dut};
+  const HeartbeatSource producer{dut};
   producer.watch(watched);
   producer.watch(watched);
   const std::uint64_t before = dut.read_number(consumer_heartbeat, 2);
@@ -98,7 +53,7 @@ void duplicate_consumer(Dut& dut) {
 }
 
 void heartbeats_in_time(Dut& dut) {
-  const Producer producer{dut};
+  const HeartbeatSource producer{dut};
   const Dut::Match event = error_control_event(dut);
   const Dut::Mark since = dut.mark();
   producer.watch(watched);
@@ -110,7 +65,7 @@ void heartbeats_in_time(Dut& dut) {
 }
 
 void heartbeats_too_late(Dut& dut) {
-  const Producer producer{dut};
+  const HeartbeatSource producer{dut};
   const Dut::Match event = error_control_event(dut);
   producer.watch(watched);
   for (unsigned i = 0; i < 2; ++i) {
@@ -122,7 +77,7 @@ void heartbeats_too_late(Dut& dut) {
 }
 
 void consumer_after_reset(Dut& dut) {
-  const Producer producer{dut};
+  const HeartbeatSource producer{dut};
   const Dut::Match event = error_control_event(dut);
   producer.watch(watched);
   (void)producer.beats(watched / 2, 3);

@@ -181,6 +181,13 @@ void start_sync(Dut& dut, std::uint32_t cob_id, Duration period) {
   dut.write(sync_period, 0, period.count());
 }
 
+void end_errors(Dut& dut) {
+  const Dut::Mark since = dut.mark();
+  dut.nmt(NmtCommand::reset_communication);
+  (void)dut.wait_for(dut.boot_up(), milliseconds{5000}, since);
+  dut.pass_time(milliseconds{50});
+}
+
 void expect_one_boot_up(Dut& dut, NmtCommand command) {
   const Dut::Mark since = dut.mark();
   dut.reset(command);

@@ -69,6 +69,9 @@ std::uint32_t stop_sync(Dut& dut);
 /// Starts the SYNC producer. Call `stop_sync` and `can_produce_sync` before.
 void start_sync(Dut& dut, std::uint32_t cob_id, Duration period);
 
+/// Ends the errors of the device by reset communication. Does not fail: other cases test the boot-up message.
+void end_errors(Dut& dut);
+
 /// Resets the device and fails unless it sends exactly one boot-up message.
 void expect_one_boot_up(Dut& dut, canopen::NmtCommand command);
 /// Fails if the device is not Pre-operational after its boot-up message. Operational is also accepted: with a warning,
