@@ -43,7 +43,7 @@ CaseResult run_once(const CaseRow& row, Dut& dut) {
   dut.begin_case(row);
   try {
     row.run(dut);
-    expect_valid_frames(dut);
+    expect_valid_frames(dut, row);
   } catch (CaseEnd& end) {
     result.verdict = end.verdict;
     result.reason = std::move(end.reason);

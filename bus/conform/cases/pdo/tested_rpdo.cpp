@@ -26,15 +26,19 @@ bool is_stable(Dut& dut, const MappingValue& mapped, std::uint64_t present) {
 TestedRpdo::TestedRpdo(Dut& dut) : dut_{dut} {
   const std::vector<const Pdo*> all = dut.pdos(PdoDirection::receive);
   if (all.empty()) dut.not_applicable("the EDS has no RPDO");
+  bool any = false;
   for (const bool with_synchronous : {false, true}) {
     for (const Pdo* pdo : all) {
       if (use(*pdo, with_synchronous)) return;
+      any = any || !mapping_.empty();
     }
   }
+  if (!any) dut.not_applicable("no valid RPDO maps an object");
   dut.inconclusive("no valid RPDO maps an object whose value SDO can read and that does not change by itself");
 }
 
 bool TestedRpdo::use(const Pdo& pdo, bool with_synchronous) {
+  mapping_.clear();
   if (pdo.multiplexed || pdo.broken || pdo.mapping == nullptr) return false;
   index_ = pdo.communication->index;
   cob_id_ = static_cast<std::uint32_t>(dut_.read_number(index_, cob_id_parameter));
