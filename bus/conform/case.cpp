@@ -39,7 +39,9 @@ constexpr std::span<const CaseRow> (*case_tables[])() = {
     error_control_cases,
     storage_cases,
     state_cases,
+    error_behavior_cases,
     transition_cases,
+    nmt_message_cases,
     lss_cases,
 };
 

@@ -156,7 +156,9 @@ struct AreaRow {
 [[nodiscard]] std::span<const CaseRow> error_control_cases();
 [[nodiscard]] std::span<const CaseRow> storage_cases();
 [[nodiscard]] std::span<const CaseRow> state_cases();
+[[nodiscard]] std::span<const CaseRow> error_behavior_cases();
 [[nodiscard]] std::span<const CaseRow> transition_cases();
+[[nodiscard]] std::span<const CaseRow> nmt_message_cases();
 [[nodiscard]] std::span<const CaseRow> lss_cases();
 
 }  // namespace edsc::conform

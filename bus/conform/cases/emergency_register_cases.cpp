@@ -112,16 +112,18 @@ void register_of_classes(Dut& dut) {
         },
         end);
   }
-  if (!any) dut.inconclusive("needs a stimulus that causes an error");
+  if (!any) dut.inconclusive(Condition::stimulus, "needs a stimulus that causes an error");
 }
 
 /// Two errors, of which one ends: 0000h with the bits of the other.
 void remaining_errors(Dut& dut) {
   const std::uint32_t cob_id = emcy_cob_id(dut);
-  if (!dut.simulated()) dut.inconclusive("needs stimuli that cause two different errors: only in simulated time");
+  if (!dut.simulated())
+    dut.inconclusive(Condition::stimulus, "needs stimuli that cause two different errors: only in simulated time");
   constexpr auto first = static_cast<std::uint8_t>(ErrorRegister::current);
   constexpr auto second = static_cast<std::uint8_t>(ErrorRegister::temperature);
-  if (!dut.stimuli().emergency(0x2310, first)) dut.inconclusive("needs a stimulus that causes an error");
+  if (!dut.stimuli().emergency(0x2310, first))
+    dut.inconclusive(Condition::stimulus, "needs a stimulus that causes an error");
   const auto end = [&] {
     (void)dut.stimuli().emergency_over(first);
     (void)dut.stimuli().emergency_over(second);
@@ -148,7 +150,7 @@ std::uint64_t cause_two(Dut& dut, std::optional<TestedRpdo>& rpdo) {
     rpdo->send(0);
     rpdo->send_present();
   } else if (!dut.stimuli().emergency(0x1000, any_error_bit) || !dut.stimuli().emergency_over(any_error_bit)) {
-    dut.inconclusive("needs a stimulus that causes an error, and one that ends it");
+    dut.inconclusive(Condition::stimulus, "needs a stimulus that causes an error, and one that ends it");
   }
   return dut.now() - began;
 }
@@ -190,7 +192,8 @@ void inhibit_time(Dut& dut) {
         dut.expect_time(seen[1].at - seen[0].at, low * 9 / 10, any_longer,
                         "the time between two EMCYs with 1015h = 500 ms");
         if (took < low) return;
-        dut.inconclusive(fmt::format("the second error came up to {} after the first, not within the inhibit time",
+        dut.inconclusive(Condition::stimulus,
+                         fmt::format("the second error came up to {} after the first, not within the inhibit time",
                                      milliseconds_text(took)));
       },
       [&] { end_errors(dut); });
@@ -206,7 +209,8 @@ void emcy_disabled(Dut& dut) {
     dut.not_applicable("1014h:00 does not accept bit 31: EMCY cannot be disabled");
   }
   const Dut::Mark since = dut.mark();
-  if (!dut.stimuli().emergency(0x1000, any_error_bit)) dut.inconclusive("needs a stimulus that causes an error");
+  if (!dut.stimuli().emergency(0x1000, any_error_bit))
+    dut.inconclusive(Condition::stimulus, "needs a stimulus that causes an error");
   dut.pass_time(milliseconds{100});
   (void)dut.stimuli().emergency_over(any_error_bit);
   dut.pass_time(milliseconds{100});
@@ -227,17 +231,17 @@ void emcy_fixed_while_valid(Dut& dut) {
 
 constexpr CaseRow emergency_register_rows[] = {
     {"5.101", "After a short RPDO 1001h equals the error register of each EMCY", "CiA 301, 7.2.7.3.1 and 7.5.2.2",
-     Level::communication, Permission::outputs, register_of_pdo_error},
+     Level::communication, Permission::outputs, register_of_pdo_error, Condition::state, "5.4"},
     {"5.102", "After a lost heartbeat 1001h equals the error register of each EMCY", "CiA 301, 7.2.7.3.1 and 7.5.2.2",
-     Level::communication, Permission::none, register_of_lost_node},
+     Level::communication, Permission::none, register_of_lost_node, Condition::alone, "7.106"},
     {"5.103", "For each error class 1001h equals the error register of the EMCY, and bit 0 is set",
-     "CiA 301, 7.2.7.1 and 7.5.2.2", Level::communication, Permission::none, register_of_classes},
+     "CiA 301, 7.2.7.1 and 7.5.2.2", Level::communication, Permission::none, register_of_classes, Condition::stimulus},
     {"5.104", "When one of two errors ends, EMCY 0000h has the bits of the other", "CiA 301, 7.2.7.1 and 7.5.2.2",
-     Level::communication, Permission::none, remaining_errors},
+     Level::communication, Permission::none, remaining_errors, Condition::stimulus, "5.103"},
     {"5.105", "A second EMCY is not sent within the inhibit time 1015h", "CiA 301, 7.5.2.18", Level::communication,
-     Permission::none, inhibit_time},
+     Permission::none, inhibit_time, Condition::stimulus | Condition::punctual},
     {"5.106", "With bit 31 of 1014h the device sends no EMCY", "CiA 301, 7.5.2.17", Level::communication,
-     Permission::none, emcy_disabled},
+     Permission::none, emcy_disabled, Condition::stimulus},
     {"5.107", "The CAN-ID of EMCY does not change while EMCY is valid", "CiA 301, 7.5.2.17", Level::communication,
      Permission::none, emcy_fixed_while_valid},
 };

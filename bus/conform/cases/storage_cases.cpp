@@ -95,6 +95,68 @@ void load(Dut& dut, std::uint8_t sub_index) {
   });
 }
 
+// ---- power cuts ----
+
+void expect_started(Dut& dut, Dut::Mark since) {
+  const auto started = dut.wait_for(dut.boot_up(), milliseconds{5000}, since);
+  dut.expect(started.has_value(), "a boot-up message after power-on", "none");
+  dut.pass_time(milliseconds{50});
+}
+
+/// What is confirmed is stored: the power cut follows without a reset before it.
+void power_cut_after_save(Dut& dut) {
+  with_storage(dut, Storage::all, [&dut](const Storage& storage) {
+    const Changed changed = change_parameter(dut);
+    storage.save();
+    const Dut::Mark since = dut.mark();
+    if (!dut.stimuli().power_cycle()) dut.inconclusive(Condition::stimulus, "needs a stimulus that cuts the power");
+    expect_started(dut, since);
+    expect_value(dut, changed, changed.value, "after \"save\" and a power cut");
+  });
+}
+
+/// Parameters that have no effect on each other.
+std::vector<Changed> change_parameters(Dut& dut) {
+  constexpr Parameter candidates[] = {{0x1017, 0}, {0x1015, 0}, {0x1007, 0}, {0x1800, 5}, {0x1801, 5}};
+  std::vector<Changed> all;
+  for (const Parameter& parameter : candidates) {
+    if (!dut.is_writable(parameter.index, parameter.sub_index)) continue;
+    if (!dut.is_readable(parameter.index, parameter.sub_index)) continue;
+    const std::uint64_t before = dut.read_number(parameter.index, parameter.sub_index);
+    const std::uint64_t value = other_value(dut, parameter);
+    if (value != before && dut.download(parameter.index, parameter.sub_index, value).done()) {
+      all.push_back({parameter, before, value});
+    }
+  }
+  if (all.empty()) dut.not_applicable("the EDS has no parameter of 1000h to 1FFFh that can be changed");
+  return all;
+}
+
+/// A power cut before "save" is confirmed leaves the former values or the new ones, not some of each.
+void power_cut_during_save(Dut& dut) {
+  with_storage(dut, Storage::all, [&dut](const Storage&) {
+    const std::vector<Changed> all = change_parameters(dut);
+    const Dut::Mark since = dut.mark();
+    namespace sdo = canopen::sdo;
+    sdo::Data save{0x23, store_parameters & 0xFF, store_parameters >> 8, Storage::all, 's', 'a', 'v', 'e'};
+    dut.request(save);
+    if (!dut.stimuli().power_cycle()) dut.inconclusive(Condition::stimulus, "needs a stimulus that cuts the power");
+    expect_started(dut, since);
+    std::string former, present;
+    for (const Changed& changed : all) {
+      const std::uint64_t read = dut.read_number(changed.parameter.index, changed.parameter.sub_index);
+      dut.expect(
+          read == changed.before || read == changed.value,
+          fmt::format("{} after a power cut: {:X}h or {:X}h", changed.parameter.name(), changed.before, changed.value),
+          fmt::format("{:X}h", read));
+      std::string& list = read == changed.before ? former : present;
+      list += (list.empty() ? "" : ", ") + changed.parameter.name();
+    }
+    dut.expect(former.empty() || present.empty(), "all values from before \"save\", or all new ones, after a power cut",
+               fmt::format("from before: {}; new: {}", former, present));
+  });
+}
+
 /// 1020h is stored with the configuration, and set to 0 when the configuration changes.
 void verify(Dut& dut) {
   dut.need_writable(verify_configuration, configuration_date);
@@ -137,6 +199,10 @@ constexpr CaseRow storage_rows[] = {
      Permission::store, verify, Condition::none, "8.2"},
     {"8.10", "COB-IDs refuse the restricted CAN-IDs", "CiA 301, 7.3.5, table 41", Level::communication,
      Permission::none, restricted_can_ids},
+    {"8.101", "Values that \"save\" has confirmed remain after a power cut", "CiA 301, 7.5.2.13", Level::communication,
+     Permission::store, power_cut_after_save, Condition::stimulus, "8.2"},
+    {"8.102", "A power cut during \"save\" leaves the former values or the new ones", "CiA 301, 7.5.2.13",
+     Level::communication, Permission::store, power_cut_during_save, Condition::stimulus, "8.2"},
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// SYNC (CiA 301, 7.2.5): producer and consumer, with and without counter.
+/// SYNC (CiA 301, 7.2.5): producer and consumer, with and without counter. The COB-ID of TIME (7.5.2.15).
 #include <fmt/format.h>
 
 #include <canopen/sync/sync.hpp>
@@ -209,6 +209,47 @@ void stored_values(Dut& dut) {
   });
 }
 
+// ---- TIME, and COB-IDs that do not change while their service is active ----
+
+constexpr std::uint16_t time_cob_id = 0x1012;
+
+void default_time_cob_id(Dut& dut) { expect_default_cob_id(dut, time_cob_id, 0x100); }
+
+/// Bits 0 to 29 do not change while one of these bits is 1. Not applicable if the device does not accept the bits.
+void expect_fixed(Dut& dut, std::uint16_t index, std::uint32_t active_bits) {
+  dut.need_writable(index);
+  const auto present = static_cast<std::uint32_t>(dut.read_number(index));
+  const std::uint32_t can_id = present & canopen::CobId::identifier;
+  const std::uint32_t active = can_id | active_bits;
+  const SdoOutcome outcome = dut.download(index, 0, active);
+  if (!outcome.done()) {
+    dut.expect_abort(outcome, abort_rule::value, fmt::format("{:08X}h to {}", active, label(index, 0)));
+    dut.not_applicable(fmt::format("{} does not accept {:08X}h", label(index, 0), active));
+  }
+  constexpr AbortRule in_use{
+      {canopen::AbortCode::invalid_value, canopen::AbortCode::device_state, canopen::AbortCode::unsupported_access},
+      {canopen::AbortCode::parameter_incompatible, canopen::AbortCode::read_only, canopen::AbortCode::general}};
+  const std::uint32_t other = can_id == 0x6A0 ? 0x6A1 : 0x6A0;  // not in the pre-defined connection set
+  expect_refused(dut, index, 0, other | active_bits, active, in_use,
+                 fmt::format("another CAN-ID to {} while its service is active", label(index, 0)));
+}
+
+/// While the device consumes or produces TIME. A device that supports only one of them is tested with it.
+void time_cob_id_fixed(Dut& dut) {
+  constexpr std::uint32_t consumes = 0x8000'0000;
+  dut.need(time_cob_id);
+  expect_fixed(dut, time_cob_id, consumes);
+}
+
+/// While the device produces SYNC, here without a period.
+void sync_cob_id_fixed(Dut& dut) {
+  const std::uint32_t cob_id = stop_sync(dut);
+  dut.need_writable(sync_period);
+  if (!can_produce_sync(dut, cob_id))
+    dut.not_applicable("the device does not produce SYNC: bit 30 of 1005h:00 cannot be 1");
+  expect_fixed(dut, sync_cob_id, canopen::CobId::no_rtr_bit);
+}
+
 constexpr CaseRow sync_rows[] = {
     {"6.1", "1005h holds the default COB-ID of SYNC", "CiA 301, 7.5.2.5", Level::communication, Permission::none,
      default_cob_id},
@@ -231,6 +272,12 @@ constexpr CaseRow sync_rows[] = {
      Permission::none, overflow_in_use},
     {"6.10", "The SYNC parameters have their stored values after a reset", "CiA 301, 7.5.2.13", Level::communication,
      Permission::store, stored_values, Condition::none, "8.2"},
+    {"6.101", "1012h holds the default COB-ID of TIME", "CiA 301, 7.5.2.15", Level::communication, Permission::none,
+     default_time_cob_id},
+    {"6.102", "The CAN-ID of TIME does not change while the device consumes TIME", "CiA 301, 7.5.2.15",
+     Level::communication, Permission::none, time_cob_id_fixed},
+    {"6.103", "The CAN-ID of SYNC does not change while the device produces SYNC", "CiA 301, 7.5.2.5",
+     Level::communication, Permission::none, sync_cob_id_fixed},
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <canopen/base/abort_code.hpp>
 #include <canopen/nmt/nmt.hpp>
 #include <cstdint>
+#include <memory>
 
 #include "frame_changes.hpp"
 #include "mutant.hpp"
@@ -9,6 +10,8 @@
 namespace edsc::conform {
 namespace control_mutant {
 namespace {
+
+using std::chrono::milliseconds;
 
 constexpr std::uint32_t rpdo_id = 0x200 + node;
 constexpr std::uint8_t rpdo_bytes = 7;  // of the mapping in 1600h
@@ -149,6 +152,83 @@ Change fills_reserved_bytes() {
   };
 }
 
+// ---- heartbeat, NMT ----
+
+/// Each heartbeat comes 3 ms later than the one before, relative to its period.
+Change heartbeats_drift() {
+  return [last = canopen::TimePoint{}, count = 0U](Wire& wire, Frame& frame) mutable {
+    if (!is_heartbeat(frame)) return;
+    count = wire.now - last > milliseconds{500} ? 0 : count + 1;
+    last = wire.now;
+    wire.delay(milliseconds{3} * count);
+  };
+}
+
+/// The first heartbeats after a write of 1017h are missing.
+Change first_heartbeats_missing() {
+  return [missing = 0U](Wire& wire, Frame& frame) mutable {
+    if (names(frame, sdo_answer_id, 0x1017, 0) && frame.data[0] == 0x60) missing = 2;
+    if (missing == 0 || !is_heartbeat(frame)) return;
+    wire.drop();
+    --missing;
+  };
+}
+
+/// A download of 0 or, with `any`, of each value is confirmed without being executed.
+Change forgets(std::uint16_t index, int sub_index, bool any) {
+  return [=](Wire& wire, Frame& frame) {
+    if (!names(frame, sdo_request_id, index, sub_index) || (frame.data[0] & 0xE2) != 0x22) return;
+    if (!any && word_at(frame, 4) != 0) return;
+    wire.drop();
+    wire.send(make(sdo_answer_id, {0x60, frame.data[1], frame.data[2], frame.data[3], 0, 0, 0, 0}));
+  };
+}
+
+Change unknown_command_starts() {
+  return [](Wire&, Frame& frame) {
+    if (is_data(frame, 0) && frame.data[0] == 3) frame.data[0] = started;
+  };
+}
+
+Change takes_commands_for_others() {
+  return [](Wire&, Frame& frame) {
+    if (is_data(frame, 0) && frame.size == 2 && frame.data[1] != 0) frame.data[1] = static_cast<std::uint8_t>(node);
+  };
+}
+
+Change takes_short_commands() {
+  return [](Wire&, Frame& frame) {
+    if (!is_data(frame, 0) || frame.size != 1) return;
+    frame.size = 2;
+    frame.data[1] = static_cast<std::uint8_t>(node);
+  };
+}
+
+// ---- power cuts ----
+
+/// The value of an entry after a power cut is another one, until the next reset. A boot-up message without a reset
+/// before it shows the power cut.
+Mutant loses_value(std::string_view name, std::uint16_t index, std::uint32_t value) {
+  struct Power {
+    bool was_reset = false, was_cut = false;
+  };
+  const auto power = std::make_shared<Power>();
+  return {name,
+          [=](Wire&, Frame& frame) {
+            if (is_boot_up(frame)) {
+              power->was_cut = !power->was_reset;
+              power->was_reset = false;
+            }
+            if (power->was_cut && names(frame, sdo_answer_id, index, 0) && (frame.data[0] & 0xE2) == 0x42) {
+              put_word(frame, 4, value);
+            }
+          },
+          [=](Wire&, Frame& frame) {
+            if (!is_nmt(frame, NmtCommand::reset_node) && !is_nmt(frame, NmtCommand::reset_communication)) return;
+            power->was_reset = true;
+          }};
+}
+
 }  // namespace
 }  // namespace control_mutant
 
@@ -193,6 +273,28 @@ std::vector<Mutant> new_case_mutants() {
       {"abort-code-of-no-table", aborts_with_code(AbortCode::read_only, 0x0601'0003), {}},
       {"abort-code-of-no-table-for-no-data", aborts_with_code(AbortCode::no_data, 0x0800'0025), {}},
       {"abort-code-of-sub-index-ff", aborts_with_code(AbortCode::no_sub_index, 0x0609'0030), {}},
+      // Heartbeat, NMT
+      {"heartbeat-consumer-cannot-be-disabled", {}, forgets(0x1016, 1, false)},
+      {"heartbeats-drift", heartbeats_drift(), {}},
+      {"first-heartbeats-missing", first_heartbeats_missing(), {}},
+      {"error-behavior-forgotten", {}, forgets(0x1029, 1, true)},
+      {"unknown-nmt-command-starts", {}, unknown_command_starts()},
+      {"nmt-for-others-executed", {}, takes_commands_for_others()},
+      {"short-nmt-executed", {}, takes_short_commands()},
+      {"nmt-for-all-ignored", {}, drops([](const Frame& frame) {
+         return is_data(frame, 0) && frame.size == 2 && frame.data[1] == 0;
+       })},
+      // SYNC and TIME
+      {"time-restricted-cob-id",
+       [](Wire&, Frame& frame) {
+         if (names(frame, sdo_answer_id, 0x1012, 0) && frame.data[0] == 0x43) put_word(frame, 4, 0x70);
+       },
+       {}},
+      {"time-cob-id-changes-while-used", takes_all(0x1012, 0), {}},
+      {"sync-cob-id-changes-while-produced", takes_all(0x1005, 0), {}},
+      // Storage
+      loses_value("stored-value-lost-by-power-cut", 0x100C, 0),
+      loses_value("power-cut-leaves-some-values", 0x1007, 0x777),
   };
 }
 

@@ -28,7 +28,7 @@ from bench import LATE, NODE_ID, TRIES, Bench, patterns, run_problems  # noqa: E
 
 EVENTS = ("3.4", "3.7", "3.10", "3.13", "3.16", "3.19")
 ERRORS = ("5.4", "5.5", "5.6", "5.103", "5.105", "5.106", "9.2", "9.3", "9.4")
-POWER = ("8.2", "8.6")
+POWER = ("8.2", "8.6", "8.101", "8.102")
 NEEDS_ERROR = ("5.103", "5.106")  # inconclusive if the program of the device cannot cause an error
 SIMULATED = ("5.104",)  # inconclusive in real time
 

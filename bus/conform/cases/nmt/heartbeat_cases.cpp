@@ -1,4 +1,6 @@
 /// Heartbeat producer and consumer (CiA 301, 7.2.8.3.2.2 and 7.2.8.2.2).
+#include <fmt/format.h>
+
 #include "conform/case.hpp"
 #include "conform/cases/nmt/error_control.hpp"
 #include "conform/cases/nmt/heartbeat_source.hpp"
@@ -95,6 +97,49 @@ void consumer_after_reset(Dut& dut) {
   expect_lost(dut, event, since, producer.beat());
 }
 
+/// A value of 0 in 1016h ends the monitoring.
+void consumer_off(Dut& dut) {
+  const HeartbeatSource producer{dut};
+  const Dut::Match event = error_control_event(dut);
+  producer.watch(watched);
+  (void)producer.beats(watched / 2, 3);
+  const Dut::Mark since = dut.mark();
+  producer.unwatch();
+  dut.pass_time(watched * 3);
+  expect_not_lost(dut, event, since, "while 1016h:01 is 0");
+}
+
+/// The times between many heartbeats, and their mean: a device whose timer starts anew with each heartbeat drifts.
+void heartbeat_drift(Dut& dut) {
+  constexpr std::size_t intervals = 50;
+  start_heartbeat(dut);
+  const std::vector<SeenFrame> seen = dut.collect(dut.heartbeat(), beat * (intervals + 2));
+  dut.expect(seen.size() > intervals,
+             fmt::format("more than {} heartbeats in {} ms", intervals, (beat * (intervals + 2)).count() / 1000),
+             std::to_string(seen.size()));
+  for (std::size_t i = 1; i < seen.size(); ++i) {
+    dut.expect_time(seen[i].at - seen[i - 1].at, beat.count() * 9 / 10, beat.count() * 11 / 10,
+                    "the time between two heartbeats");
+  }
+  const std::uint64_t mean = (seen.back().at - seen.front().at) / (seen.size() - 1);
+  dut.expect_time(mean, beat.count() * 49 / 50, beat.count() * 51 / 50, "the mean time between heartbeats");
+}
+
+/// The first heartbeat is sent within one period after 1017h is written.
+void first_heartbeat(Dut& dut) {
+  dut.need_writable(producer_heartbeat);
+  dut.enter(NmtState::pre_operational);
+  dut.write(producer_heartbeat, 0, 0);
+  constexpr Duration period = milliseconds{500};
+  const Dut::Mark since = dut.mark();
+  dut.write(producer_heartbeat, 0, period.count() / 1000);
+  const std::uint64_t written = dut.now();
+  const auto first = dut.wait_for(dut.heartbeat(), period * 3, since);
+  dut.expect(first.has_value(), "a heartbeat after 1017h:00 is written", "none");
+  dut.expect_time(first->at > written ? first->at - written : 0, 0, period.count() * 11 / 10,
+                  "the first heartbeat after 1017h:00 is written");
+}
+
 constexpr CaseRow heartbeat_rows[] = {
     {"7.101", "1017h keeps the written values", "CiA 301, 7.5.2.20", Level::communication, Permission::none,
      write_heartbeat},
@@ -112,6 +157,12 @@ constexpr CaseRow heartbeat_rows[] = {
      Condition::punctual | Condition::alone},
     {"7.107", "After a reset a node is monitored from its first heartbeat on", "CiA 301, 7.2.8.2.2 and 7.5.2.19",
      Level::communication, Permission::none, consumer_after_reset, Condition::punctual | Condition::alone, "9.1"},
+    {"7.108", "1016h = 0 ends the monitoring of a node", "CiA 301, 7.5.2.19", Level::communication, Permission::none,
+     consumer_off, Condition::punctual | Condition::alone},
+    {"7.109", "The period of heartbeats is regular and does not drift", "CiA 301, 7.2.8.3.2.2 and 7.5.2.20",
+     Level::communication, Permission::none, heartbeat_drift, Condition::punctual, "7.102"},
+    {"7.110", "The first heartbeat is sent within the time that is written to 1017h", "CiA 301, 7.2.8.3.2.2",
+     Level::communication, Permission::none, first_heartbeat, Condition::punctual},
 };
 
 }  // namespace

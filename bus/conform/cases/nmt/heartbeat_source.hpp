@@ -26,6 +26,8 @@ class HeartbeatSource {
     dut_.write(consumer_heartbeat, sub_index, value(time));
   }
 
+  void unwatch(std::uint8_t sub_index = 1) const { dut_.write(consumer_heartbeat, sub_index, 0); }
+
   /// The value of 1016h for this node.
   [[nodiscard]] std::uint64_t value(Duration time) const {
     return std::uint64_t{node_.value()} << 16 | time.count() / 1000;

@@ -47,6 +47,15 @@ void expect_processed(Dut& dut, TestedRpdo& rpdo, const std::string& when) {
              "its objects are unchanged");
 }
 
+/// An RPDO of the right length is processed now; the objects have their former values afterwards.
+void need_processed(Dut& dut, TestedRpdo& rpdo) {
+  rpdo.send();
+  if (rpdo.applied() == Applied::none) {
+    dut.inconclusive(Condition::state, rpdo.name() + " is not processed in Operational; case 3.101 tests that it is");
+  }
+  rpdo.send_present();
+}
+
 void ignored_in(Dut& dut, NmtState state) {
   with_rpdo(dut, [&dut, state](TestedRpdo& rpdo) {
     if (state != NmtState::pre_operational) dut.enter(state);
@@ -74,6 +83,7 @@ void too_short(Dut& dut) {
     const bool reports = dut.has(emcy) && CobId{static_cast<std::uint32_t>(dut.read_number(emcy))}.valid();
     const std::uint32_t emcy_id = reports ? emcy_cob_id(dut) : 0;
     dut.enter(NmtState::operational);
+    need_processed(dut, rpdo);
     and_undo(
         [&] {
           const Dut::Mark since = dut.mark();
@@ -182,19 +192,20 @@ void inhibit_time_fixed_while_valid(Dut& dut) {
 
 constexpr CaseRow rpdo_rows[] = {
     {"3.101", "In Pre-operational an RPDO is not processed", "CiA 301, 7.3.2.2.5", with_writes, with_outputs,
-     with<ignored_in, NmtState::pre_operational>},
+     with<ignored_in, NmtState::pre_operational>, Condition::state | Condition::usable_value},
     {"3.102", "In Stopped an RPDO is not processed", "CiA 301, 7.3.2.2.5", with_writes, with_outputs,
-     with<ignored_in, NmtState::stopped>},
+     with<ignored_in, NmtState::stopped>, Condition::state | Condition::usable_value},
     {"3.103", "An RPDO that is received in Pre-operational is not processed in Operational", "CiA 301, 7.3.2.2.5",
-     with_writes, with_outputs, not_kept},
+     with_writes, with_outputs, not_kept, Condition::state | Condition::usable_value, "3.101"},
     {"3.104", "An RPDO that is shorter than its mapping is not processed and is reported with 8210h",
-     "CiA 301, 7.2.2.5.1 and 7.2.7.1", with_writes, with_outputs, too_short},
+     "CiA 301, 7.2.2.5.1 and 7.2.7.1", with_writes, with_outputs, too_short,
+     Condition::state | Condition::usable_value},
     {"3.105", "Of an RPDO that is longer than its mapping the first bytes are used, or it is not processed",
-     "CiA 301, 7.2.2.5.1 and 7.2.7.1", with_writes, with_outputs, too_long},
+     "CiA 301, 7.2.2.5.1 and 7.2.7.1", with_writes, with_outputs, too_long, Condition::state | Condition::usable_value},
     {"3.106", "An RPDO whose COB-ID is not valid is not processed", "CiA 301, 7.5.2.35", with_writes, with_outputs,
-     disabled},
+     disabled, Condition::state | Condition::usable_value},
     {"3.107", "A synchronous RPDO is processed at the next SYNC", "CiA 301, 7.2.2.2", with_writes, with_outputs,
-     at_sync},
+     at_sync, Condition::state | Condition::usable_value},
     {"3.108", "The CAN-ID of an RPDO does not change while the RPDO is valid", "CiA 301, 7.5.2.35", with_writes,
      no_permission, with<fixed_while_valid, PdoDirection::receive>},
     {"3.109", "The CAN-ID of a TPDO does not change while the TPDO is valid", "CiA 301, 7.5.2.37", with_writes,

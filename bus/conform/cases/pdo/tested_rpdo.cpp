@@ -34,7 +34,8 @@ TestedRpdo::TestedRpdo(Dut& dut) : dut_{dut} {
     }
   }
   if (!any) dut.not_applicable("no valid RPDO maps an object");
-  dut.inconclusive("no valid RPDO maps an object whose value SDO can read and that does not change by itself");
+  dut.inconclusive(Condition::usable_value,
+                   "no valid RPDO maps an object whose value SDO can read and that does not change by itself");
 }
 
 bool TestedRpdo::use(const Pdo& pdo, bool with_synchronous) {

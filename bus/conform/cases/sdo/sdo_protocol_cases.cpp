@@ -170,7 +170,7 @@ constexpr CaseRow sdo_protocol_rows[] = {
     {"2.101", "A segment requested without an upload is refused", "CiA 301, 7.2.4.3.7", Level::read, none,
      [](Dut& dut) { without_transfer(dut, 0x60, "an upload segment requested"); }},
     {"2.102", "A segment sent without a download is refused", "CiA 301, 7.2.4.3.4", Level::read, none,
-     [](Dut& dut) { without_transfer(dut, 0x01, "a download segment"); }},
+     [](Dut& dut) { without_transfer(dut, 0x01, "a download segment"); }, Condition::none, "2.101"},
     {"2.103", "The start, the confirmation and the end of a block without a transfer are refused", "CiA 301, 7.2.4.3.8",
      Level::read, none,
      [](Dut& dut) {
@@ -179,7 +179,7 @@ constexpr CaseRow sdo_protocol_rows[] = {
        without_transfer(dut, sdo::block_download_end, "end of a block download");
      }},
     {"2.104", "An abort of the client ends the transfer and is not answered", "CiA 301, 7.2.4.3.17", Level::read, none,
-     abort_of_client},
+     abort_of_client, Condition::none, "2.101"},
     {"2.105", "A request to write with less than eight bytes changes no value", "CiA 301, 7.2.4.3",
      Level::communication, none, short_request},
     {"2.106", "A request that initiates a transfer is served during an upload", "CiA 301, 7.2.4.2", Level::read, none,
