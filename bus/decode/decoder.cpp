@@ -214,7 +214,10 @@ void Decoder::decode_error_control(const Frame& frame, Message& message) {
     return;
   }
   message.text += canopen::to_text(found->state);
-  if (!was_asked && !found->toggle) return;
+  // A node that produces heartbeats does not respond to guarding requests (CiA 301, 7.2.8.3.2).
+  const NodeModel* const producer = model_of(message.node_id);
+  const bool has_heartbeat = producer != nullptr && producer->parameter(0x1017, 0).value_or(0) != 0;
+  if ((!was_asked || has_heartbeat) && !found->toggle) return;
   message.service = Service::guarding;
   message.text += found->toggle ? ", toggle 1" : ", toggle 0";
 }

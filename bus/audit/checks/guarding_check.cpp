@@ -22,12 +22,13 @@ void GuardingCheck::judge_silence(std::uint8_t node_id, const Moment& now, Audit
   });
 }
 
-/// A node that boots, or was never seen, does not respond.
+/// A node that boots, was never seen, or produces heartbeats (CiA 301, 7.2.8.3.2) does not respond.
 void GuardingCheck::request(const SeenMessage& seen, AuditState& audit) {
   const std::uint8_t node_id = seen.message.node_id;
   const NodeState& state = audit.nodes[node_id];
   judge_silence(node_id, seen.at, audit);
-  const bool responds = state.first_seen && state.state != canopen::NmtState::initialisation;
+  const bool responds =
+      state.first_seen && state.state != canopen::NmtState::initialisation && state.settings.heartbeat_us == 0;
   if (seen.at.has_time && responds && !nodes_[node_id].asked_us) nodes_[node_id].asked_us = seen.at.us;
 }
 

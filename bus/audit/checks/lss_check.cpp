@@ -86,11 +86,20 @@ void LssCheck::request(const SeenMessage& seen, AuditState& audit) {
     // The slave that is found enters the configuration state without a response of its own.
     case Command::fastscan: slaves_ = Slaves::unknown; return;
     case Command::configure_node_id: asked_node_id_ = operand < AuditState::node_ids ? operand : 0; break;
+    // Until the end of the second switch delay the slave does not send (CiA 305, activate bit timing).
+    case Command::activate_bit_timing: {
+      constexpr std::int64_t delays = 2, us_per_ms = 1000;
+      const std::int64_t delay_us = (operand | seen.frame.data[2] << 8) * us_per_ms;
+      if (seen.at.has_time) silent_until_us_ = seen.at.us + delays * delay_us;
+      break;
+    }
     default: break;
   }
   const LssAnswer* const row = find_answer(command);
   if (row == nullptr || !row->in_configuration) return;
-  if (slaves_ == Slaves::configure && row->response != Command::none && seen.at.has_time) asked_us_ = seen.at.us;
+  const bool responds = slaves_ == Slaves::configure && row->response != Command::none && seen.at.has_time &&
+                        seen.at.us >= silent_until_us_.value_or(0);
+  if (responds) asked_us_ = seen.at.us;
   if (slaves_ != Slaves::waiting) return;
   audit.findings.add({"lss-mode"}, seen.at, 0, [&] {
     return Texts{"switch state to configuration before", seen.message.text};

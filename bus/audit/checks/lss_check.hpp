@@ -23,8 +23,9 @@ class LssCheck {
   void judge_silence(const Moment& now, AuditState& audit);
 
   std::optional<std::uint8_t> last_request_;
-  bool answered_ = false;                 ///< the last request, which only one slave may answer
-  std::optional<std::int64_t> asked_us_;  ///< the last request, if the slave must respond
+  bool answered_ = false;                        ///< the last request, which only one slave may answer
+  std::optional<std::int64_t> asked_us_;         ///< the last request, if the slave must respond
+  std::optional<std::int64_t> silent_until_us_;  ///< the end of the two switch delays of activate bit timing
   std::uint8_t asked_node_id_ = 0;
   Slaves slaves_ = Slaves::unknown;
 };

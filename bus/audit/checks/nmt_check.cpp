@@ -28,6 +28,15 @@ bool boots_as_another(const NodeState& node, const AuditState& audit) {
          other.state_since.us >= node.state_since.us;
 }
 
+/// Whether LSS has given this node-ID to a node that has just been reset: it boots with this one (CiA 305).
+bool is_new_node_id(std::uint8_t node_id, const AuditState& audit) {
+  const auto boots = [&](const NodeState& node) {
+    return node.first_seen && node.state == NmtState::initialisation &&
+           node.state_since.us >= audit.nodes[node_id].state_since.us;
+  };
+  return audit.lss_node_id == node_id && std::ranges::any_of(audit.nodes, boots);
+}
+
 /// Whether a command may not apply to the node: the master need not obey its own commands, and a node without an EDS
 /// may be the master.
 bool may_ignore(std::uint8_t node_id, bool is_for_all, const AuditState& audit) {
@@ -86,7 +95,8 @@ void NmtCheck::boot_up(const SeenMessage& seen, AuditState& audit) {
   NodeState& node = audit.nodes[node_id];
   if (node.state == NmtState::initialisation) {
     judge_boot_time(node_id, node, seen.at, audit);
-  } else if (!node.may_boot && node.first_seen && (node.state || node.first_seen->us >= audit.times_since)) {
+  } else if (!node.may_boot && !is_new_node_id(node_id, audit) && node.first_seen &&
+             (node.state || node.first_seen->us >= audit.times_since)) {
     audit.findings.add({"nmt-reset", node_id}, seen.at, 0, [&] {
       return std::pair<std::string, std::string>{
           "a reset command before", fmt::format("the node was {}", node.state ? to_text(*node.state) : "on the bus")};

@@ -16,17 +16,13 @@ import unittest
 from dataclasses import replace
 from html.parser import HTMLParser
 
-from audits import EDSC, SOURCE_DIR, Audits, Broken, add, data, guarded, replaced
+from audits import EDSC, SOURCE_DIR, Audits, Broken, add, data, guarded, lss, replaced
 from plant import (END_MS, STOP_MS, Frame, axis, block_upload, changed, clean, eds_of, in_order, log_of, repeated_block_upload, sdo, segmented_upload,
                    supply, without)
 
 PAGE = SOURCE_DIR / "docs/how-to/audit.md"
 FINE, INPUT_HAS_ERRORS, WRONG_USAGE = 0, 1, 2
 ERROR_FRAME = "(1700000002.950000) can0 20000004#0004000000000000\n"
-
-def lss(ms: float, request: str, response: str) -> list[Frame]:
-    frames = [Frame(ms, 0x7E5, data(request.ljust(16, "0")))]
-    return [*frames, Frame(ms + 1, 0x7E4, data(response.ljust(16, "0")))] if response else frames
 
 
 def silent_supply(log: list[Frame]) -> list[Frame]:

@@ -43,6 +43,11 @@ def data(text: str) -> bytes:
     return bytes.fromhex(text)
 
 
+def lss(ms: float, request: str, response: str) -> list[Frame]:
+    frames = [Frame(ms, 0x7E5, data(request.ljust(16, "0")))]
+    return [*frames, Frame(ms + 1, 0x7E4, data(response.ljust(16, "0")))] if response else frames
+
+
 def replaced(old: list[Frame], position: int, content: str) -> Change:
     """Another content of one of these frames."""
     return lambda log: [Frame(one.ms, one.can_id, data(content)) if one == old[position] else one for one in log]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 import unittest
 
-from audits import Audits, Broken, add, data, guarded
+from audits import Audits, Broken, add, data, guarded, lss
 from plant import (END_MS, EVENT_MS, HEARTBEAT_MS, PRE_OPERATIONAL, START_MS, STOP_MS, SYNC_PERIOD_MS, UNSIGNED32, Frame, axis, block_upload,
                    clean, eds_of, in_order, log_of, supply, without)
 
@@ -123,6 +123,32 @@ class Traffic(Audits):
             with self.subTest(f"{name} the remote frames in the log"):
                 log = guarded(clean(), (0x05, 0x85, 0x05, 0x85, 0x05))
                 self.assert_clean(Broken(lambda _, log=log, requests=requests: [one for one in log if requests or one.can_id != 0x705 or not one.remote]))
+
+    def test_a_heartbeat_is_not_a_response_to_node_guarding(self) -> None:
+        """CiA 301, 7.2.8.3.2: a node with a producer heartbeat time uses the heartbeat protocol and does not respond."""
+        requests = [Frame(ms, 0x705, remote=True) for ms in range(1130, 2300, 70)]
+        self.assert_clean(Broken(add(*requests)))
+        with_toggle = self.report(Broken(add(*requests, Frame(1131, 0x705, b"\x85"), Frame(1133, 0x705, b"\x85"))))
+        self.assertIn("guarding-toggle", {one["rule"] for one in with_toggle["findings"]})
+
+    def test_a_node_does_not_respond_during_the_switch_delay_of_lss(self) -> None:
+        """CiA 305, activate bit timing: the slave does not send before the end of the second delay."""
+        def activated(ms: int) -> Broken:
+            return Broken(add(*lss(320, "0401", ""), *lss(322, "5A", "5A01"), *lss(324, "153200", ""), *lss(ms, "5E", ""),
+                              *lss(ms + 150, "0400", "")))
+        self.assert_clean(activated(420))
+        self.assertEqual([one["rule"] for one in self.report(activated(430))["findings"]], ["lss-timeout"])
+
+    def test_a_node_boots_with_the_node_id_that_another_had(self) -> None:
+        """Node 7 was on the bus; then LSS gives its node-ID to node 5."""
+        def moved(log: list[Frame]) -> list[Frame]:
+            log = [one for one in log if one.ms < 2600 or one.can_id != 0x705]
+            log += [Frame(ms, 0x707, b"\x7F") for ms in range(100, 2600, HEARTBEAT_MS)]
+            log += [*lss(2600, "0401", ""), *lss(2602, "1107", "1100"), *lss(2605, "0400", ""), Frame(2610, 0x000, b"\x82\x05")]
+            return log + [Frame(2650, 0x707, b"\0"), *(Frame(ms, 0x707, b"\x7F") for ms in range(2750, END_MS, HEARTBEAT_MS))]
+        self.assert_clean(Broken(moved), "--silence", "node-unknown")
+        again = self.report(Broken(lambda log: [*moved(log), Frame(2990, 0x707, b"\0")]), "--silence", "node-unknown")
+        self.assertEqual([one["rule"] for one in again["findings"]], ["nmt-reset"])
 
     def test_a_node_boots_with_the_node_id_of_lss(self) -> None:
         """Node 5 becomes node 7."""
