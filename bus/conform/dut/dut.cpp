@@ -50,6 +50,21 @@ std::uint32_t seed_of(std::uint32_t seed, std::string_view id) {
   return seed;
 }
 
+/// Whether a response ends the transfer to which the request belongs.
+bool ends_transfer(const sdo::Data& request, const sdo::Data& response) {
+  constexpr std::uint8_t command = 0xE0;
+  if (response[0] == sdo::abort_command) return true;
+  switch (request[0] & command) {
+    case 0x40: return (response[0] & command) == 0x40 && (response[0] & sdo::expedited) != 0;
+    case 0x20: return (response[0] & command) == 0x60 && (request[0] & sdo::expedited) != 0;
+    case 0x60: return (response[0] & command) == 0x00 && (response[0] & sdo::last_segment) != 0;
+    case 0x00: return (response[0] & command) == 0x20 && (request[0] & sdo::last_segment) != 0;
+    default:
+      return (request[0] & sdo::block_end_mask) == sdo::block_download_end &&
+             response[0] == sdo::block_download_end_answer;
+  }
+}
+
 }  // namespace
 
 std::string label(std::uint16_t index, std::uint8_t sub_index) { return entry_label(index, sub_index); }
@@ -178,7 +193,9 @@ void Dut::write(std::uint16_t index, std::uint8_t sub_index, std::uint64_t numbe
 }
 
 void Dut::request(const sdo::Data& data) {
-  transfer_open_ = true;
+  transfer_open_ = data[0] != sdo::block_upload_end_answer;
+  last_request_ = data;
+  requested_at_ = mark();
   send(canopen::default_sdo(node()).request.can_id(), data);
 }
 
@@ -198,7 +215,16 @@ std::optional<sdo::Data> Dut::exchange(const sdo::Data& data) {
   return answer();
 }
 
+bool Dut::is_answered_to_end() const {
+  const auto answers = received_since(requested_at_, with_id(canopen::default_sdo(node()).response.can_id()));
+  return !answers.empty() && ends_transfer(last_request_, answers.front().frame.data);
+}
+
 void Dut::end_transfer(std::uint16_t index, std::uint8_t sub_index) {
+  if (is_answered_to_end()) {
+    transfer_open_ = false;
+    return;
+  }
   sdo::Data abort{sdo::abort_command};
   sdo::put_multiplexer(abort, index, sub_index);
   sdo::put_word(abort, static_cast<std::uint32_t>(canopen::AbortCode::general));

@@ -135,7 +135,7 @@ class Dut : public CaseFrames {
   void request(const canopen::sdo::Data& request);
   /// Returns the next frame of the server without a request, such as a segment of a block upload.
   std::optional<canopen::sdo::Data> answer();
-  /// Aborts a transfer that `exchange` or `request` has left open.
+  /// Aborts a transfer that `exchange` or `request` has left open, unless the last response ended it.
   void end_transfer(std::uint16_t index = 0, std::uint8_t sub_index = 0);
 
   // ---- all values at once ----
@@ -230,6 +230,8 @@ class Dut : public CaseFrames {
   [[nodiscard]] std::vector<std::string> find_state();
 
  private:
+  /// Whether the last response to `request` ends the transfer.
+  [[nodiscard]] bool is_answered_to_end() const;
   [[nodiscard]] LiveEntry live(std::uint16_t index, std::uint8_t sub_index) const;
   [[nodiscard]] std::optional<std::string> unmet_state();
   [[nodiscard]] std::optional<std::string> unmet_error_free();
@@ -247,6 +249,8 @@ class Dut : public CaseFrames {
   std::uint64_t case_began_ = 0;
   bool state_changed_ = false;
   bool transfer_open_ = false;
+  canopen::sdo::Data last_request_{};
+  Mark requested_at_ = 0;
   std::optional<Mark> failed_;                    ///< where the case failed
   bool guarded_ = false;                          ///< the state is read by node guarding
   bool remote_frames_carried_ = false;            ///< seen in this run
