@@ -90,6 +90,21 @@ std::string verdict_text(const Report& report) {
   return text;
 }
 
+/// `by case 2.17: sdo-toggle; sdo-abort, 3 times`, for each case.
+std::vector<std::string> provoked_texts(const Findings& findings) {
+  std::vector<std::string> texts;
+  const ProvokingCase* last = nullptr;
+  for (const Provoked& one : findings.provoked()) {
+    const std::string& id = one.by->id;
+    if (one.by != last) texts.push_back((id.empty() ? "before the first case" : "by case " + printable(id)) + ": ");
+    std::string& text = texts.back();
+    text += fmt::format("{}{}", one.by == last ? "; " : "", one.rule.text());
+    if (one.count > 1) text += ", " + counted(one.count, "time");
+    last = one.by;
+  }
+  return texts;
+}
+
 std::string_view color_of(Severity severity) {
   switch (severity) {
     case Severity::error: return "\033[1;31m";
@@ -143,6 +158,9 @@ std::string text_report(const Report& report, bool color) {
     if (const std::string occurrence = occurrence_text(*finding); !occurrence.empty()) text += "; " + occurrence;
     text += '\n';
   }
+  for (const std::string& provoked : provoked_texts(*report.findings)) {
+    text += fmt::format("{}: provoked {}\n", printable(report.log), provoked);
+  }
   text += fmt::format("{}: {}: {}\n", printable(report.log), totals_text(report), verdict_text(report));
   if (report.shows_cycles && report.totals.has_times) text += '\n' + cycles_text(*report.cycle_times, *report.labels);
   return text;
@@ -151,6 +169,13 @@ std::string text_report(const Report& report, bool color) {
 std::string json_report(const Report& report) {
   json findings = json::array();
   for (const Finding* const finding : report.findings->in_order()) findings.push_back(finding_object(*finding, report));
+  json provoked = json::array();
+  for (const Provoked& one : report.findings->provoked()) {
+    provoked.push_back({{"case", one.by->id.empty() ? json(nullptr) : json(printable(one.by->id))},
+                        {"title", printable(one.by->title)},
+                        {"rule", one.rule.text()},
+                        {"count", one.count}});
+  }
   const Totals& totals = report.totals;
   const bool has_load = report.limits.bit_rate > 0 && totals.has_times;
   const auto percent = [&](std::uint64_t tenths) {
@@ -169,6 +194,7 @@ std::string json_report(const Report& report) {
                          {"notes", report.findings->count(Severity::note)},
                          {"not_listed", report.findings->not_listed()},
                          {"findings", std::move(findings)},
+                         {"provoked", std::move(provoked)},
                          {"cycles", cycles_json(*report.cycle_times, *report.labels)}};
   return json_text(document) + '\n';
 }
@@ -189,6 +215,7 @@ std::string html_report(const Report& report) {
                         {"line", finding->first.line},
                         {"time", time_text(finding->first)}});
   }
+  const std::vector<std::string> provoked = provoked_texts(*report.findings);
   json view = {{"page_title", "Audit of " + report.log},
                {"style", with_parts("document.css")},
                {"log", report.log},
@@ -196,6 +223,8 @@ std::string html_report(const Report& report) {
                {"verdict", verdict_text(report)},
                {"has_findings", !findings.empty()},
                {"findings", findings},
+               {"has_provoked", !provoked.empty()},
+               {"provoked", provoked},
                {"has_cycles", !report.cycle_times->cycles().empty()},
                {"cycles", cycles_rows(*report.cycle_times, *report.labels)}};
   return render_html(with_parts("audit.html"), view);

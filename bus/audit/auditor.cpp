@@ -20,6 +20,7 @@ Auditor::Auditor(const Decoder& decoder, const Limits& limits)
 Moment Auditor::moment_of(const LogLine& line) {
   Moment moment{line.number, line.has_time, now_.us};
   if (!line.has_time) return moment;
+  if (!times_.first_us()) audit_.findings.begin_at(line.microseconds);
   const std::int64_t back_us = times_.add(line.microseconds);
   moment.us = times_.now_us();
   if (back_us > 0) restart_times(moment, back_us);

@@ -6,6 +6,7 @@ namespace edsc::audit {
 
 Finding* Findings::count(const Subject& subject, const Moment& moment, std::int64_t badness) {
   if (silenced_.contains(subject.rule)) return nullptr;
+  if (provocations_ && moment.has_time && provocations_->count(subject.rule, first_us_ + moment.us)) return nullptr;
   const auto found = findings_.find(subject);
   if (found == findings_.end() && findings_.size() >= max_findings) {
     ++not_listed_;
@@ -26,6 +27,10 @@ std::vector<const Finding*> Findings::in_order() const {
   for (const auto& [subject, finding] : findings_) sorted.push_back(&finding);
   std::ranges::stable_sort(sorted, {}, [](const Finding* one) { return one->first.line; });
   return sorted;
+}
+
+std::vector<Provoked> Findings::provoked() const {
+  return provocations_ ? provocations_->counted() : std::vector<Provoked>{};
 }
 
 std::size_t Findings::count(Severity severity) const {

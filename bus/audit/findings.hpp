@@ -5,12 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include "audit/audit_rules.hpp"
+#include "audit/provocations.hpp"
 
 namespace edsc::audit {
 
@@ -47,6 +49,11 @@ class Findings {
 
   void silence(RuleId rule) { silenced_.insert(rule); }
 
+  /// What cases of `edsc conform` provoke is counted apart.
+  void expect(Provocations provocations) { provocations_ = std::move(provocations); }
+  /// The time of the first frame, as in the log.
+  void begin_at(std::int64_t log_us) { first_us_ = log_us; }
+
   /// Counts an occurrence. `texts` returns what was expected and what was seen; it is called for the first occurrence
   /// and for those with more badness than all before.
   template <class Texts>
@@ -59,6 +66,8 @@ class Findings {
   [[nodiscard]] std::vector<const Finding*> in_order() const;
   [[nodiscard]] std::size_t count(Severity severity) const;
   [[nodiscard]] std::size_t not_listed() const { return not_listed_; }
+  /// What cases have provoked; empty without their report.
+  [[nodiscard]] std::vector<Provoked> provoked() const;
 
  private:
   /// Null if the texts of an earlier occurrence remain.
@@ -67,6 +76,8 @@ class Findings {
   std::map<Subject, Finding> findings_;
   std::set<RuleId> silenced_;
   std::size_t not_listed_ = 0;
+  std::optional<Provocations> provocations_;
+  std::int64_t first_us_ = 0;
 };
 
 }  // namespace edsc::audit

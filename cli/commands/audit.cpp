@@ -14,6 +14,7 @@
 #include "shared/output.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
+#include "text/source_file.hpp"
 
 namespace edsc {
 namespace {
@@ -24,6 +25,7 @@ constexpr const char* examples = R"(Examples:
   edsc audit can0.log --node axis1.dcf --cycles                   also cycle times and jitter
   edsc audit capture.pcapng --node axis1.dcf --format html -o audit.html
   candump -L can0 | edsc audit --node axis1.dcf --silence can-id-unknown
+  edsc audit frames.log --node 5=drive.eds --conform report.json  a log and a report of edsc conform
   edsc audit --list-rules                                         every rule with its meaning)";
 
 struct Settings : LogSettings {
@@ -32,6 +34,7 @@ struct Settings : LogSettings {
   std::uint32_t bit_rate_kbit = 0;
   std::uint8_t nmt_master = 0;
   std::vector<std::string> silence;
+  std::string conform;  ///< path of a report of edsc conform; empty: none
   std::string format = "text";
   std::string output;
   bool cycles = false;
@@ -54,6 +57,16 @@ int list_rules(const Settings& settings) {
   return exit_fine;
 }
 
+/// Ends the command if it cannot be read.
+audit::Provocations read_provocations(const std::string& path) {
+  std::string problem;
+  const std::unique_ptr<SourceFile> file = read_source_file(path, problem);
+  if (!file) fail(problem);
+  auto provocations = audit::Provocations::read(file->text(), problem);
+  if (!provocations) fail(path + ": " + problem, exit_input_has_errors);
+  return std::move(*provocations);
+}
+
 std::string report_text(const audit::Report& report, const Settings& settings) {
   if (settings.format == "json") return json_report(report);
   if (settings.format == "html") return html_report(report);
@@ -71,6 +84,7 @@ int audit_log(const Settings& given) {
       nodes.known(), nodes.labels, {settings.log_name(), settings.interface, LogOutput::text, false, {}}};
   audit::Auditor auditor{decoder.decoder(), settings.limits};
   auditor.set_nmt_master(settings.nmt_master);
+  if (!settings.conform.empty()) auditor.expect(read_provocations(settings.conform));
   for (const std::string& id : settings.silence) auditor.silence(*find_rule(audit::audit_rules, id));
 
   std::uint64_t frames = 0;
@@ -135,6 +149,11 @@ void add_audit_options(Command command, int& exit_code) {
   command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
       .one_value_each()
       .check(check_audit_rule);
+  command
+      .add_option(
+          "--conform", settings.conform,
+          "report of the run of edsc conform --json whose --log this is: what its cases provoke is listed apart")
+      .type_name("FILE");
   add_choice(command, "--format", settings.format, {"text", "json", "html"}, "text, json or html");
   command.add_option("-o,--output", settings.output, "file to write (default: standard output)").type_name("FILE");
   command.add_flag("--cycles", settings.cycles,

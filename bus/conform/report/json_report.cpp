@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "conform/provocations.hpp"
 #include "conform/report/decoded_frames.hpp"
 #include "conform/report/report_facts.hpp"
 #include "text/printable.hpp"
@@ -98,6 +99,7 @@ json case_object(const CaseResult& result, const RunReport& run, const Device& s
           {"rule", text_or_null(std::string{result.rule.text()})},
           {"deviation", text_or_null(result.deviation)},
           {"warnings", result.warnings},
+          {"provokes", provoked_by(row.id)},
           {"not_put_back", result.not_put_back},
           {"began_us", result.began},
           {"took_us", result.took},
@@ -152,6 +154,7 @@ std::string json_report(const RunReport& run, const Device& sheet) {
       {"permissions", permission_names(run.permissions)},
       {"seed", run.seed},
       {"max_lag_us", max_lag(run)},
+      {"provokes", provoked_by("start")},
       {"interrupted", run.interrupted},
       {"ended_early", text_or_null(run.lost)},
       {"unused_deviations", run.unused_deviations},
