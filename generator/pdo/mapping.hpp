@@ -41,7 +41,7 @@ struct MappingValue {
   /// The type of a dummy; null for an object or an unknown type.
   [[nodiscard]] const canopen::DataTypeRow* dummy_type() const;
   /// Whether a device with this Granularity, which is not 0, can map the length (CiA 306-1, 4.5).
-  [[nodiscard]] bool is_multiple_of(std::uint32_t granularity) const { return bits % granularity == 0; }
+  [[nodiscard]] bool is_multiple_of(std::uint64_t granularity) const { return bits % granularity == 0; }
 
   friend bool operator==(const MappingValue&, const MappingValue&) = default;
 };
