@@ -11,7 +11,7 @@ constexpr AreaRow area_rows[] = {
     {"5", "Emergency"},     {"6", "SYNC"},
     {"7", "Error control"}, {"8", "Stored parameters and CAN-IDs"},
     {"9", "NMT states"},    {"10", "NMT transitions"},
-    {"11", "LSS"},
+    {"11", "LSS"},          {"12", "Hostile"},
 };
 
 /// In the order in which they run. Tables of one area follow each other.
@@ -43,6 +43,8 @@ constexpr std::span<const CaseRow> (*case_tables[])() = {
     transition_cases,
     nmt_message_cases,
     lss_cases,
+    hostile_frame_cases,
+    hostile_sdo_cases,
 };
 
 }  // namespace

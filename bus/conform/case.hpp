@@ -16,7 +16,8 @@ class Dut;
 enum class Level : std::uint8_t {
   read,           ///< reads, and requests that each device must refuse without being written
   communication,  ///< writes 1000h to 1FFFh and puts back; NMT to this node
-  all,            ///< everything, with all of `Permission`
+  all,            ///< all of `Permission`, and each case but the hostile ones
+  hostile,        ///< `all`, and malformed, late, random and repeated frames: only by its name
 };
 
 struct LevelRow {
@@ -28,6 +29,7 @@ inline constexpr LevelRow levels[] = {
     {Level::read, "read"},
     {Level::communication, "communication"},
     {Level::all, "all"},
+    {Level::hostile, "hostile"},
 };
 
 [[nodiscard]] constexpr const LevelRow& row_of(Level level) { return levels[static_cast<std::size_t>(level)]; }
@@ -160,5 +162,7 @@ struct AreaRow {
 [[nodiscard]] std::span<const CaseRow> transition_cases();
 [[nodiscard]] std::span<const CaseRow> nmt_message_cases();
 [[nodiscard]] std::span<const CaseRow> lss_cases();
+[[nodiscard]] std::span<const CaseRow> hostile_frame_cases();
+[[nodiscard]] std::span<const CaseRow> hostile_sdo_cases();
 
 }  // namespace edsc::conform

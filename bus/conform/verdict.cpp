@@ -99,7 +99,7 @@ std::string repeat_command(const RunReport& run, const CaseRow& row) {
   if (!run.options.empty()) command += " --options " + shell_word(run.options);
   if (level != Level::read) fmt::format_to(std::back_inserter(command), " --level {}", row_of(level).name);
   for (const PermissionRow& permission : permission_options) {
-    if (level == Level::all || !includes(permissions, permission.permission)) continue;
+    if (level >= Level::all || !includes(permissions, permission.permission)) continue;
     fmt::format_to(std::back_inserter(command), " {}", permission.option);
   }
   fmt::format_to(std::back_inserter(command), " --only {} --seed {}", row.id, run.seed);

@@ -115,9 +115,9 @@ class SimulatedStimuli final : public conform::Stimuli {
 
 Permission permissions_of(const Settings& settings, Level level) {
   Permission all = Permission::none;
-  if (settings.store || level == Level::all) all = all | Permission::store;
-  if (settings.application || level == Level::all) all = all | Permission::application;
-  if (settings.outputs || level == Level::all) all = all | Permission::outputs;
+  if (settings.store || level >= Level::all) all = all | Permission::store;
+  if (settings.application || level >= Level::all) all = all | Permission::application;
+  if (settings.outputs || level >= Level::all) all = all | Permission::outputs;
   return all;
 }
 

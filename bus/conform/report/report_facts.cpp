@@ -32,7 +32,7 @@ std::uint64_t max_lag(const RunReport& run) {
 std::string level_text(const RunReport& run) {
   std::string text = fmt::format("level {}", row_of(run.level).name);
   std::string_view separator = " with ";
-  if (run.level == Level::all) return text;
+  if (run.level >= Level::all) return text;
   for (const std::string_view name : permission_names(run.permissions)) {
     text.append(separator).append(name);
     separator = " and ";

@@ -46,7 +46,7 @@ RunReport run_every_service(const Mutant& mutant, const std::vector<std::string>
   RunSettings settings;
   settings.dut.node = canopen::NodeId{Wire::node_id};
   settings.dut.simulated = true;
-  settings.dut.level = Level::all;
+  settings.dut.level = Level::hostile;
   settings.dut.permissions = Permission::store | Permission::application | Permission::outputs;
   settings.only = only;
   const Sheet sheet = load_sheet(mutant);

@@ -50,5 +50,6 @@ struct Mutant {
 [[nodiscard]] std::vector<Mutant> control_mutants();
 [[nodiscard]] std::vector<Mutant> network_mutants();
 [[nodiscard]] std::vector<Mutant> new_case_mutants();
+[[nodiscard]] std::vector<Mutant> hostile_mutants();
 
 }  // namespace edsc::conform

@@ -17,7 +17,7 @@ namespace {
 
 std::vector<Mutant> all_mutants() {
   std::vector<Mutant> all;
-  for (auto table : {sdo_mutants, pdo_mutants, control_mutants, network_mutants, new_case_mutants}) {
+  for (auto table : {sdo_mutants, pdo_mutants, control_mutants, network_mutants, new_case_mutants, hostile_mutants}) {
     for (Mutant& mutant : table()) all.push_back(std::move(mutant));
   }
   return all;

@@ -109,18 +109,13 @@ void consumer_off(Dut& dut) {
   expect_not_lost(dut, event, since, "while 1016h:01 is 0");
 }
 
-/// The times between many heartbeats, and their mean: a device whose timer starts anew with each heartbeat drifts.
+/// The mean time between many heartbeats: a device whose timer starts anew with each heartbeat drifts.
 void heartbeat_drift(Dut& dut) {
-  constexpr std::size_t intervals = 50;
+  constexpr std::size_t intervals = 40;
   start_heartbeat(dut);
   const std::vector<SeenFrame> seen = dut.collect(dut.heartbeat(), beat * (intervals + 2));
-  dut.expect(seen.size() > intervals,
-             fmt::format("more than {} heartbeats in {} ms", intervals, (beat * (intervals + 2)).count() / 1000),
+  dut.expect(seen.size() > intervals, fmt::format("more than {} heartbeats in {} periods", intervals, intervals + 2),
              std::to_string(seen.size()));
-  for (std::size_t i = 1; i < seen.size(); ++i) {
-    dut.expect_time(seen[i].at - seen[i - 1].at, beat.count() * 9 / 10, beat.count() * 11 / 10,
-                    "the time between two heartbeats");
-  }
   const std::uint64_t mean = (seen.back().at - seen.front().at) / (seen.size() - 1);
   dut.expect_time(mean, beat.count() * 49 / 50, beat.count() * 51 / 50, "the mean time between heartbeats");
 }
@@ -159,7 +154,7 @@ constexpr CaseRow heartbeat_rows[] = {
      Level::communication, Permission::none, consumer_after_reset, Condition::punctual | Condition::alone, "9.1"},
     {"7.108", "1016h = 0 ends the monitoring of a node", "CiA 301, 7.5.2.19", Level::communication, Permission::none,
      consumer_off, Condition::punctual | Condition::alone},
-    {"7.109", "The period of heartbeats is regular and does not drift", "CiA 301, 7.2.8.3.2.2 and 7.5.2.20",
+    {"7.109", "The heartbeats of the device do not drift from the time of 1017h", "CiA 301, 7.2.8.3.2.2 and 7.5.2.20",
      Level::communication, Permission::none, heartbeat_drift, Condition::punctual, "7.102"},
     {"7.110", "The first heartbeat is sent within the time that is written to 1017h", "CiA 301, 7.2.8.3.2.2",
      Level::communication, Permission::none, first_heartbeat, Condition::punctual},

@@ -16,12 +16,6 @@ void need_error_control(Dut& dut) {
   }
 }
 
-void need_no_other_node(Dut& dut) {
-  constexpr Duration to_listen = milliseconds{1200};
-  if (dut.simulated() || !hears_other_nodes(dut, to_listen)) return;
-  dut.inconclusive(Condition::alone, "other nodes are on the bus and would receive the NMT message");
-}
-
 /// The state in which a check begins. Other cases test that an NMT command leads to it.
 void need_state(Dut& dut, NmtState state) {
   if (dut.state() == state) return;

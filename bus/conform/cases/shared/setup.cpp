@@ -98,6 +98,12 @@ bool hears_other_nodes(Dut& dut, Duration span) {
   return !dut.collect(is_of_other, span).empty();
 }
 
+void need_no_other_node(Dut& dut) {
+  constexpr Duration to_listen = milliseconds{1200};
+  if (dut.simulated() || !hears_other_nodes(dut, to_listen)) return;
+  dut.inconclusive(Condition::alone, "other nodes are on the bus, which the frames of this case could disturb");
+}
+
 NodeId free_node_id(Dut& dut) {
   std::set<std::uint8_t> taken{dut.node().value()};
   for (std::uint8_t sub_index = 1; dut.has(consumer_heartbeat, sub_index); ++sub_index) {

@@ -42,6 +42,9 @@ void expect_default_cob_id(Dut& dut, std::uint16_t index, std::uint32_t standard
 
 /// Listens for `span` and returns whether another node sent a boot-up message, a heartbeat or an SDO answer.
 [[nodiscard]] bool hears_other_nodes(Dut& dut, Duration span);
+/// Inconclusive if another node is on the bus, which the frames of the case could disturb. Does not listen in simulated
+/// time.
+void need_no_other_node(Dut& dut);
 /// Listens and returns a node-ID that neither a CAN-ID on the bus nor 1016h of the device includes.
 [[nodiscard]] canopen::NodeId free_node_id(Dut& dut);
 
