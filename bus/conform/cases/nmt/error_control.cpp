@@ -16,6 +16,13 @@ void need_guarding(Dut& dut) {
   }
 }
 
+void configure_guarding(Dut& dut) {
+  need_guarding(dut);
+  if (!dut.is_writable(guard_time) || !dut.is_writable(life_time_factor)) return;
+  dut.write(guard_time, 0, 2000);
+  dut.write(life_time_factor, 0, 10);
+}
+
 std::vector<SeenFrame> answers(Dut& dut) {
   const Dut::Mark since = dut.mark();
   dut.send_remote(0x700U + dut.node().value(), 1);

@@ -20,6 +20,9 @@ inline constexpr Duration to_answer_guarding = milliseconds{50};
 
 /// Not applicable if the EDS does not have node guarding. Disables heartbeat, which excludes guarding.
 void need_guarding(Dut& dut);
+/// Like `need_guarding`; writes a guard time and a life time factor that no case exceeds. A device that answers only
+/// while they are not 0 fails case 7.2 alone.
+void configure_guarding(Dut& dut);
 /// Sends one guarding request and returns all error control messages that answer it.
 [[nodiscard]] std::vector<SeenFrame> answers(Dut& dut);
 /// Sends one guarding request, expects one message of one byte, and returns the byte.

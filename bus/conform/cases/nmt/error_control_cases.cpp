@@ -40,7 +40,7 @@ void heartbeat_off(Dut& dut) {
 void guarding_without_heartbeat(Dut& dut) {
   need_both(dut);
   start_heartbeat(dut);
-  dut.write(producer_heartbeat, 0, 0);
+  configure_guarding(dut);
   dut.pass_time(beat);
   const bool first = (guard(dut) & toggle_bit) != 0;
   for (const bool bit : {!first, first, !first}) expect_guarded(dut, NmtState::pre_operational, bit);

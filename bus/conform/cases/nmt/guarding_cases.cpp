@@ -40,14 +40,14 @@ void toggle(Dut& dut) {
   need_guarding(dut);
   for (int round = 0; round < 2; ++round) {
     dut.reset(NmtCommand::reset_communication);
-    need_guarding(dut);
+    configure_guarding(dut);
     dut.enter(NmtState::pre_operational);
     for (const bool bit : {false, true, false, true}) expect_guarded(dut, NmtState::pre_operational, bit);
   }
 }
 
 void foreign_requests(Dut& dut) {
-  need_guarding(dut);
+  configure_guarding(dut);
   if (hears_other_nodes(dut, milliseconds{1200})) {
     dut.inconclusive(Condition::alone,
                      "other nodes are on the bus and must not be guarded; test the device alone on the bus");
@@ -74,31 +74,45 @@ void write_guarding(Dut& dut) {
   }
 }
 
-void life_guarding(Dut& dut) {
+constexpr Duration tested_time = milliseconds{100};
+constexpr std::uint8_t tested_factor = 3;
+constexpr Duration life_time = tested_time * tested_factor;
+
+/// Configures a node life time of 300 ms, in Pre-operational. Returns the match for its event.
+Dut::Match start_life_guarding(Dut& dut) {
   need_guarding(dut);
   dut.need_writable(guard_time);
   dut.need_writable(life_time_factor);
-  const Dut::Match event = error_control_event(dut);
-  constexpr Duration time = milliseconds{100};
-  constexpr std::uint8_t factor = 3;
+  Dut::Match event = error_control_event(dut);
   dut.enter(NmtState::pre_operational);
-  dut.write(guard_time, 0, time.count() / 1000);
-  dut.write(life_time_factor, 0, factor);
+  dut.write(guard_time, 0, tested_time.count() / 1000);
+  dut.write(life_time_factor, 0, tested_factor);
+  return event;
+}
+
+void life_guarding(Dut& dut) {
+  const Dut::Match event = start_life_guarding(dut);
   const Dut::Mark began = dut.mark();
-  dut.pass_time(time * (factor + 2));  // life guarding begins with the first request
   std::uint64_t last = 0;
   for (unsigned i = 0; i < 8; ++i) {
     last = dut.now();
     (void)guard(dut);
-    dut.pass_time(time - to_answer_guarding);
+    dut.pass_time(tested_time - to_answer_guarding);
   }
   dut.expect(dut.received_since(began, event).empty(), "no EMCY with code 8130h while requests are sent", "one");
-  const auto lost = dut.wait_for(event, time * factor * 2, began);
+  const auto lost = dut.wait_for(event, life_time * 2, began);
   dut.expect(lost.has_value(), "an EMCY with code 8130h after the life time of 300 ms", "none");
-  dut.expect_time(lost->at - last, std::uint64_t{time.count()} * factor, std::uint64_t{time.count()} * (factor + 1),
+  dut.expect_time(lost->at - last, life_time.count(), (life_time + tested_time).count(),
                   "the EMCY after the last request");
   const std::uint8_t byte = guard(dut);
   dut.expect_equal(byte & 0x7FU, static_cast<unsigned>(NmtState::pre_operational), "the NMT state after the event");
+}
+
+void life_guarding_begins(Dut& dut) {
+  const Dut::Match event = start_life_guarding(dut);
+  const Dut::Mark began = dut.mark();
+  dut.pass_time(life_time * 2);
+  expect_not_lost(dut, event, began, "before the first request");
 }
 
 constexpr CaseRow guarding_rows[] = {
@@ -115,6 +129,8 @@ constexpr CaseRow guarding_rows[] = {
     {"7.6", "After a node life time without guarding requests the device sends an EMCY with code 8130h",
      "CiA 301, 7.2.8.3.2.1", Level::communication, Permission::none, life_guarding,
      Condition::remote_frames | Condition::punctual, "7.2"},
+    {"7.7", "Life guarding begins with the first guarding request", "CiA 301, 7.2.8.3.2.1", Level::communication,
+     Permission::none, life_guarding_begins},
 };
 
 }  // namespace
