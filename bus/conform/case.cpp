@@ -33,6 +33,7 @@ constexpr std::span<const CaseRow> (*case_tables[])() = {
     write_cases,
     emergency_cases,
     emergency_register_cases,
+    emergency_history_cases,
     sync_cases,
     guarding_cases,
     heartbeat_cases,

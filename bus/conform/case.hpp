@@ -152,6 +152,7 @@ struct AreaRow {
 [[nodiscard]] std::span<const CaseRow> write_cases();
 [[nodiscard]] std::span<const CaseRow> emergency_cases();
 [[nodiscard]] std::span<const CaseRow> emergency_register_cases();
+[[nodiscard]] std::span<const CaseRow> emergency_history_cases();
 [[nodiscard]] std::span<const CaseRow> sync_cases();
 [[nodiscard]] std::span<const CaseRow> guarding_cases();
 [[nodiscard]] std::span<const CaseRow> heartbeat_cases();

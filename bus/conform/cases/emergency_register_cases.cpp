@@ -208,6 +208,7 @@ void emcy_disabled(Dut& dut) {
     dut.expect_abort(outcome, abort_rule::value, "bit 31 of 1014h:00");
     dut.not_applicable("1014h:00 does not accept bit 31: EMCY cannot be disabled");
   }
+  dut.expect_equal(dut.read_number(emcy), cob_id | CobId::invalid_bit, "1014h:00 after bit 31 was written");
   const Dut::Mark since = dut.mark();
   if (!dut.stimuli().emergency(0x1000, any_error_bit))
     dut.inconclusive(Condition::stimulus, "needs a stimulus that causes an error");

@@ -187,6 +187,7 @@ std::vector<Mutant> control_mutants() {
       {"history-counts-too-many", reads(0x1003, 0, 9), {}},
       {"history-abort-code", aborts_with(0x1003, AbortCode::no_data, AbortCode::no_sub_index), {}},
       {"history-wrong-error", reads(0x1003, 1, 0x8130), {}},
+      {"history-second-wrong", reads(0x1003, 2, 0x8130), {}},
       {"history-not-deleted", refuses(0x1003, AbortCode::read_only), {}},
       {"history-takes-any-number", takes(0x1003, AbortCode::invalid_value), {}},
       {"emcy-inhibit-time-not-writable", refuses(0x1015, AbortCode::read_only), {}},

@@ -170,6 +170,7 @@ std::vector<Mutant> pdo_mutants() {
       // communication parameters
       {"rpdo-beyond-eds", has({0x1410, 0x1410}, 0x8000'0305), {}},
       {"rpdo-reserved-type", reads({0x1400, 0x1400, type, type}, 241), {}},
+      {"rpdo-takes-reserved-type", refuses({0x1400, 0x1400, type, type}, AbortCode::invalid_value, std::nullopt), {}},
       {"tpdo-beyond-eds", has({0x19FF, 0x19FF}, 0x8000'0385), {}},
       {"tpdo-restricted-cob-id", reads({0x1801, 0x1801, cob_id, cob_id}, 0x605), {}},
       {"tpdo-shared-cob-id", reads({0x1801, 0x1801, cob_id, cob_id}, tpdo1), {}},

@@ -6,6 +6,7 @@
 
 #include "conform/case.hpp"
 #include "conform/cases/pdo/pdo_mapping.hpp"
+#include "conform/cases/shared/setup.hpp"
 
 namespace edsc::conform {
 namespace {
@@ -105,6 +106,29 @@ void expect_distinct_cob_ids(Dut& dut) {
   }
 }
 
+/// Transmission types that CiA 301 reserves for RPDOs and TPDOs.
+constexpr std::uint8_t reserved_types[] = {241, 251};
+
+/// The first RPDO and the first TPDO with a writable transmission type refuse the reserved ones.
+void refuses_reserved_types(Dut& dut) {
+  bool any = false;
+  dut.enter(NmtState::pre_operational);
+  for (const PdoDirection direction : {PdoDirection::receive, PdoDirection::transmit}) {
+    for (const Pdo* pdo : dut.pdos(direction)) {
+      const std::uint16_t index = pdo->communication->index;
+      if (!dut.is_writable(index, type_parameter) || !dut.is_readable(index, type_parameter)) continue;
+      any = true;
+      const std::uint64_t present = dut.read_number(index, type_parameter);
+      for (const std::uint8_t type : reserved_types) {
+        expect_refused(dut, index, type_parameter, type, present, abort_rule::value,
+                       fmt::format("transmission type {} to {}", type, label(index, type_parameter)));
+      }
+      break;
+    }
+  }
+  if (!any) dut.not_applicable("no PDO has a writable transmission type");
+}
+
 void scan_rpdos(Dut& dut) { scan(dut, receive_range); }
 
 void scan_tpdos(Dut& dut) {
@@ -118,6 +142,8 @@ constexpr CaseRow pdo_parameter_rows[] = {
      Level::read, no_permission, scan_rpdos},
     {"3.2", "The device has the TPDOs of the EDS, with legal communication parameters", "CiA 301, 7.5.2.37",
      Level::read, no_permission, scan_tpdos},
+    {"3.111", "Reserved transmission types are refused", "CiA 301, 7.5.2.35 and 7.5.2.37", Level::communication,
+     no_permission, refuses_reserved_types},
 };
 
 }  // namespace
