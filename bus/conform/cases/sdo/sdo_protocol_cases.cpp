@@ -108,13 +108,17 @@ void initiate_during_download(Dut& dut) {
   expect_unchanged(dut, time, "after a download that was not completed");
 }
 
-/// Initiates a segmented download with this size and sends one last segment with these bytes.
+/// Initiates a segmented download with this size, 0: without a size, and sends one last segment with these bytes.
 void write_segment(Dut& dut, const TestedTime& time, std::uint32_t indicated, std::uint8_t bytes,
                    const AbortRule& rule) {
-  const std::string what =
-      fmt::format("{} bytes to {} with an indicated size of {}", bytes, label(time.index, 0), indicated);
-  auto answer = dut.exchange(sdo_frame(0x21, time.index, 0, indicated));
-  if (answer && (*answer)[0] != sdo::abort_command) {
+  const std::string size = indicated == 0 ? "without a size" : fmt::format("with an indicated size of {}", indicated);
+  const std::string what = fmt::format("{} bytes to {} {}", bytes, label(time.index, 0), size);
+  auto answer = dut.exchange(sdo_frame(indicated == 0 ? 0x20 : 0x21, time.index, 0, indicated));
+  const bool is_open = answer && (*answer)[0] != sdo::abort_command;
+  if (answer && !is_open && indicated == 0) {
+    return dut.warn("a download without an indicated size, which CiA 301 allows, is refused: " + hex_bytes(*answer));
+  }
+  if (is_open) {
     SdoFrame segment = sdo_frame(static_cast<std::uint8_t>((sdo::segment_bytes - bytes) << 1 | sdo::last_segment));
     segment[1] = static_cast<std::uint8_t>(time.other);
     segment[2] = static_cast<std::uint8_t>(time.other >> 8);
@@ -131,6 +135,8 @@ void wrong_sizes(Dut& dut) {
   write_segment(dut, time, 1, 1, abort_rule::too_short);
   write_segment(dut, time, 2, 3, abort_rule::too_long);
   write_segment(dut, time, 2, 1, abort_rule::too_short);
+  write_segment(dut, time, 0, 3, abort_rule::too_long);
+  write_segment(dut, time, 0, 1, abort_rule::too_short);
 }
 
 /// An abort has the index and sub-index of the request.
