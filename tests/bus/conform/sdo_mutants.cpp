@@ -258,6 +258,7 @@ std::vector<Mutant> segmented() {
       requests("segment-written-as-0", 0x0B, 0xFF, [](Data& data) { data = {data[0]}; }),
       answers("indicated-size-too-high", 0x41, 0xFF, [](Data& data) { ++data[4]; }),
       answers("upload-segment-toggle", 0x00, 0xE0, [](Data& data) { data[0] ^= sdo::toggle; }),
+      answers("whole-last-segment-not-last", 0x01, 0xEF, [](Data& data) { data[0] &= 0xFE; }),
       answers("last-segment-one-byte-less", 0x01, 0xE1,
               [](Data& data) { data[0] = static_cast<std::uint8_t>(data[0] + 2); }),
       toggle_bit_ignored(),

@@ -52,6 +52,30 @@ void write_segmented(Dut& dut, std::uint16_t index) {
   dut.expect_equal(dut.read_number(index), value, label(index, 0));
 }
 
+/// A value that fills its last segment: neither segments nor blocks may end early or go on.
+void read_whole_segments(Dut& dut) {
+  constexpr std::string_view letters = "fourteen bytes";
+  static_assert(letters.size() % sdo::segment_bytes == 0);
+  const Bytes value(letters.begin(), letters.end());
+  const Entries entries = entries_with(dut, [&dut](const LiveEntry& entry) {
+    return is_application_parameter(dut.sheet(), entry) && is_writable(entry) && is_readable(entry) &&
+           entry.type != nullptr && entry.type->kind == canopen::DataClass::string;
+  });
+  for (const LiveEntry& entry : entries) {
+    if (!dut.download(entry.index, entry.sub_index, value).done()) continue;
+    if (dut.read(entry.index, entry.sub_index) != value) continue;
+    dut.expect(upload_by_segments(dut, entry.index, entry.sub_index) == value,
+               "the 14 bytes written to " + title(entry) + ", in segments", "other bytes");
+    for (const std::uint8_t segments : {std::uint8_t{1}, std::uint8_t{2}, std::uint8_t{127}}) {
+      const BlockValue read =
+          upload_by_blocks(dut, entry.index, entry.sub_index, {.crc = false, .block_size = segments});
+      dut.expect(read.bytes == value, "the 14 bytes written to " + title(entry) + ", in blocks", hex_bytes(read.bytes));
+    }
+    return;
+  }
+  dut.not_applicable("no writable string of 2000h and above accepts 14 bytes");
+}
+
 constexpr CaseRow sdo_segment_rows[] = {
     {"2.13", "1000h:00 is read by a client that accepts segments", "CiA 301, 7.2.4.3.5", Level::read, none,
      read_short_value_segmented},
@@ -65,6 +89,8 @@ constexpr CaseRow sdo_segment_rows[] = {
      wrong_toggle_bit, Condition::usable_value, "2.16"},
     {"2.18", "Randomly selected long values are completely uploaded in segments", "CiA 301, 7.2.4.3.7", Level::read,
      none, read_segmented, Condition::usable_value, "2.16"},
+    {"2.111", "A value that fills its last segment is uploaded in segments and in blocks",
+     "CiA 301, 7.2.4.3.7 and 7.2.4.3.14", Level::communication, Permission::application, read_whole_segments},
 };
 
 }  // namespace
