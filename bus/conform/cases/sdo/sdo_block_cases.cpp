@@ -39,7 +39,7 @@ void read_in_blocks(Dut& dut, bool crc) {
 }
 
 void write_in_block(Dut& dut, std::uint16_t index) {
-  expect_block_written(dut, index, other_time(dut, index), SentCrc::none);
+  expect_block_written(dut, index, other_time(dut, index), SentCrc::absent);
 }
 
 /// A wrong CRC is refused, and the value is not stored.

@@ -199,7 +199,7 @@ BlockValue upload_by_blocks(Dut& dut, std::uint16_t index, std::uint8_t sub_inde
 std::optional<SdoFrame> download_by_block(Dut& dut, std::uint16_t index, std::uint8_t sub_index,
                                           std::span<const std::uint8_t> value, SentCrc crc) {
   dut.remember(index, sub_index);
-  const bool checked = crc != SentCrc::none;
+  const bool checked = crc != SentCrc::absent;
   const auto command = static_cast<std::uint8_t>(sdo::block_download_initiate | sdo::block_size_indicated |
                                                  (checked ? sdo::crc_supported : 0));
   const auto answer = dut.exchange(sdo_frame(command, index, sub_index, static_cast<std::uint32_t>(value.size())));

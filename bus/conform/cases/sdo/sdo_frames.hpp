@@ -53,7 +53,7 @@ struct BlockValue {
 };
 BlockValue upload_by_blocks(Dut& dut, std::uint16_t index, std::uint8_t sub_index, BlockTransfer how);
 
-enum class SentCrc : std::uint8_t { none, right, wrong };
+enum class SentCrc : std::uint8_t { absent, right, wrong };
 /// Downloads in one block of at most 127 segments and returns the answer to its end. The former value is put back when
 /// the case ends.
 std::optional<SdoFrame> download_by_block(Dut& dut, std::uint16_t index, std::uint8_t sub_index,
