@@ -91,9 +91,9 @@ constexpr Permission permissions = Permission::outputs | Permission::store;
 
 constexpr CaseRow emergency_history_rows[] = {
     {"5.108", "The error history 1003h has the newest error first", "CiA 301, 7.5.2.4", Level::communication,
-     permissions, newest_first, Condition::state | Condition::stimulus | Condition::alone, "5.102"},
+     permissions, newest_first, Condition::state | Condition::stimulus | Condition::alone, "5.6"},
     {"5.109", "After errors a write of 0 to 1003h:00 deletes them", "CiA 301, 7.5.2.4", Level::communication,
-     permissions, deleted_by_zero, Condition::state | Condition::stimulus | Condition::alone, "5.108"},
+     permissions, deleted_by_zero, Condition::state | Condition::stimulus | Condition::alone, "5.7"},
 };
 
 }  // namespace
