@@ -143,6 +143,24 @@ Image read_image(Dut& dut, const std::vector<MappingValue>& mapping) {
   return image;
 }
 
+std::uint64_t live_bits(Dut& dut, const std::vector<MappingValue>& mapping) {
+  constexpr unsigned reads = 14;
+  constexpr Duration between = milliseconds{7};  // not a divisor of usual cycle times
+  const Image first = read_image(dut, mapping);
+  std::uint64_t changed = 0;
+  for (unsigned i = 0; i < reads; ++i) {
+    dut.pass_time(between);
+    changed |= read_image(dut, mapping).bits ^ first.bits;
+  }
+  std::uint64_t live = 0;
+  for (const PlacedObject& mapped : placed(mapping)) {
+    if (mapped.offset >= classical_can.bits()) continue;
+    const std::uint64_t mask = low_bits(mapped.bits) << mapped.offset;
+    if ((changed & mask) != 0) live |= mask;
+  }
+  return live;
+}
+
 std::uint64_t pack(const std::vector<MappingValue>& mapping, std::span<const std::uint64_t> values) {
   std::uint64_t bits = 0;
   for (const PlacedObject& mapped : placed(mapping)) {

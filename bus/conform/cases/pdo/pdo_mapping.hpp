@@ -57,6 +57,8 @@ struct Image {
   std::uint64_t known = 0;
 };
 [[nodiscard]] Image read_image(Dut& dut, const std::vector<MappingValue>& mapping);
+/// Reads the mapped objects several times within 100 ms. Returns the mask of those that change by themselves.
+[[nodiscard]] std::uint64_t live_bits(Dut& dut, const std::vector<MappingValue>& mapping);
 
 /// Packs values into PDO data, the first object in the least significant bits (CiA 301, 7.5.2.36).
 [[nodiscard]] std::uint64_t pack(const std::vector<MappingValue>& mapping, std::span<const std::uint64_t> values);
