@@ -57,8 +57,9 @@ class Bench:
         return [*map(str, (self.edsc, "conform", self.address, NODE_ID, sheet, "--level", level, "--timeout", timeout_ms, "--json",
                            report, *options))]
 
-    def conform(self, sheet: Path, report: Path, *options: object, level: str = "all") -> dict:
-        result = subprocess.run(self.command(sheet, report, "--quiet", *options, level=level), capture_output=True, text=True, timeout=LIMIT)
+    def conform(self, sheet: Path, report: Path, *options: object, level: str = "all", timeout_ms: int = 2000) -> dict:
+        command = self.command(sheet, report, "--quiet", *options, level=level, timeout_ms=timeout_ms)
+        result = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT)
         assert report.is_file(), f"edsc conform ends with {result.returncode}: {result.stderr}"
         return json.loads(report.read_text(encoding="utf-8"))
 

@@ -1,7 +1,7 @@
 """The behaviours of the slaves, and the expected result of the conformance test for each: one table.
 
-A behaviour that CiA 301 or CiA 305 allows, or that is a property of the bus or of the computer, fails no case; the report names
-it. A behaviour that is a fault fails the cases of `failed`, and no other.
+CiA 301 or CiA 305 allows some behaviours; others are properties of the bus or of the computer. They fail no case, and the report
+names them. Each fault fails the cases of `failed`, and no other.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from .device import Switches
 
 GOOD = Switches()
-SLOW_CASES = ("7.*", "11.*")  # more than half of the time
+PYTHON, NODE_JS = "slave.py", "slave.js"
 
 
 @dataclass(frozen=True)
@@ -23,41 +23,106 @@ class Failure:
 
 @dataclass(frozen=True)
 class Behaviour:
+    """`only`: the cases that run, those that take their time for this behaviour; empty: all."""
     name: str
     what: str
     devices: tuple[Switches, ...] = (GOOD,)
-    only: tuple[str, ...] = ()              # cases; empty: all
+    only: tuple[str, ...] = ()
+    program: str = PYTHON
     bridge: bool = False                    # edsc and the slave are on two buses, whose bridge drops remote frames
     timeout_ms: int = 2000                  # of edsc, for SDO; on a busy computer a slave may need more than 500
     failed: dict[str, Failure] = field(default_factory=dict)
-    named: tuple[str, ...] = ()             # regular expressions: each occurs in a reason, a warning or a finding of the run
+    causes: int = 0                         # of the failed cases, as the report counts them
+    named: tuple[str, ...] = ()             # regular expressions: each occurs as a reason or warning of a case
+    also: tuple[str, ...] = ()              # regular expressions of other reasons that may occur
     ended: str = ""                         # regular expression: why the run ends before the last case; empty: it does not
 
 
+OPERATIONAL_CASES = ("3.*", "5.*", "6.3", "9.*", "10.*")
+REMOTE_FRAME_CASES = ("3.3", "3.9", "3.15", "7.1", "7.2", "7.3", "7.4", "7.5", "7.6", "7.20*")
+NOT_RESTORED = {
+    "8.5": Failure(r"100Ch:00 after a wrong signature and a reset \(not stored\): 0 ", "2000 "),
+    "8.8": Failure(r'100Ch:00 after "load" and a reset \(default value\): 0 ', "2000 "),
+    "9.1": Failure("100Ch:00 after a reset, as after the first reset: 0 ", "2000 "),
+}
+NO_LSS = {case: Failure(r"an answer ", "none") for case in ("11.1", "11.2", "11.3", "11.4", "11.6", "11.9", "11.10", "11.11", "11.12",
+                                                            "11.13", "11.14", "11.15")}
+SLOW_HEARTBEAT = {"7.102": Failure("20 heartbeats in 2000 ms", r"1\d"), "7.204": Failure("10 heartbeats in 1000 ms", r"\d"),
+                  "7.206": Failure("10 heartbeats in 1000 ms", r"\d")}
+NO_SUB_INDEX = {"2.5": Failure("read of 1000h:01: an abort with 0609 0011h", "read of 1000h:01: 0602 0000h")}
+EMCY_REGISTER = {"5.5": Failure("1001h:00, as in the last EMCY: 1 ", "17 ")}
+NO_LONGER = r"node 5 no longer responds since case {} \("
+TWINS = "two devices have node-ID 5"
+LATE_RESPONSE = "does not respond within 500 ms; it responds later: give a longer --timeout"
+
 BEHAVIOURS = (
+    # No fault; in parts, because most of the time is waiting.
     Behaviour("good-1", "no fault", only=("1.*", "2.*", "3.*", "4.*", "5.*", "6.*", "8.*")),
-    Behaviour("good-7", "no fault", only=("7.*", "9.*")),
-    Behaviour("good-10", "no fault", only=("10.*", "11.*")),
-    Behaviour("ends-at-reset", "its program ends at a reset", (Switches(ends_at_reset=True),)),
-    Behaviour("starts-by-itself", "it is Operational after its boot-up message", (Switches(starts_by_itself=True),)),
-    Behaviour("loses-node-id", "without a node-ID it takes one only after power-on", (Switches(loses_node_id=True),), only=("11.*",)),
-    Behaviour("error-set", "1001h is 01h, and it does not stay in Operational", (Switches(error_set=True),)),
-    Behaviour("no-remote-frames", "a bridge drops remote frames", bridge=True),
-    Behaviour("late", "it responds after 700 ms", (Switches(answer_delay=0.7),), timeout_ms=500),
-    Behaviour("empty-text", "its only string has no characters", (Switches(empty_text=True),), only=("2.*", "4.*")),
-    Behaviour("no-bit-timing", "no services for the bit timing", (Switches(no_bit_timing=True),), only=("11.*",)),
-    Behaviour("twins", "two devices with one node-ID", (GOOD, Switches(answer_delay=0.003))),
-    Behaviour("refreshes", "its process value changes every 5 ms", (Switches(refreshes=0.005),)),
-    Behaviour("vanishes", "it vanishes after 150 requests", (Switches(vanishes_after=150),)),
-    Behaviour("loaded-host", "each frame is delayed by 0 to 40 ms", (Switches(random_delay=0.04),)),
-    Behaviour("keeps-times", "reset communication does not restore 100Ch, 100Dh and 1017h", (Switches(keeps_times=True),)),
-    Behaviour("no-lss", "no LSS, although the EDS has it", (Switches(no_lss=True),), only=("11.*",)),
-    Behaviour("rpdo-in-pre-operational", "RPDOs are processed in Pre-operational", (Switches(rpdo_in_pre_operational=True),)),
-    Behaviour("slow-heartbeat", "1.5 times the time of 1017h", (Switches(heartbeat_factor=1.5),)),
-    Behaviour("emcy-register", "the error register of each EMCY is 01h", (Switches(wrong_emcy_register=True),)),
-    Behaviour("emcy-inhibit", "1015h has no effect", (Switches(no_emcy_inhibit=True),)),
+    Behaviour("good-7", "no fault", only=("7.*",)),
+    Behaviour("good-9", "no fault", only=("9.*", "10.*")),
+    Behaviour("good-11", "no fault", only=("11.*",)),
+    # What CiA 301 and CiA 305 allow, and properties of the bus and of the computer.
+    Behaviour("ends-at-reset", "its program ends at a reset", (Switches(ends_at_reset=True),), only=("5.*", "7.*", "8.*"),
+              ended=NO_LONGER.format("5.4"), named=("no longer responds",)),
+    Behaviour("starts-by-itself", "it is Operational after its boot-up message", (Switches(starts_by_itself=True),),
+              only=("3.*", "5.*", "8.*", "9.*", "10.*"), named=("Operational after its boot-up message",)),
+    Behaviour("sends-at-start", "entering Operational is an event of its TPDO", (Switches(sends_at_start=True),),
+              only=OPERATIONAL_CASES),
+    Behaviour("loses-node-id", "without a node-ID it takes one only after power-on", (Switches(loses_node_id=True),),
+              only=("11.*",), ended=NO_LONGER.format(r"11\.9"), named=("no longer responds",)),
+    Behaviour("error-set", "1001h is 01h, and it does not stay in Operational", (Switches(error_set=True),),
+              only=OPERATIONAL_CASES, named=("not operational after the NMT command; 1001h:00 is 01h",),
+              also=("1001h:00 is 01h", "the bus may not carry remote frames")),
+    Behaviour("no-remote-frames", "a bridge drops remote frames", only=REMOTE_FRAME_CASES, bridge=True,
+              named=("the bus may not carry remote frames",)),
+    Behaviour("late", "it responds after 700 ms", (Switches(answer_delay=0.7),), timeout_ms=500, ended=LATE_RESPONSE),
+    Behaviour("slow-store", 'it responds to "save" and "load" after 1.5 s', (Switches(store_delay=1.5),), only=("8.2", "8.4"),
+              timeout_ms=1000),
+    Behaviour("empty-text", "its only string has no characters", (Switches(empty_text=True),), only=("2.*", "4.*"),
+              named=("2001h:00 Text has a value of at most 4 bytes",)),
+    Behaviour("no-blocks", "no block transfer", (Switches(no_blocks=True),), only=("2.*",), named=("block transfer",)),
+    Behaviour("no-bit-timing", "LSS without services for the bit timing", (Switches(no_bit_timing=True),), only=("11.*",),
+              named=("bit rate",)),
+    Behaviour("refreshes", "its process values change every 5 ms", (Switches(refreshes=0.005),),
+              only=("2.*", "3.*", "4.*", "5.*", "6.*")),
+    Behaviour("loaded-host", "each frame is delayed by 0 to 40 ms", (Switches(random_delay=0.04),),
+              only=("3.4", "3.5", "6.2", "6.3", "7.102", "7.106", "7.204"), named=("late",)),
+    Behaviour("restarts", "its power fails for a moment", (Switches(restarts_after=150),), only=("2.*", "3.*"),
+              also=("failed, and the repetition has the verdict",)),
+    # What a run cannot judge.
+    Behaviour("vanishes", "it vanishes after 150 requests", (Switches(vanishes_after=150),), only=("2.*",),
+              ended=NO_LONGER.format(r"2\.\d+"), named=("no longer responds",)),
+    Behaviour("twins", "two devices with one node-ID", (GOOD, Switches(answer_delay=0.003)), ended=TWINS),
+    Behaviour("late-twin", "a second device with its node-ID is added", (GOOD, Switches(answer_delay=0.003, joins_at_reset=True)),
+              only=("9.*",), ended=TWINS, named=(TWINS,)),
+    # Faults.
+    Behaviour("keeps-times", "reset communication does not restore 100Ch, 100Dh and 1017h", (Switches(keeps_times=True),),
+              only=("8.*", "9.1"), failed=NOT_RESTORED, causes=1),
+    Behaviour("no-lss", "no LSS, although the EDS has it", (Switches(no_lss=True),), only=("11.*",), failed=NO_LSS, causes=1),
+    Behaviour("rpdo-in-pre-operational", "RPDOs are processed in Pre-operational", (Switches(rpdo_in_pre_operational=True),),
+              only=OPERATIONAL_CASES),
+    Behaviour("slow-heartbeat", "1.5 times the time of 1017h", (Switches(heartbeat_factor=1.5),), only=("7.102", "7.20*"),
+              failed=SLOW_HEARTBEAT),
+    Behaviour("emcy-register", "the error register of each EMCY is 01h", (Switches(wrong_emcy_register=True),), only=("5.*",),
+              failed=EMCY_REGISTER),
+    Behaviour("emcy-inhibit", "1015h has no effect", (Switches(no_emcy_inhibit=True),), only=("5.*",)),
+    # The same in the slave of slave.js, which has fewer services.
+    Behaviour("good", "no fault", program=NODE_JS),
+    Behaviour("ends-at-reset", "its program ends at a reset", program=NODE_JS, ended=NO_LONGER.format(r"9\.1"),
+              named=("no longer responds",)),
+    Behaviour("starts-by-itself", "it is Operational after its boot-up message", program=NODE_JS, only=("9.*", "10.*"),
+              named=("Operational after its boot-up message",)),
+    Behaviour("late", "it responds after 700 ms", program=NODE_JS, timeout_ms=500, ended=LATE_RESPONSE),
+    Behaviour("empty-text", "its only string has no characters", program=NODE_JS, only=("2.*", "4.*"),
+              named=("2001h:00 Longer value has a value of at most 4 bytes",)),
+    Behaviour("vanishes", "it vanishes after 40 requests", program=NODE_JS, only=("2.*",), ended=NO_LONGER.format(r"2\.\d+"),
+              named=("no longer responds",)),
+    Behaviour("wrong-code", "the abort code of a missing sub-index is 0602 0000h", program=NODE_JS, only=("2.*", "4.5"),
+              failed=NO_SUB_INDEX, causes=1),
 )
 
 
-def find_behaviour(name: str) -> Behaviour:
-    return next(behaviour for behaviour in BEHAVIOURS if behaviour.name == name)
+def switches_of(name: str) -> tuple[Switches, ...]:
+    """Returns those of a behaviour of slave.py; "good" has none."""
+    found = [behaviour for behaviour in BEHAVIOURS if behaviour.name == name and behaviour.program == PYTHON]
+    return found[0].devices if found else (GOOD,)

@@ -26,7 +26,7 @@ ERROR_REGISTER, ERROR_HISTORY, SYNC, SYNC_PERIOD = 0x1001, 0x1003, 0x1005, 0x100
 GUARD_TIME, LIFE_TIME_FACTOR, STORE, RESTORE, EMCY, EMCY_INHIBIT = 0x100C, 0x100D, 0x1010, 0x1011, 0x1014, 0x1015
 CONSUMER, HEARTBEAT, IDENTITY = 0x1016, 0x1017, 0x1018
 NOT_STORED_OBJECTS = (ERROR_REGISTER, ERROR_HISTORY, STORE, RESTORE)
-TEXT, INPUT = (0x2001, 0), (0x2100, 0)
+TEXT, INPUT, INPUT_STATUS = (0x2001, 0), (0x2100, 0), (0x2101, 0)
 
 # Emergency error codes and their bits of the error register (CiA 301, 7.2.7.1, tables 26 and 27).
 GENERIC_ERROR, LOST, PDO_TOO_SHORT = 0x1000, 0x8130, 0x8210
@@ -44,7 +44,7 @@ class Switches:
     answer_delay: float = 0.0              # of SDO responses, seconds
     empty_text: bool = False               # 2001h has no characters
     no_bit_timing: bool = False            # LSS has no services for it
-    refreshes: float = 0.0                 # seconds between two changes of the process value
+    refreshes: float = 0.0                 # seconds between two changes of the process values
     vanishes_after: int = 0                # number of SDO requests
     random_delay: float = 0.0              # of each frame, at most, seconds
     keeps_times: bool = False              # reset communication does not restore 100Ch, 100Dh and 1017h
@@ -53,6 +53,11 @@ class Switches:
     heartbeat_factor: float = 1.0          # of the time of 1017h
     wrong_emcy_register: bool = False      # the error register of each EMCY is 01h
     no_emcy_inhibit: bool = False          # 1015h has no effect
+    no_blocks: bool = False                # no block transfer
+    sends_at_start: bool = False           # entering Operational is an event of the TPDO
+    store_delay: float = 0.0               # of responses to "save" and "load", seconds
+    restarts_after: int = 0                # number of SDO requests: its power fails for a moment, once
+    joins_at_reset: bool = False           # it has no power until the first reset of another device with its node-ID
 
 
 class Device:
@@ -73,6 +78,7 @@ class Device:
         self.lss = LssSlave(identity, node_id, lambda: self.reset(RESET_COMMUNICATION))
         self.lss.bit_timing = not switches.no_bit_timing
         self.lss.takes_node_id = not switches.loses_node_id
+        self.stop_services()
 
     @property
     def node_id(self) -> int:
@@ -81,7 +87,10 @@ class Device:
     def start(self, now: float) -> None:
         """Power-on."""
         self.now = now
-        self.reset(RESET_NODE)
+        if self.switches.joins_at_reset:
+            self.ended = True
+        else:
+            self.reset(RESET_NODE)
 
     # ---- frames ----
 
@@ -94,6 +103,10 @@ class Device:
 
     def receive(self, frame: Frame, now: float) -> None:
         self.now = now
+        if self.ended and self.switches.joins_at_reset and frame.can_id == 0 and frame.data[0] in (RESET_NODE, RESET_COMMUNICATION):
+            self.ended = False
+            self.reset(RESET_NODE)
+            return
         if self.ended or now < self.lss.silent_until:
             return
         if frame.can_id == LSS_REQUEST and not frame.remote and len(frame.data) == 8 and not self.switches.no_lss:
@@ -164,7 +177,10 @@ class Device:
         changed, self.state = state != self.state, state
         if not changed:
             return
-        self.tpdo.start(self.now) if state == OPERATIONAL else self.tpdo.stop()
+        if state == OPERATIONAL:
+            self.tpdo.start(self.now, self.switches.sends_at_start)
+        else:
+            self.tpdo.stop()
         if state == STOPPED:
             self.sdo.transfer = None
             self.next_sync = None
@@ -181,7 +197,7 @@ class Device:
         self.restore(command, node_id)
         self.stop_services()
         self.tpdo, self.rpdo = Tpdo(self.dictionary), Rpdo(self.dictionary)
-        self.sdo = SdoServer(self.read, self.write)
+        self.sdo = SdoServer(self.read, self.write, blocks=not self.switches.no_blocks)
         if command == RESET_NODE:
             self.history: list[int] = []
         self.send(0x700 + node_id, bytes([INITIALISATION]))
@@ -342,6 +358,7 @@ class Device:
         if self.next_refresh is not None and self.now >= self.next_refresh:
             self.next_refresh = self.now + self.switches.refreshes
             self.change_input()
+            self.dictionary.set(*INPUT_STATUS, self.dictionary.number(*INPUT_STATUS) ^ 1)
         if self.state == OPERATIONAL:
             self.send_all(self.tpdo.poll(self.now))
 
@@ -352,8 +369,13 @@ class Device:
         if self.switches.vanishes_after and self.requests > self.switches.vanishes_after:
             self.ended = True
             self.outbox.clear()
+        if self.switches.restarts_after and self.requests == self.switches.restarts_after:
+            self.reset(RESET_NODE)
+            return
+        stores = data[0] >> 5 == 1 and int.from_bytes(data[1:3], "little") in (STORE, RESTORE)
+        delay = self.switches.answer_delay + (self.switches.store_delay if stores else 0.0)
         for response in self.sdo.request(data):
-            self.send(0x580 + self.node_id, response, self.switches.answer_delay)
+            self.send(0x580 + self.node_id, response, delay)
 
     def highest(self, index: int) -> int:
         return max(sub for found, sub in self.dictionary.entries if found == index)

@@ -139,9 +139,10 @@ class Tpdo(Pdo):
         self.timer_at: float | None = None
         self.syncs = 0
 
-    def start(self, now: float) -> None:
+    def start(self, now: float, is_event: bool = False) -> None:
+        """Enters Operational, which may be an event."""
         self.stop()
-        self.sent = self.data()  # entering Operational is not an event
+        self.sent = None if is_event else self.data()
         self.timer_at = now + self.timer() if self.timer() else None
 
     def timer(self) -> float:

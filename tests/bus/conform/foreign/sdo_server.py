@@ -29,8 +29,8 @@ class Transfer:
 
 
 class SdoServer:
-    def __init__(self, read: Callable[[Key], bytes], write: Callable[[Key, bytes], None]) -> None:
-        self.read, self.write = read, write
+    def __init__(self, read: Callable[[Key], bytes], write: Callable[[Key, bytes], None], blocks: bool = True) -> None:
+        self.read, self.write, self.blocks = read, write, blocks
         self.transfer: Transfer | None = None
 
     def request(self, data: bytes) -> list[bytes]:
@@ -50,7 +50,7 @@ class SdoServer:
         specifier = data[0] >> 5
         block = {5: {0: "upload_block", 1: "upload_end", 2: "upload_confirmed", 3: "upload_start"},
                  6: {0: "download_block", 1: "download_end"}}
-        if specifier in block:
+        if specifier in block and self.blocks:
             return block[specifier].get(data[0] & (3 if specifier == 5 else 1), "unknown")
         return {0: "download_segment", 1: "download", 2: "upload", 3: "upload_segment", 4: "aborted"}.get(specifier, "unknown")
 

@@ -16,7 +16,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent))
-from foreign.behaviours import find_behaviour  # noqa: E402
+from foreign.behaviours import switches_of  # noqa: E402
 from foreign.device import Device  # noqa: E402
 from foreign.frames import Bus  # noqa: E402
 
@@ -30,13 +30,12 @@ def stimuli() -> list[str]:
 
 def main() -> None:
     address, node_id, *name = sys.argv[1:]
-    behaviour = find_behaviour(name[0] if name else "good")
     bus = Bus(address)
-    devices = [Device(HERE / "device.eds", int(node_id), switches) for switches in behaviour.devices]
+    devices = [Device(HERE / "device.eds", int(node_id), switches) for switches in switches_of(name[0] if name else "")]
     for device in devices:
         device.start(time.monotonic())
     print("started", flush=True)
-    while not all(device.ended for device in devices):
+    while not devices[0].ended:
         for device in devices:
             for frame in device.poll(time.monotonic()):
                 bus.send(frame)
