@@ -2,13 +2,11 @@
 
 #include "device/drive_modes.hpp"
 #include "lint/rule_groups.hpp"
+#include "lint/standard_objects.hpp"
 #include "values/read_value.hpp"
 
 namespace edsc {
 namespace {
-
-/// Mandatory objects (CiA 301, 7.5.2).
-constexpr std::uint16_t mandatory_indices[] = {0x1000, 0x1001, 0x1018};
 
 /// Checks a default value against its limits, unless it comes from CiA 301.
 void check_default(const RuleContext& context, const Entry& entry) {
@@ -28,7 +26,7 @@ void check_default(const RuleContext& context, const Entry& entry) {
 }  // namespace
 
 void check_objects(const RuleContext& context) {
-  for (const std::uint16_t index : mandatory_indices) {
+  for (const std::uint16_t index : mandatory_objects) {
     if (context.device.find(index) != nullptr) continue;
     context.report("mandatory-object", context.whole_file(),
                    fmt::format("mandatory object {} is missing", index_label(index)));

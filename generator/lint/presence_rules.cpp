@@ -3,23 +3,10 @@
 #include <string_view>
 
 #include "lint/rule_groups.hpp"
+#include "lint/standard_objects.hpp"
 
 namespace edsc {
 namespace {
-
-/// `index` requires `needed`.
-struct Need {
-  std::uint16_t index;
-  std::uint16_t needed;
-  std::string_view what;  ///< name of `needed`
-};
-
-constexpr Need needs[] = {
-    {0x1006, 0x1005, "COB-ID SYNC message"}, {0x1007, 0x1005, "COB-ID SYNC message"},
-    {0x1019, 0x1005, "COB-ID SYNC message"}, {0x100C, 0x100D, "Life time factor"},
-    {0x100D, 0x100C, "Guard time"},          {0x1015, 0x1014, "COB-ID EMCY"},
-    {0x1022, 0x1021, "Store EDS"},
-};
 
 /// Objects of earlier versions of CiA 301.
 struct Obsolete {
@@ -37,7 +24,7 @@ constexpr Obsolete obsolete_objects[] = {
 constexpr std::uint16_t first_reserved_index = 0xC000;
 
 void check_needs(const RuleContext& context) {
-  for (const Need& need : needs) {
+  for (const ObjectNeed& need : object_needs) {
     const Object* object = context.device.find(need.index);
     if (object == nullptr || context.device.find(need.needed) != nullptr) continue;
     context.report("needed-object", object->position,

@@ -12,13 +12,13 @@ const StandardObject* find_standard_object(std::uint16_t index) {
   return at != std::end(standard::objects) && at->first <= index ? &*at : nullptr;
 }
 
-namespace {
-
-const StandardEntry* find_entry(const StandardObject& object, std::uint8_t sub_index) {
+const StandardEntry* find_standard_entry(const StandardObject& object, std::uint8_t sub_index) {
   const auto at = std::ranges::find_if(
       object.entries, [&](const StandardEntry& entry) { return sub_index >= entry.first && sub_index <= entry.last; });
   return at == object.entries.end() ? nullptr : &*at;
 }
+
+namespace {
 
 std::string_view type_name(canopen::DataType type) {
   return canopen::find_data_type(static_cast<std::uint32_t>(type))->name;
@@ -35,7 +35,7 @@ void check_object_type(const RuleContext& context, const Object& object, const S
 }
 
 void check_entry(const RuleContext& context, const Entry& entry, const StandardObject& standard) {
-  const StandardEntry* row = find_entry(standard, entry.sub_index);
+  const StandardEntry* row = find_standard_entry(standard, entry.sub_index);
   if (row == nullptr) {
     context.report("standard-sub-index", entry.position,
                    fmt::format("the {} of CiA 301 has no sub-index {:02X}h (clause {})", standard.name, entry.sub_index,

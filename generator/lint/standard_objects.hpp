@@ -141,5 +141,24 @@ inline constexpr StandardObject objects[] = {
 
 /// The row of an index; null if CiA 301 does not describe it.
 [[nodiscard]] const StandardObject* find_standard_object(std::uint16_t index);
+/// The row of a sub-index; null if CiA 301 does not describe it.
+[[nodiscard]] const StandardEntry* find_standard_entry(const StandardObject& object, std::uint8_t sub_index);
+
+/// Objects that each device has.
+inline constexpr std::uint16_t mandatory_objects[] = {0x1000, 0x1001, 0x1018};
+
+/// `index` requires `needed`.
+struct ObjectNeed {
+  std::uint16_t index;
+  std::uint16_t needed;
+  std::string_view what;  ///< name of `needed`
+};
+
+inline constexpr ObjectNeed object_needs[] = {
+    {0x1006, 0x1005, "COB-ID SYNC message"}, {0x1007, 0x1005, "COB-ID SYNC message"},
+    {0x1019, 0x1005, "COB-ID SYNC message"}, {0x100C, 0x100D, "Life time factor"},
+    {0x100D, 0x100C, "Guard time"},          {0x1015, 0x1014, "COB-ID EMCY"},
+    {0x1022, 0x1021, "Store EDS"},
+};
 
 }  // namespace edsc

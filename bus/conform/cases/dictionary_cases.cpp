@@ -14,9 +14,9 @@
 #include "conform/cases/sdo/sdo_frames.hpp"
 #include "conform/cases/shared/entry_results.hpp"
 #include "conform/cases/shared/entry_values.hpp"
+#include "conform/cases/shared/product_values.hpp"
 #include "conform/dut/dut.hpp"
 #include "device/entry_text.hpp"
-#include "device/index_range.hpp"
 #include "device/objects/object_structure.hpp"
 
 namespace edsc::conform {
@@ -51,12 +51,6 @@ SdoOutcome read_entry(Dut& dut, const LiveEntry& entry) {
   return is_domain(entry) ? begin_upload(dut, entry) : dut.upload(entry.index, entry.sub_index);
 }
 
-/// Entries that may not have a value now: unused entries of the error history (CiA 301, 7.5.2.4), a string or DOMAIN
-/// that was not yet written.
-bool may_have_no_value(const LiveEntry& entry) {
-  return entry.type->bits == 0 || (entry.index == error_history && entry.sub_index != 0);
-}
-
 void expect_readable(EntryResults& results, const LiveEntry& entry, const SdoOutcome& outcome) {
   const bool refused = outcome.end == SdoEnd::refused;
   if (refused && may_have_no_value(entry) && outcome.code == AbortCode::no_data) return;
@@ -87,57 +81,11 @@ void read_application_entries(Dut& dut) { read_entries(dut, is_application, no_a
 
 // Defaults
 
-/// Read-only values of 1000h to 1FFFh that are the same in each device of the product.
-struct ProductValue {
-  IndexRange objects;
-  std::uint8_t first_sub_index, last_sub_index;
-};
-
-constexpr ProductValue product_values[] = {
-    {{0x1000, 0x1000}, 0, 0},    // device type
-    {{0x1018, 0x1018}, 1, 3},    // vendor-ID, product code, revision number
-    {{0x1200, 0x127F}, 0, 254},  // COB-IDs of SDO servers
-    {{0x1400, 0x1BFF}, 0, 254},  // PDOs
-};
-
-bool is_serial_number(const LiveEntry& entry) { return entry.index == 0x1018 && entry.sub_index == 4; }
-
-/// Sub-index 0 with the highest sub-index. In a list that the device fills, it has another default value.
-bool is_highest_sub_index(const Dut& dut, const LiveEntry& entry) {
-  const Object* object = dut.sheet().find(entry.index);
-  if (entry.sub_index != 0 || object == nullptr || !object->has_sub_indices()) return false;
-  return dut.default_of(entry.index, 0) == object->highest_sub_index();
-}
-
-/// Whether the value is a constant of the product: access const, or read-only and one of the above or the highest
-/// sub-index. A correct device may have other values that differ from their default: measured values, counters, and
-/// values that a user has written or stored. Other cases test the default values after "load".
-bool is_product_value(const Dut& dut, const LiveEntry& entry) {
-  const Access access = entry.entry->access;
-  if (is_serial_number(entry) || entry.index == error_history) return false;
-  if (access == Access::constant) return true;
-  if (access != Access::ro) return false;
-  if (is_highest_sub_index(dut, entry)) return true;
-  return std::ranges::any_of(product_values, [&](const ProductValue& row) {
-    return entry.index >= row.objects.first && entry.index <= row.objects.last &&
-           entry.sub_index >= row.first_sub_index && entry.sub_index <= row.last_sub_index;
-  });
-}
-
-/// Removes fill characters: devices fill a VISIBLE_STRING with 00h or spaces, and EDS files may lose spaces at its end.
-Bytes trimmed(const LiveEntry& entry, Bytes bytes) {
-  const auto is_fill = [](std::uint8_t byte) { return byte == 0 || byte == ' '; };
-  if (entry.type->type == canopen::DataType::visible_string) {
-    while (!bytes.empty() && is_fill(bytes.back())) bytes.pop_back();
-  }
-  return bytes;
-}
-
 void compare_defaults(Dut& dut, EntryFilter in_area, const std::string& none) {
   EntryResults results{dut};
   for (const LiveEntry& entry : dut.entries()) {
     if (results.lost()) break;
-    if (!in_area(entry) || !is_product_value(dut, entry)) continue;
+    if (!in_area(entry) || !is_product_value(dut.sheet(), entry)) continue;
     const std::optional<Bytes> expected = default_bytes(dut, *entry.entry);
     if (!expected || !lacks_flag(dut, entry, refuse_read_flag)) continue;
     results.count();

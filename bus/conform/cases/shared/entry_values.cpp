@@ -93,11 +93,11 @@ bool is_application_parameter(const Device& sheet, const LiveEntry& entry) {
   return (flags_of(sheet, entry) & (refuse_write_flag | refuse_read_flag)) == 0 && !sets_node_id_or_bit_rate(entry);
 }
 
-std::uint64_t bits_of(const Dut& dut, const Value& value) {
-  return value.bits + (value.plus_node_id ? dut.node().value() : 0U);
+std::uint64_t bits_of(canopen::NodeId node, const Value& value) {
+  return value.bits + (value.plus_node_id ? node.value() : 0U);
 }
 
-std::optional<Bytes> default_bytes(const Dut& dut, const Entry& entry) {
+std::optional<Bytes> default_bytes(canopen::NodeId node, const Entry& entry) {
   if (entry.type == nullptr || entry.type->kind == DataClass::domain) return std::nullopt;
   if (!entry.default_value || !entry.default_value->clause.empty()) return std::nullopt;
   const Value& value = *entry.default_value;
@@ -106,7 +106,7 @@ std::optional<Bytes> default_bytes(const Dut& dut, const Entry& entry) {
     return Bytes(units.begin(), units.end());
   }
   if (entry.type->kind == DataClass::string) return Bytes(value.bytes.begin(), value.bytes.end());
-  return edsc::bytes_of(bits_of(dut, value), bytes_for(entry.type->bits));
+  return edsc::bytes_of(bits_of(node, value), bytes_for(entry.type->bits));
 }
 
 std::optional<std::uint64_t> value_above_limit(const Dut& dut, const Entry& entry) {
@@ -119,15 +119,19 @@ std::optional<std::uint64_t> value_below_limit(const Dut& dut, const Entry& entr
   return next_value(*entry.type, bits_of(dut, *entry.low_limit), false);
 }
 
-bool is_within_limits(const Dut& dut, const Entry& entry, std::span<const std::uint8_t> bytes) {
-  if (entry.type == nullptr || entry.type->bits == 0) return true;
+LimitCheck check_limits(canopen::NodeId node, const Entry& entry, std::span<const std::uint8_t> bytes) {
+  if (entry.type == nullptr || entry.type->bits == 0) return {};
   std::uint64_t value = number_of(bytes);
   if (entry.type->kind == DataClass::signed_integer) {
     value = static_cast<std::uint64_t>(sign_extended(value, entry.type->bits));
   }
-  const bool too_high = entry.high_limit && is_less(*entry.type, bits_of(dut, *entry.high_limit), value);
-  const bool too_low = entry.low_limit && is_less(*entry.type, value, bits_of(dut, *entry.low_limit));
-  return !too_high && !too_low;
+  return {.too_low = entry.low_limit && is_less(*entry.type, value, bits_of(node, *entry.low_limit)),
+          .too_high = entry.high_limit && is_less(*entry.type, bits_of(node, *entry.high_limit), value)};
+}
+
+bool is_within_limits(const Dut& dut, const Entry& entry, std::span<const std::uint8_t> bytes) {
+  const LimitCheck check = check_limits(dut.node(), entry, bytes);
+  return !check.too_low && !check.too_high;
 }
 
 bool depends_on_state(canopen::AbortCode code) {

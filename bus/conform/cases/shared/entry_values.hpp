@@ -34,14 +34,24 @@ using EntryFilter = bool (*)(const LiveEntry&);
 [[nodiscard]] bool is_application_parameter(const Device& sheet, const LiveEntry& entry);
 
 /// The bits of a value, with the node-ID added if the EDS says so.
-[[nodiscard]] std::uint64_t bits_of(const Dut& dut, const Value& value);
+[[nodiscard]] std::uint64_t bits_of(canopen::NodeId node, const Value& value);
+[[nodiscard]] inline std::uint64_t bits_of(const Dut& dut, const Value& value) { return bits_of(dut.node(), value); }
 /// The bytes of the default value as an SDO transfers them; std::nullopt without one, and for a DOMAIN.
-[[nodiscard]] std::optional<Bytes> default_bytes(const Dut& dut, const Entry& entry);
+[[nodiscard]] std::optional<Bytes> default_bytes(canopen::NodeId node, const Entry& entry);
+[[nodiscard]] inline std::optional<Bytes> default_bytes(const Dut& dut, const Entry& entry) {
+  return default_bytes(dut.node(), entry);
+}
 
 /// The next value above the HighLimit or below the LowLimit; std::nullopt without the limit, and if it is the limit of
 /// the data type.
 [[nodiscard]] std::optional<std::uint64_t> value_above_limit(const Dut& dut, const Entry& entry);
 [[nodiscard]] std::optional<std::uint64_t> value_below_limit(const Dut& dut, const Entry& entry);
+
+/// Whether a value is below the LowLimit or above the HighLimit.
+struct LimitCheck {
+  bool too_low = false, too_high = false;
+};
+[[nodiscard]] LimitCheck check_limits(canopen::NodeId node, const Entry& entry, std::span<const std::uint8_t> bytes);
 
 /// Whether a value is within the limits of the EDS. A value outside cannot be written back.
 [[nodiscard]] bool is_within_limits(const Dut& dut, const Entry& entry, std::span<const std::uint8_t> bytes);

@@ -1,0 +1,45 @@
+/// Compares the object dictionary of a device on the bus with its EDS. Reads only.
+#pragma once
+
+#include <canopen/can/node_id.hpp>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "accept/dictionary_reader.hpp"
+#include "accept/difference.hpp"
+#include "device/device.hpp"
+#include "eds/data_sheet.hpp"
+#include "online/identity.hpp"
+#include "online/live_bus.hpp"
+#include "online/sdo_access.hpp"
+
+namespace edsc::accept {
+
+struct Comparison {
+  Identity in_eds, in_device;
+  std::vector<ComparedEntry> entries;  ///< ascending
+  std::vector<Difference> differences;
+  std::vector<std::string> unstable;  ///< differences of a first read that a second read did not show
+  bool interrupted = false;
+  std::string lost;  ///< why the comparison ended early; empty: it is complete
+
+  [[nodiscard]] bool is_complete() const { return !interrupted && lost.empty(); }
+  [[nodiscard]] std::size_t count(Mark mark) const;
+  /// Differences that the file of deviations does not declare.
+  [[nodiscard]] std::size_t undeclared() const;
+};
+
+struct ComparisonSettings {
+  canopen::NodeId node{1};
+  SdoSettings sdo;
+  /// The number of compared objects.
+  DictionaryReader::Progress progress = [](std::size_t, std::size_t) {};
+};
+
+/// `data`: the EDS as written, from which `sheet` was resolved. Each difference is read twice. An interruption or a
+/// lost bus ends the comparison.
+[[nodiscard]] Comparison compare_dictionary(LiveBus& bus, const Device& sheet, const DataSheet& data,
+                                            const ComparisonSettings& settings);
+
+}  // namespace edsc::accept
