@@ -7,6 +7,7 @@
 #include <span>
 
 #include "backend/render.hpp"
+#include "backend/template_parts.hpp"
 #include "conform/report/decoded_frames.hpp"
 #include "conform/report/report_facts.hpp"
 #include "decode/log/print_message.hpp"
@@ -39,19 +40,6 @@ json frame_view(const SeenFrame& seen, const Message& message) {
                                           : "sent"}};
 }
 
-json frames_view(std::span<const SeenFrame> seen_frames, const RunReport& run, const Device& sheet) {
-  std::size_t left_out = seen_frames.size() - std::min(seen_frames.size(), max_html_frames);
-  json frames = json::array();
-  decode_frames(seen_frames, run.node, sheet, [&](const SeenFrame& seen, const Message& message) {
-    if (left_out > 0) {
-      --left_out;
-    } else {
-      frames.push_back(frame_view(seen, message));
-    }
-  });
-  return frames;
-}
-
 std::string frames_remark(std::size_t frames) {
   if (frames <= max_html_frames) return {};
   return fmt::format("{} not shown; --log writes all frames", counted(frames - max_html_frames, "earlier frame"));
@@ -70,7 +58,7 @@ void add_frames(json& tables, std::string_view heading, std::span<const SeenFram
   if (frames.empty()) return;
   tables.push_back({{"heading", heading},
                     {"remark", shown(frames_remark(frames.size()))},
-                    {"frames", frames_view(frames, run, sheet)}});
+                    {"frames", frames_view(frames, run.node, sheet)}});
 }
 
 json case_link(const CaseResult* result) { return {{"id", result->row->id}}; }
@@ -145,7 +133,20 @@ json area_view(const AreaCount& area, const RunReport& run, const Device& sheet)
 
 }  // namespace
 
-std::string html_report(const RunReport& run, const Device& sheet) {
+json frames_view(std::span<const SeenFrame> seen_frames, std::uint8_t node, const Device& sheet) {
+  std::size_t left_out = seen_frames.size() - std::min(seen_frames.size(), max_html_frames);
+  json frames = json::array();
+  decode_frames(seen_frames, node, sheet, [&](const SeenFrame& seen, const Message& message) {
+    if (left_out > 0) {
+      --left_out;
+    } else {
+      frames.push_back(frame_view(seen, message));
+    }
+  });
+  return frames;
+}
+
+json run_view(const RunReport& run, const Device& sheet) {
   const std::vector<std::string> problems = run_problems(run);
   json totals = json::array();
   json filters = json::array();
@@ -155,38 +156,41 @@ std::string html_report(const RunReport& run, const Device& sheet) {
   }
   json areas = json::array();
   for (const AreaCount& area : count_by_area(run)) areas.push_back(area_view(area, run, sheet));
-  const json view = {{"result", run.passed() ? "passed" : "failed"},
-                     {"sentence", result_sentence(run)},
-                     {"has_problems", !problems.empty()},
-                     {"problems", problems},
-                     {"title", shown(run.title)},
-                     {"date", shown(local_time_text(run))},
-                     {"operator", shown(run.operator_name)},
-                     {"place", shown(run.place)},
-                     {"host", shown(run.host)},
-                     {"causes_sentence", shown(causes_sentence(run))},
-                     {"causes", causes_view(run)},
-                     {"has_conditions", !run.missing_conditions().empty()},
-                     {"conditions", conditions_view(run)},
-                     {"product", run.product.empty() ? fmt::format("node {}", run.node) : run.product},
-                     {"vendor", shown(run.vendor)},
-                     {"identity", shown(run.read_identity)},
-                     {"differences", shown(run.identity)},
-                     {"sheet", run.sheet},
-                     {"sheet_hash", shown(run.sheet_hash)},
-                     {"node", run.node},
-                     {"bus", run.bus},
-                     {"composition", shown(composition_text(run))},
-                     {"level", level_text(run)},
-                     {"seed", run.seed},
-                     {"max_lag", duration_text(max_lag(run))},
-                     {"version", run.version},
-                     {"all_count", run.cases.size()},
-                     {"verdicts", totals},
-                     {"totals", totals},
-                     {"filters", filters},
-                     {"areas", std::move(areas)}};
-  return render_html(report_template("conform.html"), view);
+  return {{"result", run.passed() ? "passed" : "failed"},
+          {"sentence", result_sentence(run)},
+          {"has_problems", !problems.empty()},
+          {"problems", problems},
+          {"title", shown(run.title)},
+          {"date", shown(local_time_text(run))},
+          {"operator", shown(run.operator_name)},
+          {"place", shown(run.place)},
+          {"host", shown(run.host)},
+          {"causes_sentence", shown(causes_sentence(run))},
+          {"causes", causes_view(run)},
+          {"has_conditions", !run.missing_conditions().empty()},
+          {"conditions", conditions_view(run)},
+          {"product", run.product.empty() ? fmt::format("node {}", run.node) : run.product},
+          {"vendor", shown(run.vendor)},
+          {"identity", shown(run.read_identity)},
+          {"differences", shown(run.identity)},
+          {"sheet", run.sheet},
+          {"sheet_hash", shown(run.sheet_hash)},
+          {"node", run.node},
+          {"bus", run.bus},
+          {"composition", shown(composition_text(run))},
+          {"level", level_text(run)},
+          {"seed", run.seed},
+          {"max_lag", duration_text(max_lag(run))},
+          {"version", run.version},
+          {"all_count", run.cases.size()},
+          {"verdicts", totals},
+          {"totals", totals},
+          {"filters", filters},
+          {"areas", std::move(areas)}};
+}
+
+std::string html_report(const RunReport& run, const Device& sheet) {
+  return render_html(with_parts("conform.html"), run_view(run, sheet));
 }
 
 }  // namespace edsc::conform

@@ -33,18 +33,11 @@ json frame_object(const SeenFrame& seen, const Message& message) {
           {"problem", message.problem}};
 }
 
-json frame_objects(std::span<const SeenFrame> frames, const RunReport& run, const Device& sheet) {
-  json objects = json::array();
-  decode_frames(frames, run.node, sheet,
-                [&](const SeenFrame& seen, const Message& message) { objects.push_back(frame_object(seen, message)); });
-  return objects;
-}
-
 /// Null unless a repetition has another verdict.
 json first_run_object(const CaseResult& result, const RunReport& run, const Device& sheet) {
   if (!result.first_run) return nullptr;
   const FirstRun& first = *result.first_run;
-  return {{"expected", first.expected}, {"got", first.got}, {"frames", frame_objects(first.frames, run, sheet)}};
+  return {{"expected", first.expected}, {"got", first.got}, {"frames", frame_objects(first.frames, run.node, sheet)}};
 }
 
 json ids(const std::vector<const CaseResult*>& cases) {
@@ -106,7 +99,7 @@ json case_object(const CaseResult& result, const RunReport& run, const Device& s
           {"lag_us", result.lag},
           {"repeat", repeat_command(run, row)},
           {"first_run", first_run_object(result, run, sheet)},
-          {"frames", frame_objects(result.judged_frames(), run, sheet)}};
+          {"frames", frame_objects(result.judged_frames(), run.node, sheet)}};
 }
 
 /// Null for a device on a bus.
@@ -125,14 +118,21 @@ json area_object(const AreaCount& count) {
 
 }  // namespace
 
-std::string json_report(const RunReport& run, const Device& sheet) {
+json frame_objects(std::span<const SeenFrame> frames, std::uint8_t node, const Device& sheet) {
+  json objects = json::array();
+  decode_frames(frames, node, sheet,
+                [&](const SeenFrame& seen, const Message& message) { objects.push_back(frame_object(seen, message)); });
+  return objects;
+}
+
+json run_object(const RunReport& run, const Device& sheet) {
   json totals = json::object();
   for (const VerdictRow& row : verdicts) totals[std::string{row.name}] = run.count(row.verdict);
   json areas = json::array();
   for (const AreaCount& count : count_by_area(run)) areas.push_back(area_object(count));
   json cases = json::array();
   for (const CaseResult& result : run.cases) cases.push_back(case_object(result, run, sheet));
-  const json report = {
+  json report = {
       {"version", 1},
       {"edsc", run.version},
       {"passed", run.passed()},
@@ -164,7 +164,9 @@ std::string json_report(const RunReport& run, const Device& sheet) {
       {"missing_conditions", missing_conditions_array(run)},
       {"areas", std::move(areas)},
       {"cases", std::move(cases)}};
-  return json_text(report) + '\n';
+  return report;
 }
+
+std::string json_report(const RunReport& run, const Device& sheet) { return json_text(run_object(run, sheet)) + '\n'; }
 
 }  // namespace edsc::conform

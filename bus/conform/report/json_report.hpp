@@ -1,6 +1,9 @@
 /// The report of a run as JSON: all results, with every frame.
 #pragma once
 
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 
 #include "conform/verdict.hpp"
@@ -8,7 +11,13 @@
 
 namespace edsc::conform {
 
-/// An object in the format of docs/schema/conform.schema.json, with a line end.
+/// An object in the format of docs/schema/conform.schema.json.
+[[nodiscard]] nlohmann::ordered_json run_object(const RunReport& run, const Device& sheet);
+/// The frames in this object.
+[[nodiscard]] nlohmann::ordered_json frame_objects(std::span<const SeenFrame> frames, std::uint8_t node,
+                                                   const Device& sheet);
+
+/// The object as text, with a line end.
 [[nodiscard]] std::string json_report(const RunReport& run, const Device& sheet);
 
 }  // namespace edsc::conform
