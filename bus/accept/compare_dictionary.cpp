@@ -107,7 +107,11 @@ class Pass {
     if (!row.in_eds) return row;
     row.type = entry.type->name;
     row.access = access_name(entry);
-    if (const auto value = eds_value(entry)) row.default_value = value_of(entry, *value);
+    if (const auto value = eds_value(entry)) {
+      row.default_value = value_of(entry, *value);
+    } else if (const auto written = written_value(data_, *object_of(reading), entry.sub_index)) {
+      row.default_value = *written;  // edsc itself uses the value of CiA 301
+    }
     return row;
   }
 
@@ -200,7 +204,9 @@ class Pass {
     if (conform::is_number(entry) && (entry.entry->low_limit || entry.entry->high_limit)) {
       const conform::LimitCheck check = conform::check_limits(node_, *entry.entry, outcome.bytes);
       row.limits = check.too_low || check.too_high ? Aspect::differs : Aspect::same;
-      if (row.limits == Aspect::differs) add(Kind::limit, reading, limits_text(*entry.entry), device_text(reading));
+      // The value of a constant differs already: its corrections include the limit.
+      if (row.limits == Aspect::differs && row.value != Aspect::differs)
+        add(Kind::limit, reading, limits_text(*entry.entry), device_text(reading));
     }
   }
 
@@ -210,8 +216,7 @@ class Pass {
     if (const auto predefined = other_predefined_cob_id(data_, *entry.entry, node_)) {
       if (canopen::CobId{static_cast<std::uint32_t>(number)}.can_id() == *predefined) {
         row.value = Aspect::differs;
-        const auto written = written_value(data_, *object_of(reading), entry.sub_index);
-        return add(Kind::value, reading, written.value_or(row.default_value), device_text(reading));
+        return add(Kind::value, reading, row.default_value, device_text(reading));
       }
     }
     const auto expected = eds_value(entry);

@@ -98,9 +98,22 @@ Correction value_key(const Facts& facts, std::string text) {
 
 Corrections remove_section(const Facts& facts) { return {{section_of(facts), "Remove", std::nullopt, "1"}}; }
 
+Corrections set_limit(const Facts& facts) {
+  const Entry& entry = *facts.reading.entry.entry;
+  const std::string value = number_text(entry, device_number(facts));
+  const bool above = conform::check_limits(facts.node, entry, facts.reading.outcome.bytes).too_high;
+  return {above ? key_of(facts, "HighLimit", &EntryDescription::high_limit, value)
+                : key_of(facts, "LowLimit", &EntryDescription::low_limit, value)};
+}
+
 Corrections set_value(const Facts& facts) {
   const Entry& entry = *facts.reading.entry.entry;
-  if (entry.type->bits != 0) return {value_key(facts, number_text(entry, device_number(facts)))};
+  if (entry.type->bits != 0) {
+    Corrections corrections = {value_key(facts, number_text(entry, device_number(facts)))};
+    const conform::LimitCheck check = conform::check_limits(facts.node, entry, facts.reading.outcome.bytes);
+    if (check.too_low || check.too_high) corrections.push_back(set_limit(facts).front());
+    return corrections;
+  }
   if (entry.type->type != DataType::visible_string) return {};
   const auto& bytes = facts.reading.outcome.bytes;
   std::string text{bytes.begin(), bytes.end()};
@@ -394,14 +407,6 @@ Corrections set_predefined_cob_id(const Facts& facts) {
   return {value_key(facts, fmt::format("$NODEID+0x{:X}", value))};
 }
 
-Corrections set_limit(const Facts& facts) {
-  const Entry& entry = *facts.reading.entry.entry;
-  const std::string value = number_text(entry, device_number(facts));
-  const bool above = conform::check_limits(facts.node, entry, facts.reading.outcome.bytes).too_high;
-  return {above ? key_of(facts, "HighLimit", &EntryDescription::high_limit, value)
-                : key_of(facts, "LowLimit", &EntryDescription::low_limit, value)};
-}
-
 /// The section that the EDS does not have, as CiA 301 describes the entry.
 Corrections add_standard_entry(const Facts& facts) {
   const auto required = required_type(facts);
@@ -477,8 +482,8 @@ constexpr Decision decision_rows[] = {
     {Kind::length, "free-type", "none: no standard defines the data type", undecided, always,
      "no standard defines the data type of {entry}; the frames do not show which length is intended", set_type_of_size},
 
-    {Kind::access, "standard-access", "CiA 301 requires the access of the EDS", device_wrong, standard_has_access_of_eds,
-     "{clause} requires the access of the EDS, {eds}"},
+    {Kind::access, "standard-access", "CiA 301 allows the access of the EDS and excludes that of the device", device_wrong, standard_has_access_of_eds,
+     "{clause} allows the access of the EDS, {eds}, and not that of the device"},
     {Kind::access, "eds-access", "CiA 301 excludes the access of the EDS and allows that of the device", eds_wrong, standard_has_access_of_device,
      "{clause} does not allow the access of the EDS, {eds}, and allows that of the device", set_access},
     {Kind::access, "free-access", "none: no standard defines the access", undecided, always,

@@ -44,11 +44,11 @@ bool Reading::is_missing() const { return was_read && outcome.end == SdoEnd::ref
 DictionaryReader::DictionaryReader(LiveBus& bus, const Device& sheet, canopen::NodeId node, SdoSettings settings)
     : CaseFrames{bus}, sheet_{sheet}, node_{node}, sdo_{bus, node, settings} {}
 
-/// Reads only the beginning of a DOMAIN, and of an entry that has no readable value by the EDS.
+/// Reads only the beginning of a DOMAIN, of an entry that the EDS does not have, and of a string that it does not
+/// declare readable.
 SdoOutcome DictionaryReader::upload(const LiveEntry& entry) {
-  if (entry.type != nullptr && conform::is_readable(entry) && !conform::is_domain(entry)) {
-    return edsc::upload(sdo_, entry);
-  }
+  const bool has_length = entry.type != nullptr && entry.type->bits != 0;
+  if (has_length || (conform::is_readable(entry) && !conform::is_domain(entry))) return edsc::upload(sdo_, entry);
   return sdo_.upload(entry.index, entry.sub_index, SdoTransfer::segmented, {}, first_bytes);
 }
 

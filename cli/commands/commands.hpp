@@ -25,6 +25,7 @@ AddOptions add_nmt_options;
 AddOptions add_send_options;
 AddOptions add_lss_options;
 AddOptions add_conform_options;
+AddOptions add_accept_options;
 AddOptions add_bus_options;
 AddOptions add_record_options;
 AddOptions add_decode_options;
@@ -68,6 +69,7 @@ inline constexpr CommandRow commands[] = {
     {"Bus", "send", "send SYNC, TIME, a PDO or a frame, once or periodically", add_send_options},
     {"Bus", "lss", "configure node-ID and bit rate of devices (CiA 305)", add_lss_options},
     {"Bus", "conform", "test a node against CiA 301 and its EDS", add_conform_options},
+    {"Bus", "accept", "compare a node with its EDS and test it; acceptance report", add_accept_options},
     {"Bus", "bus", "virtual CAN buses on this machine, for socketcand clients", add_bus_options},
     {"Logs", "record", "write the frames of a bus as a candump log", add_record_options},
 #endif

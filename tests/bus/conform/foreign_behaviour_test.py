@@ -23,14 +23,14 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
-from bench import LATE, NODE_ID, TRIES, Bench, end_with_parent, patterns  # noqa: E402
+from bench import NODE_ID, TRIES, Bench, end_with_parent, is_late, patterns  # noqa: E402
 from foreign.behaviours import BEHAVIOURS, NODE_JS, PYTHON, Behaviour  # noqa: E402
 
 SLAVES = HERE / "foreign"
 RUNS = 2  # of a behaviour with an unexpected result
 SHEETS = {PYTHON: SLAVES / "device.eds", NODE_JS: HERE / "foreign_slave.eds"}
 WITH_STIMULI = ("3.4", "3.7", "3.10", "3.13", "3.16", "3.19", "5.103", "5.106", "8.2", "8.6", "8.101", "8.102")
-ALWAYS = re.compile(f"{LATE.pattern}|only in simulated time")  # reasons of inconclusive cases
+SIMULATED = "only in simulated time"  # reason of an inconclusive case
 
 
 class Run:
@@ -79,7 +79,6 @@ class Run:
             report = self.conform(f"report-{again}", tuple(cases))
             cases = {case: text for case, text in problems_of_cases(report, self.behaviour).items() if case in cases}
             print(f"{self.name}: repeated: {', '.join(cases) or 'as expected'}")
-        cases = {case: text for case, text in cases.items() if not LATE.search(text)}
         return [*found, *(f"{case} {text}" for case, text in cases.items())]
 
 
@@ -103,6 +102,8 @@ def problems_of_cases(report: dict, behaviour: Behaviour) -> dict[str, str]:
     problems = {}
     for case in report["cases"]:
         verdict, failure = case["verdict"], behaviour.failed.get(case["id"])
+        if is_late(case):
+            continue
         if verdict == "failed":
             text = f"failed: expected {case['expected']}; got {case['got']}"
             if failure is None or not re.search(failure.expected, case["expected"]) or not re.search(failure.got, case["got"]):
@@ -116,7 +117,7 @@ def problems_of_cases(report: dict, behaviour: Behaviour) -> dict[str, str]:
 
 def is_expected(reason: str, behaviour: Behaviour) -> bool:
     allowed = [*behaviour.named, *behaviour.also, *([behaviour.ended] if behaviour.ended else [])]
-    return bool(ALWAYS.search(reason)) or any(re.search(text, reason) for text in allowed)
+    return SIMULATED in reason or any(re.search(text, reason) for text in allowed)
 
 
 def test_behaviour(edsc: Path, folder: Path, behaviour: Behaviour, all_cases: bool) -> list[str]:

@@ -125,6 +125,8 @@ class EveryCommand(ReferenceDevices):
                 self.on_bus("configure", node_id, f"saved-{device}.dcf", "--all", exit_codes=(FINE, FAILED))
                 self.on_bus("conform", node_id, sheet, "--level", "read", "--html", f"{device}.html", "--junit",
                             f"{device}.xml", exit_codes=(FINE, FAILED))
+                self.on_bus("accept", node_id, sheet, "-o", f"accept-{device}.html", "--json", f"accept-{device}.json", "--junit",
+                            f"accept-{device}.xml", "--only", "4.*", exit_codes=(FINE, FAILED))
         self.on_bus("nmt", "start", "all")
         self.on_bus("send sync", "--every", "10", "--count", "20")
         self.on_bus("send time")

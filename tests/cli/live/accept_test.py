@@ -1,0 +1,262 @@
+#!/usr/bin/env python3
+"""edsc accept with live nodes: each planted difference has its mark, the commands of docs/accept.md do what the page says, and
+the reports conform to their schemas.
+
+    accept_test.py SOURCE_DIR EDSC RK5C [unittest arguments]
+
+RK5C is the program of the reference device. The blocks of the document that name this script are run in order; the lines of
+blocks without a language must be in the output of the commands before them.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import jsonschema
+
+SOURCE_DIR = Path(sys.argv[1]).resolve()
+EDSC = Path(sys.argv[2]).resolve()
+RK5C = Path(sys.argv[3]).resolve()
+SLAVE = SOURCE_DIR / "tests/bus/accept/planted_slave.py"
+sys.path.insert(0, str(SLAVE.parent))
+from planted_slave import GOOD, PLANTED, SILENT, eds_of  # noqa: E402
+
+ADDRESS = "socketcand:127.0.0.1:29536/vcan0"  # in the document
+BLOCK = re.compile(r"<!-- run by: tests/cli/live/accept_test.py -->\n```(\w*)\n(.*?)```", re.DOTALL)
+PATIENCE_MS = 60_000  # for an answer that must be received, even on a busy machine
+SILENCE_MS = 3_000  # where an answer is not received
+SCHEMAS = SOURCE_DIR / "docs/schema"
+
+
+def schema(name: str) -> dict:
+    return json.loads((SCHEMAS / f"{name}.schema.json").read_text(encoding="utf-8"))
+
+
+def definition(name: str, part: str) -> dict:
+    return {"$ref": f"#/$defs/{part}", "$defs": schema(name)["$defs"]}
+
+
+def without_foreign(node: object) -> object:
+    """Without what refers to the schemas of `edsc check` and `edsc conform`, which `validate` uses one by one."""
+    if isinstance(node, dict):
+        foreign = node.get("$ref", "").startswith("urn:") if isinstance(node.get("$ref"), str) else False
+        return {} if foreign else {name: without_foreign(value) for name, value in node.items()}
+    return [without_foreign(value) for value in node] if isinstance(node, list) else node
+
+
+def validate(report: dict) -> None:
+    jsonschema.Draft202012Validator(without_foreign(schema("accept"))).validate(report)
+    jsonschema.Draft202012Validator(schema("conform")).validate(report["conform"])
+    for finding in report["check"]["findings"]:
+        jsonschema.Draft202012Validator(definition("check", "finding")).validate(finding)
+    for difference in report["comparison"]["differences"]:
+        for frame in difference["frames"]:
+            jsonschema.Draft202012Validator(definition("conform", "frame")).validate(frame)
+
+
+class Accept(unittest.TestCase):
+    maxDiff = None
+
+    def setUp(self) -> None:
+        self.folder = Path(tempfile.mkdtemp(prefix="edsc-accept-"))
+        self.addCleanup(shutil.rmtree, self.folder)
+        bus = self.start(EDSC, "bus", "--listen", "127.0.0.1:0")
+        self.address = bus.stdout.readline().strip()
+
+    def start(self, *arguments: object) -> subprocess.Popen[str]:
+        process = subprocess.Popen([*map(str, arguments)], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT)
+
+        def end() -> None:
+            process.kill()
+            process.communicate()
+
+        self.addCleanup(end)
+        return process
+
+    def start_rk5c(self) -> None:
+        shutil.copytree(SOURCE_DIR / "eds", self.folder / "eds")
+        node = self.start(RK5C, self.address, "--node-id", "5")
+        while "pre-operational" not in (line := node.stdout.readline()):
+            self.assertTrue(line, "the node has ended")
+
+    def start_slave(self, *kind: str) -> None:
+        (self.folder / "planted.eds").write_text(eds_of(GOOD if kind else PLANTED), encoding="utf-8")
+        slave = self.start(sys.executable, SLAVE, self.address, 5, *kind)
+        self.assertEqual(slave.stdout.readline(), "started\n")
+
+    def accept(self, *options: object, timeout_ms: int = PATIENCE_MS) -> subprocess.CompletedProcess[str]:
+        return subprocess.run([EDSC, "accept", self.address, "5", "planted.eds", "--timeout", str(timeout_ms), *map(str, options)],
+                              cwd=self.folder, capture_output=True, text=True, timeout=1200)
+
+    def report(self) -> dict:
+        report = json.loads((self.folder / "report.json").read_text(encoding="utf-8"))
+        validate(report)
+        return report
+
+    def suites(self) -> ElementTree.Element:
+        suites = ElementTree.parse(self.folder / "report.xml").getroot()
+        tests = suites.findall("testsuite/testcase")
+        self.assertEqual(len(tests), int(suites.get("tests")))
+        for name in ("failure", "skipped"):
+            found = [test for test in tests if test.find(name) is not None]
+            self.assertEqual(len(found), int(suites.get("failures" if name == "failure" else name)), name)
+        return suites
+
+    def test_each_planted_difference_has_its_mark(self) -> None:
+        self.start_slave()
+        result = self.accept("-o", "report.html", "--json", "report.json", "--junit", "report.xml", "--only", "2.1", "--title",
+                             "A <title>", "--operator", "Ada", "--place", "Hall", timeout_ms=SILENCE_MS)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        report = self.report()
+        self.assertFalse(report["accepted"])
+        differences = report["comparison"]["differences"]
+        found = [f"{one['index']:04X}h:{one['sub_index']:02X} {one['kind']} {one['mark']} {one['evidence']}" for one in differences]
+        self.assertEqual(found, sorted(line for row in PLANTED for line in row.expected))
+        marks = {(line.split()[1], line.split()[2]) for line in found}
+        for kind in ("object_missing", "sub_index_missing", "not_in_eds", "length", "access", "value", "limit"):
+            self.assertEqual({mark for of, mark in marks if of == kind}, {"eds_wrong", "device_wrong", "undecided"}, kind)
+        self.check_corrections(differences)
+        self.check_frames(differences)
+        self.check_values(report["comparison"]["entries"])
+        self.assertEqual((report["title"], report["operator"], report["place"]), ("A <title>", "Ada", "Hall"))
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        for text in ("not accepted", "A &lt;title&gt;", "Ada", "Hall", "device wrong", report["eds"]["sha256"], report["edsc"]):
+            self.assertIn(text, page)
+        dictionary = self.suites().find("testsuite[@name='dictionary']")
+        failed = {test.get("name")[:5] for test in dictionary if test.find("failure") is not None}
+        self.assertEqual(failed, {f"{row.index:04X}h" for row in PLANTED if row.expected})
+
+    def check_corrections(self, differences: list[dict]) -> None:
+        found = {f"{row['section']} {row['key']}": (row["old"], row["new"]) for one in differences for row in one["corrections"]}
+        for row in PLANTED:
+            for key, value in row.corrections.items():
+                self.assertEqual(found.get(key), value, key)
+        for one in differences:
+            if one["mark"] == "device_wrong":
+                self.assertEqual(one["corrections"], [])
+            if one["mark"] == "eds_wrong":
+                self.assertNotEqual(one["corrections"], [])
+
+    def check_frames(self, differences: list[dict]) -> None:
+        """The request and the response of each difference are those of the entry."""
+        values = {entry: value for row in PLANTED for entry, value in row.values.items()}
+        for one in differences:
+            entry = (one["index"], one["sub_index"])
+            multiplexer = entry[0].to_bytes(2, "little").hex().upper() + f"{entry[1]:02X}"
+            request = one["frames"][0]
+            self.assertEqual((request["can_id"], request["data"][:8], request["sent"]), (0x605, "40" + multiplexer, True))
+            if values.get(entry) == SILENT:
+                self.assertNotIn(0x585, [frame["can_id"] for frame in one["frames"]])
+                continue
+            response = one["frames"][1]
+            self.assertEqual((response["can_id"], response["data"][2:8], response["sent"]), (0x585, multiplexer, False))
+            value = values.get(entry)
+            if isinstance(value, bytes) and len(value) <= 4:
+                self.assertEqual(response["data"][8:8 + 2 * len(value)], value.hex().upper())
+            else:
+                self.assertEqual(response["data"][:2], "80")
+
+    def check_values(self, entries: list[dict]) -> None:
+        """A stored or live value is not a difference."""
+        for entry in entries:
+            if entry["index"] in (0x2020, 0x2021):
+                self.assertEqual((entry["exists"], entry["value"]), ("same", "may_differ"))
+        self.assertIn("differs from its default value, as stored or live values may",
+                      (self.folder / "report.html").read_text(encoding="utf-8"))
+
+    def test_a_good_device_is_accepted(self) -> None:
+        self.start_slave("good")
+        result = self.accept("--json", "report.json", "--junit", "report.xml", "--only", "2.1", "--only", "4.*")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertTrue(result.stdout.endswith("\naccepted\n"))
+        report = self.report()
+        self.assertEqual((report["accepted"], report["objections"], report["comparison"]["differences"]), (True, [], []))
+        self.assertTrue(all(entry["exists"] == "same" for entry in report["comparison"]["entries"]))
+        self.assertFalse(any(number["differs"] for number in report["identity"]))
+        self.assertEqual(self.suites().get("failures"), "0")
+
+    def test_a_failed_case_is_not_accepted(self) -> None:
+        """The slave responds to a missing sub-index as CiA 301 requires, and does not have 1001h."""
+        self.start_slave()
+        result = self.accept("--json", "report.json", "--only", "4.1", "--quiet", timeout_ms=SILENCE_MS)
+        self.assertEqual(result.returncode, 1)
+        self.assertTrue(any("conformance test failed" in text for text in self.report()["objections"]))
+
+    def test_declared_differences_are_accepted(self) -> None:
+        rows = [{"case": "4.2", "object": "1018h:02", "reason": "an older EDS", "source": "manual, page 3"}]
+        (self.folder / "deviations.json").write_text(json.dumps({"deviations": rows}), encoding="utf-8")
+        self.start_slave("good")
+        sheet = self.folder / "planted.eds"
+        sheet.write_text(sheet.read_text(encoding="utf-8").replace("DefaultValue=0x42\n", "DefaultValue=0x41\n"), encoding="utf-8")
+        options = ("--json", "report.json", "--junit", "report.xml", "--only", "4.2")
+        self.assertEqual(self.accept(*options).returncode, 1)
+        result = self.accept(*options, "--deviations", "deviations.json")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertEqual(self.report()["comparison"]["differences"][0]["deviation"], "an older EDS (manual, page 3)")
+        self.suites()
+
+    def test_an_interruption_ends_with_130_and_a_report(self) -> None:
+        self.start_slave()
+        process = subprocess.Popen([EDSC, "accept", self.address, "5", "planted.eds", "--timeout", str(PATIENCE_MS), "--json",
+                                    "report.json"], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(2)  # it waits for the response of 2008h
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=600)
+        self.assertEqual(process.returncode, 130)
+        report = self.report()
+        self.assertTrue(report["comparison"]["interrupted"] or report["conform"]["interrupted"])
+        self.assertFalse(report["accepted"])
+
+    def test_a_device_that_does_not_respond_is_not_accepted(self) -> None:
+        (self.folder / "planted.eds").write_text(eds_of(GOOD), encoding="utf-8")
+        result = self.accept("--json", "report.json", timeout_ms=100)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(self.report()["comparison"]["ended_early"], "node 5 does not respond")
+
+    def test_wrong_usage(self) -> None:
+        (self.folder / "planted.eds").write_text(eds_of(GOOD), encoding="utf-8")
+        for options in (("--level", "much"), ("--only", "99.1"), ("--deviations", "missing.json"), ("-o", "planted.eds")):
+            if options[0] == "-o":
+                self.start_slave("good")
+            self.assertEqual(self.accept(*options).returncode, 2, options)
+        result = subprocess.run([EDSC, "accept", "nonsense:", "5", "planted.eds"], cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(result.returncode, 2)
+
+    def test_the_document(self) -> None:
+        self.start_rk5c()
+        blocks = BLOCK.findall((SOURCE_DIR / "docs/accept.md").read_text(encoding="utf-8"))
+        self.assertGreaterEqual(len(blocks), 4)
+        output = ""
+        for language, text in blocks:
+            if language == "sh":
+                output = ""
+                for line in text.splitlines():
+                    result = self.run_line(line)
+                    self.assertEqual(result.returncode, 0, f"{line}\n{result.stdout}{result.stderr}")
+                    output += result.stdout
+            else:
+                for line in text.splitlines():
+                    self.assertIn(line, output)
+        self.report()
+        self.suites()
+
+    def run_line(self, line: str) -> subprocess.CompletedProcess[str]:
+        command = re.sub(rf"(edsc accept {ADDRESS} \S+ \S+)", rf"\1 --timeout {PATIENCE_MS}", line).replace(ADDRESS, self.address)
+        environment = {**os.environ, "PATH": f"{EDSC.parent}{os.pathsep}{os.environ['PATH']}"}
+        return subprocess.run(["bash", "-c", command], cwd=self.folder, env=environment, capture_output=True, text=True)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[4:]], verbosity=2)
