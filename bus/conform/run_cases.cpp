@@ -166,7 +166,12 @@ bool find_device(LiveBus& bus, const Device& sheet, const DutSettings& settings,
   SdoAccess access{bus, settings.node, settings.sdo};
   if (access.upload(device_type, 0).end == SdoEnd::no_answer) {
     report.lost = fmt::format("node {} does not respond within {} ms", settings.node.value(), settings.sdo.timeout_ms);
-    if (dut.responds()) report.lost += "; it responds later: give a longer --timeout";
+    if (dut.responds()) {
+      report.lost += "; it responds later: give a longer --timeout";
+    } else if (dut.has_sent_response()) {
+      report.lost =
+          fmt::format("node {} sends SDO responses, but none for 1000h:00, which was requested", settings.node.value());
+    }
     return false;
   }
   if (dut.has_twin()) {

@@ -7,6 +7,7 @@
 #include "conform/report/html_report.hpp"
 #include "conform/report/json_report.hpp"
 #include "conform/report/junit_report.hpp"
+#include "conform/requirements.hpp"
 #include "shared/conformance_test.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -25,12 +26,14 @@ constexpr const char* examples = R"(Examples:
   edsc conform socketcan:can0 5 drive.eds --level all --html report.html
   edsc conform socketcan:can0 5 drive.eds --only 3.* --only 2.5    some cases
   edsc conform socketcan:can0 5 drive.eds --stimulus 5.4="ssh bench pull-sensor-plug"
-  edsc conform --list                                              all cases, with the clause)";
+  edsc conform --list                                              all cases, with the clause
+  edsc conform --requirements                                      what the standards require, and the cases)";
 
 struct Settings : ConformanceSettings {
   std::string html, junit, json;
   bool list = false;
-  std::vector<Option> required;  ///< unless `list`
+  bool requirements = false;
+  std::vector<Option> required;  ///< unless `list` or `requirements`
 };
 
 void list_cases() {
@@ -43,6 +46,14 @@ void list_cases() {
       }
       fmt::print("  {:<6} {} ({}; {})\n", row->id, row->title, row->clause, needs);
     }
+  }
+}
+
+void list_requirements() {
+  for (const conform::RequirementRow& row : conform::requirements()) {
+    fmt::print("{}: {}\n", row.clause, row.requirement);
+    if (!row.cases.empty()) fmt::print("  cases {}\n", row.cases);
+    if (!row.reason.empty()) fmt::print("  not tested: {}\n", row.reason);
   }
 }
 
@@ -73,6 +84,10 @@ int run_conform(const Settings& settings) {
     list_cases();
     return exit_fine;
   }
+  if (settings.requirements) {
+    list_requirements();
+    return exit_fine;
+  }
   for (const Option& option : settings.required) {
     if (!option.is_given()) throw_required(option.name());
   }
@@ -98,6 +113,8 @@ void add_conform_options(Command command, int& exit_code) {
   command.add_option("--json", settings.json, "write it as JSON").type_name("FILE");
   add_report_options(command, settings);
   command.add_flag("--list", settings.list, "list the cases and what they need, and end");
+  command.add_flag("--requirements", settings.requirements,
+                   "list what the standards require of a device, with the cases that test it, and end");
 }
 
 }  // namespace edsc

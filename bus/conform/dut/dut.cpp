@@ -468,10 +468,38 @@ void Dut::measure_device_lag() {
   }
 }
 
-std::optional<Unmet> Dut::unmet_remote_frames(const CaseRow& row) const {
-  if (!includes(row.relies_on, Condition::remote_frames) || settings_.simulated || remote_frames_carried_) {
-    return std::nullopt;
+/// Requests the state by node guarding. The toggle bit of two answers differs, that of two heartbeats does not.
+bool Dut::answers_guarding() {
+  constexpr Duration to_answer = milliseconds{50};
+  std::uint8_t toggled = 0;
+  for (unsigned i = 0; i < 2; ++i) {
+    const Mark since = mark();
+    send_remote(0x700U + node().value(), 1);
+    const auto seen = wait_for(error_control(), to_answer, since);
+    if (!seen || seen->frame.size != 1) return false;
+    toggled = static_cast<std::uint8_t>(toggled ^ seen->frame.data[0]);
   }
+  constexpr std::uint8_t toggle_bit = 0x80;
+  return (toggled & toggle_bit) != 0;
+}
+
+/// Finds out once, by node guarding, whether the bus carries remote frames. A device may answer only while life
+/// guarding is configured.
+void Dut::probe_remote_frames() {
+  if (remote_frames_probed_ || settings_.level == Level::read || !has(guard_time)) return;
+  remote_frames_probed_ = true;
+  constexpr std::uint64_t time_ms = 2000, factor = 10;
+  if (is_writable(producer_heartbeat) && !download(producer_heartbeat, 0, std::uint64_t{0}).done()) return;
+  remote_frames_carried_ = answers_guarding();
+  if (remote_frames_carried_ || !is_writable(guard_time) || !is_writable(life_time_factor)) return;
+  if (!download(guard_time, 0, time_ms).done() || !download(life_time_factor, 0, factor).done()) return;
+  remote_frames_carried_ = answers_guarding();
+}
+
+std::optional<Unmet> Dut::unmet_remote_frames(const CaseRow& row) {
+  if (!includes(row.relies_on, Condition::remote_frames) || settings_.simulated) return std::nullopt;
+  if (!remote_frames_carried_) probe_remote_frames();
+  if (remote_frames_carried_) return std::nullopt;
   return Unmet{Condition::remote_frames,
                "no remote frame was answered in this run: the bus may not carry remote frames"};
 }
@@ -501,6 +529,10 @@ bool Dut::responds() {
   const SdoOutcome outcome = sdo_.upload(device_type, 0);
   sdo_.set_timeout(settings_.sdo.timeout_ms);
   return outcome.end != SdoEnd::no_answer;
+}
+
+bool Dut::has_sent_response() const {
+  return !received_since(0, with_id(canopen::default_sdo(node()).response.can_id())).empty();
 }
 
 bool Dut::has_twin() {

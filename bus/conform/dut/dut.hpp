@@ -213,9 +213,11 @@ class Dut : public CaseFrames {
   /// After a failure: the first condition of the case that does not hold. Call it before `end_case`.
   [[nodiscard]] std::optional<Unmet> unmet_condition(const CaseRow& row);
   /// Whether the case relies on remote frames that the bus may not carry: none was answered.
-  [[nodiscard]] std::optional<Unmet> unmet_remote_frames(const CaseRow& row) const;
+  [[nodiscard]] std::optional<Unmet> unmet_remote_frames(const CaseRow& row);
   /// Whether the device responds to an SDO request. Gives a slow device several seconds.
   [[nodiscard]] bool responds();
+  /// Whether any frame with the CAN-ID of an SDO response was received since the case began.
+  [[nodiscard]] bool has_sent_response() const;
   /// Whether the device sends two responses to each request, so that two devices may have the node-ID.
   [[nodiscard]] bool has_twin();
   /// Another node-ID with which a device has sent a boot-up message during the case.
@@ -237,6 +239,8 @@ class Dut : public CaseFrames {
   [[nodiscard]] std::optional<std::string> unmet_error_free();
   [[nodiscard]] std::optional<std::string> late() const;
   void measure_device_lag();
+  [[nodiscard]] bool answers_guarding();
+  void probe_remote_frames();
 
   const Device& sheet_;
   Stimuli& stimuli_;
@@ -254,6 +258,7 @@ class Dut : public CaseFrames {
   std::optional<Mark> failed_;                    ///< where the case failed
   bool guarded_ = false;                          ///< the state is read by node guarding
   bool remote_frames_carried_ = false;            ///< seen in this run
+  bool remote_frames_probed_ = false;             ///< by node guarding
   std::optional<canopen::NmtState> commanded_;    ///< by the last NMT command of this case
   Mark next_answer_ = 0;                          ///< of `answer`
   std::optional<canopen::NmtState> found_state_;  ///< before the run
