@@ -67,7 +67,9 @@ void Auditor::read_settings(const Message& message) {
   NodeState& node = audit_.sender(message);
   if (node.model == nullptr) return;
   NodeSettings settings = settings_of(*node.model);
-  if (settings == node.settings) return;
+  // Each write to 1017h starts the heartbeat again.
+  const bool restarts = message.download && message.index == 0x1017 && message.step == TransferStep::finished;
+  if (settings == node.settings && !restarts) return;
   end_stretch(message.node_id, now_);
   node.settings = std::move(settings);
   node.settings_since = now_.us;

@@ -11,7 +11,7 @@ import unittest
 
 from audits import Audits, Broken, add, data, guarded, lss
 from plant import (END_MS, EVENT_MS, HEARTBEAT_MS, PRE_OPERATIONAL, START_MS, STOP_MS, SYNC_PERIOD_MS, UNSIGNED32, Frame, axis, block_upload,
-                   clean, eds_of, in_order, log_of, supply, without)
+                   clean, eds_of, in_order, log_of, sdo, supply, without)
 
 
 def screen_of(frames: list[Frame], differences: bool = False) -> str:
@@ -130,6 +130,16 @@ class Traffic(Audits):
         self.assert_clean(Broken(add(*requests)))
         with_toggle = self.report(Broken(add(*requests, Frame(1131, 0x705, b"\x85"), Frame(1133, 0x705, b"\x85"))))
         self.assertIn("guarding-toggle", {one["rule"] for one in with_toggle["findings"]})
+
+    def test_a_write_to_1017h_restarts_the_heartbeat(self) -> None:
+        """CiA 301, 7.5.2.20; also with the present value."""
+        heartbeats = [Frame(ms, 0x705, bytes([PRE_OPERATIONAL])) for ms in range(352, 500, HEARTBEAT_MS)]
+
+        def restarted(log: list[Frame]) -> list[Frame]:
+            return without(log, 0x705, 350, START_MS) + [*sdo(350, 5, "2B17100064000000", "6017100000000000"), *heartbeats]
+        self.assert_clean(Broken(restarted))
+        early = self.report(Broken(lambda log: without(log, 0x705, 350, START_MS) + heartbeats))
+        self.assertIn("heartbeat-early", [one["rule"] for one in early["findings"]])
 
     def test_a_node_does_not_respond_during_the_switch_delay_of_lss(self) -> None:
         """CiA 305, activate bit timing: the slave does not send before the end of the second delay."""
