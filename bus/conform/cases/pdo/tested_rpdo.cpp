@@ -47,6 +47,12 @@ bool TestedRpdo::use(const Pdo& pdo, bool with_synchronous) {
   synchronous_ = type <= last_synchronous_type;
   if (!canopen::is_usable(cob_id_) || synchronous_ != with_synchronous) return false;
   if (synchronous_ && !dut_.has(sync_cob_id)) return false;
+  if (dut_.has(sync_cob_id)) {
+    constexpr std::uint8_t first_counter = 1;
+    const bool counts = dut_.is_readable(sync_overflow) && dut_.read_number(sync_overflow) != 0;
+    const auto cob_id = static_cast<std::uint32_t>(dut_.read_number(sync_cob_id)) & CobId::identifier;
+    sync_ = make_frame(cob_id, std::span{&first_counter, counts ? std::size_t{1} : std::size_t{0}});
+  }
   const auto mapping = read_mapping(dut_, index_);
   if (!mapping || mapping->empty() || reason_against(dut_, pdo, *mapping)) return false;
   pdo_ = &pdo;
@@ -100,11 +106,7 @@ void TestedRpdo::send_present() {
 }
 
 void TestedRpdo::send_sync() {
-  if (!dut_.has(sync_cob_id)) return;
-  constexpr std::uint8_t first_counter = 1;
-  const bool counts = dut_.is_readable(sync_overflow) && dut_.read_number(sync_overflow) != 0;
-  const auto cob_id = static_cast<std::uint32_t>(dut_.read_number(sync_cob_id)) & CobId::identifier;
-  dut_.send(make_frame(cob_id, std::span{&first_counter, counts ? std::size_t{1} : std::size_t{0}}));
+  if (sync_) dut_.send(*sync_);
 }
 
 TestedRpdo::Applied TestedRpdo::applied() {

@@ -1,7 +1,9 @@
 /// An RPDO that a case sends to the device, and what SDO then reads from the mapped objects.
 #pragma once
 
+#include <canopen/can/frame.hpp>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +48,7 @@ class TestedRpdo {
   std::uint16_t index_ = 0;
   std::uint32_t cob_id_ = 0;
   bool synchronous_ = false;
+  std::optional<canopen::Frame> sync_;  ///< as found: in Stopped its parameters cannot be read
   std::vector<MappingValue> mapping_;
   std::vector<std::uint64_t> present_, other_;
   std::uint64_t compared_ = 0;  ///< mask of the bits whose objects are compared
