@@ -42,7 +42,8 @@ void toggle(Dut& dut) {
     dut.reset(NmtCommand::reset_communication);
     configure_guarding(dut);
     dut.enter(NmtState::pre_operational);
-    for (const bool bit : {false, true, false, true}) expect_guarded(dut, NmtState::pre_operational, bit);
+    // An odd number, so that the next response would have the bit 1 without the reset.
+    for (const bool bit : {false, true, false}) expect_guarded(dut, NmtState::pre_operational, bit);
   }
 }
 
