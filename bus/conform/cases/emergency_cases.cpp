@@ -156,6 +156,9 @@ void force_message(Dut& dut) {
     if (!dut.stimuli().emergency_over(generic_bit)) return;
     const auto over = dut.wait_for(emcy_with_code(error.cob_id, canopen::emergency_code::reset), to_report, since);
     dut.expect(over.has_value(), "an EMCY with code 0000h when the error is over", "none");
+    dut.pass_time(milliseconds{100});
+    const auto ends = dut.received_since(since, emcy_with_code(error.cob_id, canopen::emergency_code::reset));
+    dut.expect_equal(ends.size(), 1, "EMCYs with code 0000h for one error");
   });
 }
 
