@@ -44,12 +44,14 @@ struct Mutant {
   std::function<void(std::string& eds)> of_eds{};  ///< the text of the EDS, before the test reads it
 };
 
-// One table for each file of cases.
+// One table for each file of mutants.
 [[nodiscard]] std::vector<Mutant> sdo_mutants();
 [[nodiscard]] std::vector<Mutant> pdo_mutants();
 [[nodiscard]] std::vector<Mutant> control_mutants();
 [[nodiscard]] std::vector<Mutant> network_mutants();
 [[nodiscard]] std::vector<Mutant> new_case_mutants();
 [[nodiscard]] std::vector<Mutant> hostile_mutants();
+[[nodiscard]] std::vector<Mutant> answer_mutants();
+[[nodiscard]] std::vector<Mutant> timing_mutants();
 
 }  // namespace edsc::conform

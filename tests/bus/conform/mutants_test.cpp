@@ -17,7 +17,8 @@ namespace {
 
 std::vector<Mutant> all_mutants() {
   std::vector<Mutant> all;
-  for (auto table : {sdo_mutants, pdo_mutants, control_mutants, network_mutants, new_case_mutants, hostile_mutants}) {
+  for (auto table : {sdo_mutants, pdo_mutants, control_mutants, network_mutants, new_case_mutants, hostile_mutants,
+                     answer_mutants, timing_mutants}) {
     for (Mutant& mutant : table()) all.push_back(std::move(mutant));
   }
   return all;
