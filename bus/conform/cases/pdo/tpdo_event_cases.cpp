@@ -4,12 +4,20 @@
 #include <algorithm>
 
 #include "conform/case.hpp"
+#include "conform/cases/nmt/error_control.hpp"
 #include "conform/cases/pdo/tested_tpdos.hpp"
 
 namespace edsc::conform {
 namespace {
 
 // ---- remote frames ----
+
+/// Notes whether the bus carries remote frames, as node guarding shows.
+void note_node_guarding(Dut& dut) {
+  if (!dut.has(guard_time) || !dut.has(life_time_factor)) return;
+  configure_guarding(dut);
+  if (!answers(dut).empty()) dut.note_remote_frame_answered();
+}
 
 SeenFrame ask(Dut& dut, const Tpdo& tpdo) {
   const Dut::Mark since = dut.mark();
@@ -21,6 +29,7 @@ SeenFrame ask(Dut& dut, const Tpdo& tpdo) {
     dut.note_remote_frame_answered();
     return all.front();
   }
+  note_node_guarding(dut);
   dut.fail(tpdo.name() + " after a remote frame", fmt::format("no frame within {} ms", to_send.count() / 1000));
 }
 
