@@ -18,7 +18,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 #              Add sources and libraries that the header needs to the target NAME, with target_sources and
 #              target_link_libraries.
 # NODE_ID      node-ID of the device; default: that of the dictionary or of its DCF, else 5.
-# LEVEL        read, communication or all (default: a simulated device cannot cause damage).
+# LEVEL        read, communication, all (default: a simulated device cannot cause damage) or hostile.
 # DEVIATIONS   a file that declares which cases deviate, and why.
 # ARGUMENTS    further arguments of `edsc conform`, such as --junit, --only or --options.
 #
@@ -99,7 +99,7 @@ int main(int argc, char** argv) { return canopen::simulate_device<@parts@>(argc,
     set(arg_LEVEL all)
   endif()
   set(arguments --level ${arg_LEVEL})
-  if(arg_LEVEL STREQUAL all)
+  if(arg_LEVEL MATCHES "^(all|hostile)$")
     list(APPEND arguments --store --application --outputs)
   endif()
   if(arg_DEVIATIONS)

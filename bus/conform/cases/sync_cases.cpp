@@ -234,11 +234,11 @@ void expect_fixed(Dut& dut, std::uint16_t index, std::uint32_t active_bits) {
                  fmt::format("another CAN-ID to {} while its service is active", label(index, 0)));
 }
 
-/// While the device consumes or produces TIME. A device that supports only one of them is tested with it.
+/// While the device consumes and produces TIME. The application starts the producer.
 void time_cob_id_fixed(Dut& dut) {
-  constexpr std::uint32_t consumes = 0x8000'0000;
+  constexpr std::uint32_t consumes_and_produces = 0xC000'0000;
   dut.need(time_cob_id);
-  expect_fixed(dut, time_cob_id, consumes);
+  expect_fixed(dut, time_cob_id, consumes_and_produces);
 }
 
 /// While the device produces SYNC, here without a period.
@@ -274,7 +274,7 @@ constexpr CaseRow sync_rows[] = {
      Permission::store, stored_values, Condition::none, "8.2"},
     {"6.101", "1012h holds the default COB-ID of TIME", "CiA 301, 7.5.2.15", Level::communication, Permission::none,
      default_time_cob_id},
-    {"6.102", "The CAN-ID of TIME does not change while the device consumes TIME", "CiA 301, 7.5.2.15",
+    {"6.102", "The CAN-ID of TIME does not change while the device consumes and produces TIME", "CiA 301, 7.5.2.15",
      Level::communication, Permission::none, time_cob_id_fixed},
     {"6.103", "The CAN-ID of SYNC does not change while the device produces SYNC", "CiA 301, 7.5.2.5",
      Level::communication, Permission::none, sync_cob_id_fixed},
