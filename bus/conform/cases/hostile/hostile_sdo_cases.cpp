@@ -186,7 +186,8 @@ void broken_block_uploads(Dut& dut) {
   });
 }
 
-/// During the segments of a block download only an abort ends the transfer: the others wait for the timeout.
+/// During the segments of a block download only an abort ends the transfer. The sequence numbers do not begin with 1,
+/// so that the device waits for the segments before.
 void broken_block_downloads(Dut& dut) {
   need_no_other_node(dut);
   const std::uint16_t index = need_writable_time(dut);
@@ -195,10 +196,10 @@ void broken_block_downloads(Dut& dut) {
     for (unsigned frames = 1; frames <= 4; ++frames) {
       const auto answer = dut.exchange(sdo_frame(initiate, index, 0, 2));
       if (answer && (*answer)[0] == sdo::abort_command) return;  // no block transfer
-      SdoFrame segment = sdo_frame(static_cast<std::uint8_t>(frames == 4 ? 0x82 : 0x01));
+      SdoFrame segment = sdo_frame(static_cast<std::uint8_t>(frames == 4 ? 0x82 : 0x02));
       segment[1] = 0x39;
       if (frames >= 2) dut.request(segment);
-      if (frames == 3) dut.request(sdo_frame(0x05));  // a sequence number that does not follow
+      if (frames == 3) dut.request(sdo_frame(0x05));
       dut.pass_time(milliseconds{20});
       dut.end_transfer(index, 0);
       expect_answer_to_next(dut, Ending::abort, fmt::format("after a block download of {} requests", frames));

@@ -15,6 +15,13 @@ constexpr Duration a_while = milliseconds{100};
 
 Dut::Match is_response(const Dut& dut) { return Dut::with_id(canopen::default_sdo(dut.node()).response.can_id()); }
 
+/// Sends an abort, also without a transfer.
+void send_abort(Dut& dut, std::uint16_t index, std::uint8_t sub_index) {
+  const auto code = static_cast<std::uint32_t>(canopen::AbortCode::general);
+  dut.send(canopen::default_sdo(dut.node()).request.can_id(), sdo_frame(sdo::abort_command, index, sub_index, code));
+  dut.pass_time(milliseconds{5});
+}
+
 /// Fails if the server sends anything within a while.
 void expect_no_answer(Dut& dut, const std::string& to) {
   const std::vector<SeenFrame> seen = dut.collect(is_response(dut), a_while);
@@ -44,20 +51,20 @@ void expect_unchanged(Dut& dut, const TestedTime& time, const std::string& when)
 
 /// A first segment, or the end of a block, without a transfer. The next request is served.
 void without_transfer(Dut& dut, std::uint8_t command, const char* what) {
-  dut.end_transfer();
+  send_abort(dut, 0, 0);
   dut.expect_abort(dut.exchange(sdo_frame(command)), abort_rule::command, std::string{what} + " without a transfer");
   expect_served(dut);
 }
 
 /// An abort of the client ends the transfer and is not answered.
 void abort_of_client(Dut& dut) {
-  dut.end_transfer();
+  send_abort(dut, device_type, 0);
   expect_no_answer(dut, "an abort without a transfer");
   expect_served(dut);
   const LiveEntry entry = need_long_entry(dut);
   (void)initiate_upload(dut, entry.index, entry.sub_index);
   const Dut::Mark since = dut.mark();
-  dut.end_transfer(entry.index, entry.sub_index);
+  send_abort(dut, entry.index, entry.sub_index);
   dut.pass_time(a_while);
   const auto seen = dut.received_since(since, is_response(dut));
   if (!seen.empty()) dut.fail("no answer to an abort of the client", hex_bytes(seen.front().frame.data));
