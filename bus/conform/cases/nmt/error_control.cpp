@@ -31,7 +31,12 @@ std::vector<SeenFrame> answers(Dut& dut) {
 }
 
 std::uint8_t guard(Dut& dut) {
-  const std::vector<SeenFrame> seen = answers(dut);
+  const Dut::Mark since = dut.mark();
+  std::vector<SeenFrame> seen = answers(dut);
+  if (seen.empty() && dut.wait_for(dut.error_control(), to_answer_guarding_late, since)) {
+    dut.pass_time(to_answer_guarding);
+    seen = dut.received_since(since, dut.error_control());
+  }
   dut.expect(seen.size() == 1, "one answer to a remote frame of node guarding",
              seen.empty() ? "none" : std::to_string(seen.size()));
   dut.note_remote_frame_answered();

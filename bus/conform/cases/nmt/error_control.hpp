@@ -15,8 +15,10 @@ using canopen::NmtState;
 
 inline constexpr std::uint8_t toggle_bit = 0x80;
 
-/// The time that a device may need to answer a guarding request.
+/// The time within which a device usually answers a guarding request, and the time that the test waits for a late
+/// answer: CiA 301 has no maximum.
 inline constexpr Duration to_answer_guarding = milliseconds{50};
+inline constexpr Duration to_answer_guarding_late = milliseconds{500};
 
 /// Not applicable if the EDS does not have node guarding. Disables heartbeat, which excludes guarding.
 void need_guarding(Dut& dut);
