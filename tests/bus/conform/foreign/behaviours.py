@@ -67,7 +67,7 @@ BEHAVIOURS = (
     Behaviour("good-11", "no fault", only=("11.*",)),
     # What CiA 301 and CiA 305 allow, and properties of the bus and of the computer.
     Behaviour("ends-at-reset", "its program ends at a reset", (Switches(ends_at_reset=True),), only=("5.*", "7.*", "8.*"),
-              ended=NO_LONGER.format("5.4"), named=("no longer responds",)),
+              ended=NO_LONGER.format(r"(3\.104|5\.4)")),
     Behaviour("starts-by-itself", "it is Operational after its boot-up message", (Switches(starts_by_itself=True),),
               only=("3.*", "5.*", "8.*", "9.*", "10.*"), named=("Operational after its boot-up message",)),
     Behaviour("sends-at-start", "entering Operational is an event of its TPDO", (Switches(sends_at_start=True),),
@@ -113,8 +113,7 @@ BEHAVIOURS = (
     Behaviour("emcy-inhibit", "1015h has no effect", (Switches(no_emcy_inhibit=True),), only=("5.*",), failed=EMCY_INHIBIT),
     # The same in the slave of slave.js, which has fewer services.
     Behaviour("good", "no fault", program=NODE_JS),
-    Behaviour("ends-at-reset", "its program ends at a reset", program=NODE_JS, ended=NO_LONGER.format(r"9\.1"),
-              named=("no longer responds",)),
+    Behaviour("ends-at-reset", "its program ends at a reset", program=NODE_JS, ended=NO_LONGER.format(r"9\.1")),
     Behaviour("starts-by-itself", "it is Operational after its boot-up message", program=NODE_JS, only=("9.*", "10.*"),
               named=("Operational after its boot-up message",)),
     Behaviour("late", "it responds after 700 ms", program=NODE_JS, timeout_ms=500, ended=LATE_RESPONSE),
