@@ -69,7 +69,7 @@ BEHAVIOURS = (
     Behaviour("ends-at-reset", "its program ends at a reset", (Switches(ends_at_reset=True),), only=("5.*", "7.*", "8.*"),
               ended=NO_LONGER.format(r"(3\.104|5\.4)")),
     Behaviour("starts-by-itself", "it is Operational after its boot-up message", (Switches(starts_by_itself=True),),
-              only=("3.*", "5.*", "8.*", "9.*", "10.*"), named=("Operational after its boot-up message",)),
+              only=("3.*", "9.*", "10.*"), named=("Operational after its boot-up message",)),
     Behaviour("sends-at-start", "entering Operational is an event of its TPDO", (Switches(sends_at_start=True),),
               only=OPERATIONAL_CASES),
     Behaviour("loses-node-id", "without a node-ID it takes one only after power-on", (Switches(loses_node_id=True),),
