@@ -28,6 +28,7 @@ class Behaviour:
     what: str
     devices: tuple[Switches, ...] = (GOOD,)
     only: tuple[str, ...] = ()
+    level: str = "all"
     program: str = PYTHON
     bridge: bool = False                    # edsc and the slave are on two buses, whose bridge drops remote frames
     timeout_ms: int = 2000                  # of edsc, for SDO; on a busy computer a slave may need more than 500
@@ -65,6 +66,7 @@ BEHAVIOURS = (
     Behaviour("good-7", "no fault", only=("7.*",)),
     Behaviour("good-9", "no fault", only=("9.*", "10.*")),
     Behaviour("good-11", "no fault", only=("11.*",)),
+    Behaviour("good-12", "no fault", only=("12.*",), level="hostile"),
     # What CiA 301 and CiA 305 allow, and properties of the bus and of the computer.
     Behaviour("ends-at-reset", "its program ends at a reset", (Switches(ends_at_reset=True),), only=("5.*", "7.*", "8.*"),
               ended=NO_LONGER.format(r"(3\.104|5\.4)")),
@@ -77,7 +79,8 @@ BEHAVIOURS = (
     Behaviour("error-set", "1001h is 01h, and it does not stay in Operational", (Switches(error_set=True),),
               only=OPERATIONAL_CASES, named=("not operational after the NMT command; 1001h:00 is 01h",),
               also=("1001h:00 is 01h", "the bus may not carry remote frames", "is not in the state operational",
-                    "is not processed in Operational", "sent no EMCY", "sent 0 EMCYs")),
+                    "is not processed in Operational", "sent no EMCY", "sent 0 EMCYs",
+                    "do not cause two EMCYs")),
     Behaviour("no-remote-frames", "a bridge drops remote frames", only=REMOTE_FRAME_CASES, bridge=True,
               named=("the bus may not carry remote frames",)),
     Behaviour("late", "it responds after 700 ms", (Switches(answer_delay=0.7),), timeout_ms=500, ended=LATE_RESPONSE),
@@ -112,7 +115,7 @@ BEHAVIOURS = (
               failed=EMCY_REGISTER),
     Behaviour("emcy-inhibit", "1015h has no effect", (Switches(no_emcy_inhibit=True),), only=("5.*",), failed=EMCY_INHIBIT),
     # The same in the slave of slave.js, which has fewer services.
-    Behaviour("good", "no fault", program=NODE_JS),
+    Behaviour("good", "no fault", program=NODE_JS, level="hostile"),
     Behaviour("ends-at-reset", "its program ends at a reset", program=NODE_JS, ended=NO_LONGER.format(r"9\.1")),
     Behaviour("starts-by-itself", "it is Operational after its boot-up message", program=NODE_JS, only=("9.*", "10.*"),
               named=("Operational after its boot-up message",)),

@@ -103,6 +103,8 @@ class Device:
 
     def receive(self, frame: Frame, now: float) -> None:
         self.now = now
+        if frame.extended:
+            return
         if self.ended and self.switches.joins_at_reset and frame.can_id == 0 and frame.data[0] in (RESET_NODE, RESET_COMMUNICATION):
             self.ended = False
             self.reset(RESET_NODE)
@@ -197,7 +199,7 @@ class Device:
         self.restore(command, node_id)
         self.stop_services()
         self.tpdo, self.rpdo = Tpdo(self.dictionary), Rpdo(self.dictionary)
-        self.sdo = SdoServer(self.read, self.write, blocks=not self.switches.no_blocks)
+        self.sdo = SdoServer(self.read, self.write, self.dictionary.check_writable, blocks=not self.switches.no_blocks)
         if command == RESET_NODE:
             self.history: list[int] = []
         self.send(0x700 + node_id, bytes([INITIALISATION]))

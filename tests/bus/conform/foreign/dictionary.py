@@ -59,11 +59,16 @@ class Dictionary:
             raise Abort(WRITE_ONLY)
         return self.values[key]
 
-    def check_write(self, key: Key, data: bytes) -> None:
-        """Raises Abort for access, length and limits."""
+    def check_writable(self, key: Key) -> Entry:
+        """Raises Abort if the entry does not exist or is read-only."""
         entry = self.find(key)
         if not entry.writable:
             raise Abort(READ_ONLY)
+        return entry
+
+    def check_write(self, key: Key, data: bytes) -> None:
+        """Raises Abort for access, length and limits."""
+        entry = self.check_writable(key)
         if entry.size is None:
             return
         if len(data) != entry.size:

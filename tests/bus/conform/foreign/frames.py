@@ -7,12 +7,15 @@ import select
 import socket
 from typing import NamedTuple
 
+EXTENDED_DIGITS = 8  # of a CAN-ID with 29 bits
+
 
 class Frame(NamedTuple):
     can_id: int
     data: bytes = b""
     remote: bool = False
     size: int = 0  # of a remote frame
+    extended: bool = False  # a CAN-ID of 29 bits
 
 
 class Bus:
@@ -38,15 +41,19 @@ class Bus:
         frames = []
         for element in elements:
             words = element.decode().strip(" <").split()
-            if words and words[0] == "frame":
-                frames.append(Frame(int(words[1], 16), bytes.fromhex("".join(words[3:]))))
-            elif words and words[0] == "rtr":
-                frames.append(Frame(int(words[1], 16), remote=True, size=int(words[3], 16)))
+            if not words or words[0] not in ("frame", "rtr"):
+                continue
+            can_id, extended = int(words[1], 16), len(words[1]) == EXTENDED_DIGITS
+            if words[0] == "frame":
+                frames.append(Frame(can_id, bytes.fromhex("".join(words[3:])), extended=extended))
+            else:
+                frames.append(Frame(can_id, remote=True, size=int(words[3], 16), extended=extended))
         return frames
 
     def send(self, frame: Frame) -> None:
+        can_id = f"{frame.can_id:0{EXTENDED_DIGITS if frame.extended else 3}X}"
         if frame.remote:
-            self.socket.sendall(f"< sendrtr {frame.can_id:X} {frame.size} >".encode())
+            self.socket.sendall(f"< sendrtr {can_id} {frame.size} >".encode())
         else:
             text = "".join(f" {byte:X}" for byte in frame.data)
-            self.socket.sendall(f"< send {frame.can_id:X} {len(frame.data)}{text} >".encode())
+            self.socket.sendall(f"< send {can_id} {len(frame.data)}{text} >".encode())

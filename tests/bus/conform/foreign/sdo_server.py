@@ -1,5 +1,5 @@
-"""An SDO server: expedited, segmented and block transfer (CiA 301, 7.2.4.3). `read` and `write` access the dictionary, and raise
-Abort."""
+"""An SDO server: expedited, segmented and block transfer (CiA 301, 7.2.4.3). `read`, `write` and `check_writable`, which is called
+when a download begins, access the dictionary and raise Abort."""
 
 from __future__ import annotations
 
@@ -29,8 +29,9 @@ class Transfer:
 
 
 class SdoServer:
-    def __init__(self, read: Callable[[Key], bytes], write: Callable[[Key, bytes], None], blocks: bool = True) -> None:
-        self.read, self.write, self.blocks = read, write, blocks
+    def __init__(self, read: Callable[[Key], bytes], write: Callable[[Key, bytes], None],
+                 check_writable: Callable[[Key], object], blocks: bool = True) -> None:
+        self.read, self.write, self.check_writable, self.blocks = read, write, check_writable, blocks
         self.transfer: Transfer | None = None
 
     def request(self, data: bytes) -> list[bytes]:
@@ -92,6 +93,7 @@ class SdoServer:
         if expedited:
             self.write(key, data[4:8 - (data[0] >> 2 & 3)] if with_size else data[4:])
         else:
+            self.check_writable(key)
             self.transfer = Transfer("download_segment", key, size=int.from_bytes(data[4:], "little") if with_size else None)
         return [bytes([0x60]) + mux(key) + bytes(4)]
 
@@ -162,6 +164,8 @@ class SdoServer:
     # ---- block download ----
 
     def download_block(self, key: Key, data: bytes) -> list[bytes]:
+        self.transfer = None
+        self.check_writable(key)
         size = int.from_bytes(data[4:], "little") if data[0] & WITH_SIZE else None
         self.transfer = Transfer("block_segment", key, size=size, crc=bool(data[0] & WITH_CRC), segments=MOST_SEGMENTS)
         return [bytes([0xA0 | WITH_CRC]) + mux(key) + bytes([MOST_SEGMENTS, 0, 0, 0])]

@@ -21,6 +21,7 @@ const OPERATIONAL = 5, PRE_OPERATIONAL = 127, STOPPED = 4;
 const STATES = { 1: OPERATIONAL, 2: STOPPED, 128: PRE_OPERATIONAL };
 const RESETS = [129, 130];
 const HEARTBEAT = '1017.0', STRING = 9;
+const EXTENDED_DIGITS = 8;  // of a CAN-ID with 29 bits
 const SIZES = { 1: 1, 2: 1, 3: 2, 4: 4, 5: 1, 6: 2, 7: 4 };  // bytes by data type
 const TOGGLE_BIT = 0x05030000, COMMAND = 0x05040001, READ_ONLY = 0x06010002, NO_OBJECT = 0x06020000, LENGTH = 0x06070010,
   NO_SUB_INDEX = 0x06090011;
@@ -45,7 +46,9 @@ class Bus {
     this.text = elements.pop();
     for (const element of elements) {
       const [word, id, , ...data] = element.replace('<', '').trim().split(/ +/);
-      if (word === 'frame') this.received(parseInt(id, 16), Buffer.from(data.join(''), 'hex'));
+      const isExtended = id && id.length === EXTENDED_DIGITS;
+      if (word === 'frame' && !isExtended) this.received(parseInt(id, 16), Buffer.from(data.join(''), 'hex'));
+      else if (word === 'frame' || word === 'rtr') continue;
       else if (this.steps.length > 0) this.socket.write(this.steps.shift());
       else if (word === 'ok') this.opened();
     }
