@@ -121,7 +121,9 @@ class Pass {
     difference.sub_index = reading.entry.sub_index;
     difference.kind = kind;
     difference.name = reading.entry.name;
-    if (kind == Kind::object_missing) difference.name = object_of(reading)->name;
+    const Object* const object = object_of(reading);
+    const bool of_object = kind == Kind::object_missing || kind == Kind::not_in_eds;
+    if (of_object && object != nullptr) difference.name = object->name;
     difference.in_eds = std::move(in_eds);
     difference.in_device = std::move(in_device);
     difference.frames = reading.frames;

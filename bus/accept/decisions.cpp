@@ -432,6 +432,10 @@ Corrections add_element(const Facts& facts) {
           {section, "AccessType", std::nullopt, std::string{canopen::row_of(first->access).name}}};
 }
 
+Corrections add_entry(const Facts& facts) {
+  return standard_entry(facts) != nullptr ? add_standard_entry(facts) : add_element(facts);
+}
+
 // ---- the table ----
 
 constexpr auto eds_wrong = Mark::eds_wrong;
@@ -467,7 +471,7 @@ constexpr Decision decision_rows[] = {
     {Kind::not_in_eds, "eds-counts-more", "sub-index 0 of the EDS counts the sub-index", eds_wrong, is_counted_by_eds,
      "the EDS contradicts itself: its own sub-index 0 is {other}, but it does not describe {entry}, which the device has", add_element},
     {Kind::not_in_eds, "additional-entry", "none: the frames do not show why", undecided, always,
-     "the frames do not show whether the EDS lacks {entry} or the device has it by mistake", add_element},
+     "the frames do not show whether the EDS lacks {entry} or the device has it by mistake", add_entry},
 
     {Kind::length, "standard-type", "CiA 301 or the profile requires the data type of the EDS", device_wrong, eds_has_required_size,
      "{clause} requires {standard}, as the EDS says"},

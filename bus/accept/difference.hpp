@@ -73,7 +73,7 @@ struct Correction {
 struct Difference {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
-  std::string name;  ///< as in the EDS; empty if the EDS does not have the entry
+  std::string name;  ///< as in the EDS; of an entry that it does not have that of the object, or empty
   Kind kind = Kind::value;
   std::string in_eds;     ///< `UNSIGNED16, 2 bytes`
   std::string in_device;  ///< `1 byte: 05`

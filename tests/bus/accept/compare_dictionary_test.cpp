@@ -260,6 +260,18 @@ TEST(CompareDictionary, TheEdsLacksAMandatoryObject) {
           "[1001] DataType= => 0x0005 [1001] AccessType= => ro"});
 }
 
+/// CiA 301, 7.5.2.21: sub-index 4, the serial number, is optional.
+TEST(CompareDictionary, AnAdditionalSubIndexOfTheStandardIsUndecided) {
+  expect(base_eds(),
+         [](DictionaryPort& device) {
+           device.values[{0x1018, 0}] = {4};
+           device.values[{0x1018, 4}] = {0, 0, 0, 0};
+         },
+         {"1018h:00 value undecided constant [1018sub0] DefaultValue=3 => 4",
+          "1018h:04 not_in_eds undecided additional-entry [1018sub4] ParameterName= => identity object "
+          "[1018sub4] DataType= => 0x0007 [1018sub4] AccessType= => ro"});
+}
+
 /// CiA 301, 7.5.2.21: the identity object has sub-indices 0 to 4.
 TEST(CompareDictionary, TheDeviceHasASubIndexThatTheStandardDoesNotDefine) {
   expect(base_eds(),
