@@ -53,12 +53,8 @@ void count_messages(Dut& dut) {
   dut.expect(seen.size() >= 2, "SYNCs every 20 ms", fmt::format("{} in a second", seen.size()));
   dut.expect_time(seen.front().at - began, 0, written - began + period.count(),
                   "the first SYNC after 1006h:00 is written");
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    dut.expect_equal(seen[i].frame.size, 0, "bytes of a SYNC without counter");
-    if (i == 0) continue;
-    dut.expect_time(seen[i].at - seen[i - 1].at, period.count() * 9 / 10, period.count() * 11 / 10,
-                    "the time between two SYNCs");
-  }
+  for (const SeenFrame& sync : seen) dut.expect_equal(sync.frame.size, 0, "bytes of a SYNC without counter");
+  dut.expect_times(intervals_of(seen), period.count() * 9 / 10, period.count() * 11 / 10, "the time between two SYNCs");
   const std::uint64_t mean = (seen.back().at - seen.front().at) / (seen.size() - 1);
   dut.expect_time(mean, period.count() * 49 / 50, period.count() * 51 / 50, "the mean time between SYNCs");
   dut.write(sync_period, 0, 0);

@@ -23,6 +23,7 @@ CaseFrames::~CaseFrames() {
 void CaseFrames::clear_frames() {
   frames_.clear();
   lag_ = 0;
+  slowest_of_case_ = 0;
 }
 
 void CaseFrames::send(const Frame& frame) { bus_.send_all(frame); }
@@ -113,8 +114,15 @@ void CaseFrames::measure_response(const Frame& frame, bool sent) {
     const bool is_first = slowest_response_ == 0;
     fastest_response_ = is_first ? took : std::min(fastest_response_, took);
     slowest_response_ = std::max(slowest_response_, took);
+    slowest_of_case_ = std::max(slowest_of_case_, took);
     requested_at_.reset();
   }
+}
+
+std::vector<std::uint64_t> intervals_of(const std::vector<SeenFrame>& frames) {
+  std::vector<std::uint64_t> intervals;
+  for (std::size_t i = 1; i < frames.size(); ++i) intervals.push_back(frames[i].at - frames[i - 1].at);
+  return intervals;
 }
 
 CaseFrames::Match CaseFrames::with_id(std::uint32_t can_id) {

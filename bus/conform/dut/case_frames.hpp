@@ -59,6 +59,7 @@ class CaseFrames {
   /// may be that of the test, was late by that much.
   [[nodiscard]] std::uint64_t device_lag() const { return slowest_response_ - fastest_response_; }
   [[nodiscard]] std::uint64_t slowest_response() const { return slowest_response_; }
+  [[nodiscard]] std::uint64_t slowest_response_of_case() const { return slowest_of_case_; }
 
  protected:
   /// Frames with these CAN-IDs are requests, each with one response.
@@ -82,7 +83,10 @@ class CaseFrames {
   Mark last_match_ = 0;
   std::uint32_t request_id_ = 0, response_id_ = 0;
   std::optional<std::uint64_t> requested_at_;
-  std::uint64_t fastest_response_ = 0, slowest_response_ = 0;  ///< microseconds
+  std::uint64_t fastest_response_ = 0, slowest_response_ = 0, slowest_of_case_ = 0;  ///< microseconds
 };
+
+/// The times from each frame to the next one, in microseconds.
+[[nodiscard]] std::vector<std::uint64_t> intervals_of(const std::vector<SeenFrame>& frames);
 
 }  // namespace edsc::conform

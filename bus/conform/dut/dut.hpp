@@ -184,6 +184,10 @@ class Dut : public CaseFrames {
   /// Expects a measured time, in microseconds, within limits widened by the tolerance. Inconclusive if it misses the
   /// limits by no more than the tolerance, the lag of the test and the lag of the device together.
   void expect_time(std::uint64_t measured, std::uint64_t low, std::uint64_t high, const std::string& what);
+  /// The same of the times between frames that are sent periodically. On a bus, less than half of them outside the
+  /// limits are no proof: the computer of the device may have been busy at these times.
+  void expect_times(std::span<const std::uint64_t> measured, std::uint64_t low, std::uint64_t high,
+                    const std::string& what);
   void warn(std::string text) { warnings_.push_back(std::move(text)); }
   [[noreturn]] void not_applicable(std::string reason);
   /// Ends the case as not applicable if the program of the device omits this part.
@@ -237,7 +241,9 @@ class Dut : public CaseFrames {
   [[nodiscard]] LiveEntry live(std::uint16_t index, std::uint8_t sub_index) const;
   [[nodiscard]] std::optional<std::string> unmet_state();
   [[nodiscard]] std::optional<std::string> unmet_error_free();
+  [[nodiscard]] std::optional<std::string> too_late_for_sdo() const;
   [[nodiscard]] std::optional<std::string> late() const;
+  [[nodiscard]] bool is_within(std::uint64_t measured, std::uint64_t low, std::uint64_t high) const;
   void measure_device_lag();
   [[nodiscard]] bool answers_guarding();
   void probe_remote_frames();
