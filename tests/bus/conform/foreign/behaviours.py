@@ -115,7 +115,8 @@ BEHAVIOURS = (
               failed=EMCY_REGISTER),
     Behaviour("emcy-inhibit", "1015h has no effect", (Switches(no_emcy_inhibit=True),), only=("5.*",), failed=EMCY_INHIBIT),
     # The same in the slave of slave.js, which has fewer services.
-    Behaviour("good", "no fault", program=NODE_JS, level="hostile"),
+    Behaviour("good", "no fault", program=NODE_JS),
+    Behaviour("good-12", "no fault", program=NODE_JS, only=("12.*",), level="hostile"),
     Behaviour("ends-at-reset", "its program ends at a reset", program=NODE_JS, ended=NO_LONGER.format(r"9\.1")),
     Behaviour("starts-by-itself", "it is Operational after its boot-up message", program=NODE_JS, only=("9.*", "10.*"),
               named=("Operational after its boot-up message",)),

@@ -9,6 +9,7 @@ const net = require('net');
 
 const BEHAVIOURS = {
   good: {},
+  'good-12': {},
   'ends-at-reset': { endsAtReset: true },
   'starts-by-itself': { startsByItself: true },
   late: { answerDelay: 700 },           // ms
