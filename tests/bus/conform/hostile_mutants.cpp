@@ -118,7 +118,7 @@ std::vector<Mutant> hostile_mutants() {
       {"blocked-by-open-upload", {}, blocked_by([](const Frame& f) { return f.data[0] == 0x70; }, begins_with(0x40))},
       {"download-written-at-initiate", {}, writes_at_initiate()},
       {"blocked-by-open-block-upload", {}, blocked_by(begins_with(0xA3), begins_with(0x40))},
-      {"blocked-by-open-block-download", {}, blocked_by(begins_with(0x01), begins_with(0x80))},
+      {"blocked-by-open-block-download", {}, blocked_by(begins_with(0x02), begins_with(0x80))},
       {"blocked-by-order",
        {},
        blocked_by(begins_with(0xE0), [](const Frame& f) { return f.data[0] != 0x40 && f.data[0] != 0x80; })},
