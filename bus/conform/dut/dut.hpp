@@ -185,7 +185,7 @@ class Dut : public CaseFrames {
   /// limits by no more than the tolerance, the lag of the test and the lag of the device together.
   void expect_time(std::uint64_t measured, std::uint64_t low, std::uint64_t high, const std::string& what);
   /// The same of the times between frames that are sent periodically. On a bus, less than half of them outside the
-  /// limits are no proof: the computer of the device may have been busy at these times.
+  /// limits prove nothing: the computer of the device may have been busy at these times.
   void expect_times(std::span<const std::uint64_t> measured, std::uint64_t low, std::uint64_t high,
                     const std::string& what);
   void warn(std::string text) { warnings_.push_back(std::move(text)); }

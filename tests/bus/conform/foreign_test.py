@@ -38,6 +38,7 @@ GAPS = {
     "4.3": ("writable", "each write of a read-only entry is refused", "1000h:00 Device type: written"),
     "4.5": ("abort-code", "each sub-index FFh", "1018h:FF Identity object: refused by the device: 0602 0000h"),
     "7.102": ("heartbeat", "20 heartbeats in 2000 ms", "1"),
+    "7.109": ("heartbeat", "more than 40 heartbeats in 42 periods", "2"),
     "9.1": ("boot-up", "a boot-up message", "none"),
     "10.1": ("boot-up", "a boot-up message", "none"),
 }
