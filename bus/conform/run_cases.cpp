@@ -201,6 +201,8 @@ void run_cases(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const RunSet
     try {
       report.not_put_back = dut.find_state();
       run_selected(rows, dut, settings, report);
+      const std::vector<std::string> left = dut.put_back();
+      report.not_put_back.insert(report.not_put_back.end(), left.begin(), left.end());
     } catch (const Interrupted&) {
       report.interrupted = true;
       const std::vector<std::string> left = dut.put_back();

@@ -25,7 +25,7 @@ constexpr const char* examples = R"(Examples:
   edsc audit can0.log --node axis1.dcf --cycles                   also cycle times and jitter
   edsc audit capture.pcapng --node axis1.dcf --format html -o audit.html
   candump -L can0 | edsc audit --node axis1.dcf --silence can-id-unknown
-  edsc audit frames.log --node 5=drive.eds --conform report.json  a log and a report of edsc conform
+  edsc audit frames.log --node 5=drive.eds --conform report.json  a log and a report of one conformance test
   edsc audit --list-rules                                         every rule with its meaning)";
 
 struct Settings : LogSettings {
@@ -150,9 +150,8 @@ void add_audit_options(Command command, int& exit_code) {
       .one_value_each()
       .check(check_audit_rule);
   command
-      .add_option(
-          "--conform", settings.conform,
-          "report of the run of edsc conform --json whose --log this is: what its cases provoke is listed apart")
+      .add_option("--conform", settings.conform,
+                  "JSON report of the conformance test that wrote the log: what its cases provoke is listed apart")
       .type_name("FILE");
   add_choice(command, "--format", settings.format, {"text", "json", "html"}, "text, json or html");
   command.add_option("-o,--output", settings.output, "file to write (default: standard output)").type_name("FILE");
