@@ -22,22 +22,22 @@ using json = JsonFile::Json;
 
 constexpr std::array<std::string_view, 2> file_members = {"$schema", "deviations"};
 
-std::string set_case(Deviation& deviation, std::string text) {
+std::string set_case(Deviation& deviation, const std::string& text) {
   if (std::ranges::none_of(all_cases(), [&](const CaseRow* row) { return row->id == text; })) {
     return fmt::format("unknown case {}; edsc conform --list prints the cases", text);
   }
-  deviation.id = std::move(text);
+  deviation.id = text;
   return {};
 }
 
-std::string set_object(Deviation& deviation, std::string text) {
+std::string set_object(Deviation& deviation, const std::string& text) {
   deviation.object = parse_entry_address(text);
   return deviation.object ? "" : "expected an object or entry such as \"1800h\" or \"1800h:02\"";
 }
 
 template <std::string Deviation::*member>
-std::string set_text(Deviation& deviation, std::string text) {
-  deviation.*member = std::move(text);
+std::string set_text(Deviation& deviation, const std::string& text) {
+  deviation.*member = text;
   return {};
 }
 

@@ -29,7 +29,7 @@ struct DeviationMember {
   std::string_view pattern;  ///< of the text, in docs/schema/deviations.schema.json
   std::string_view meaning;
   /// Sets the member of the declaration. Returns what is wrong with the text, or nothing.
-  std::string (*set)(Deviation& deviation, std::string text);
+  std::string (*set)(Deviation& deviation, const std::string& text);
 };
 
 [[nodiscard]] std::span<const DeviationMember> deviation_members();

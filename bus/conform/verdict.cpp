@@ -59,12 +59,12 @@ std::vector<Cause> RunReport::causes() const {
     const auto has_same_cause = [&](const CaseResult* other) {
       return other == &root || (!root.rule.text().empty() && other->rule.text() == root.rule.text());
     };
-    const auto place = std::ranges::find_if(roots, has_same_cause) - roots.begin();
-    if (static_cast<std::size_t>(place) == roots.size()) {
+    const auto number = static_cast<std::size_t>(std::ranges::find_if(roots, has_same_cause) - roots.begin());
+    if (number == roots.size()) {
       roots.push_back(&root);
       found.push_back({cause_text(root), {}});
     }
-    found[static_cast<std::size_t>(place)].cases.push_back(&result);
+    found[number].cases.push_back(&result);
   }
   return found;
 }
@@ -73,11 +73,11 @@ std::vector<MissingCondition> RunReport::missing_conditions() const {
   std::vector<MissingCondition> found;
   for (const CaseResult& result : cases) {
     if (result.verdict != Verdict::inconclusive || result.condition == Condition::none) continue;
-    auto place = std::ranges::find_if(found, [&](const MissingCondition& missing) {
+    auto same = std::ranges::find_if(found, [&](const MissingCondition& missing) {
       return missing.condition == result.condition && missing.reason == result.reason;
     });
-    if (place == found.end()) place = found.insert(place, {result.condition, result.reason, {}});
-    place->cases.push_back(&result);
+    if (same == found.end()) same = found.insert(same, {result.condition, result.reason, {}});
+    same->cases.push_back(&result);
   }
   return found;
 }

@@ -26,7 +26,7 @@ struct Range {
 /// A supported drive mode that is not the present one.
 std::optional<std::uint64_t> other_mode(const std::vector<ModeRange>& modes, std::uint64_t present) {
   for (const ModeRange& range : modes) {
-    for (int mode = range.low; mode <= range.high; ++mode) {
+    for (std::int64_t mode{range.low}; mode <= std::int64_t{range.high}; ++mode) {
       if (mode != static_cast<std::int64_t>(present)) return static_cast<std::uint8_t>(mode);
     }
   }
