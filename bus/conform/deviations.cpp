@@ -108,8 +108,8 @@ class DeviationsReader {
       for (const DeviationMember& one : members) names.push_back(one.name);
       return fmt::format("unknown member {}{}", name, did_you_mean(name, names));
     }
-    std::string text = value.is_string() ? value.get<std::string>() : std::string{};
-    std::string problem = trim(text).empty() ? "expected a non-empty string" : member->set(row, std::move(text));
+    const std::string text = value.is_string() ? value.get<std::string>() : std::string{};
+    std::string problem = trim(text).empty() ? "expected a non-empty string" : member->set(row, text);
     return problem.empty() ? problem : fmt::format("{}: {}", name, problem);
   }
 
