@@ -29,11 +29,11 @@ SOURCE_DIR = Path(sys.argv[1]).resolve()
 EDSC = Path(sys.argv[2]).resolve()
 RK5C = Path(sys.argv[3]).resolve()
 SLAVE = SOURCE_DIR / "tests/bus/accept/planted_slave.py"
-sys.path.insert(0, str(SLAVE.parent))
+sys.path[:0] = [str(SLAVE.parent), str(SOURCE_DIR / "tests/support")]
+from document_commands import run_document  # noqa: E402
 from planted_slave import GOOD, PLANTED, SILENT, eds_of  # noqa: E402
 
 ADDRESS = "socketcand:127.0.0.1:29536/vcan0"  # in the document
-BLOCK = re.compile(r"<!-- run by: tests/cli/live/accept_test.py -->\n```(\w*)\n(.*?)```", re.DOTALL)
 PATIENCE_MS = 60_000  # for an answer that must be received, even on a busy machine
 SILENCE_MS = 3_000  # where an answer is not received
 SCHEMAS = SOURCE_DIR / "docs/schema"
@@ -236,19 +236,7 @@ class Accept(unittest.TestCase):
 
     def test_the_document(self) -> None:
         self.start_rk5c()
-        blocks = BLOCK.findall((SOURCE_DIR / "docs/accept.md").read_text(encoding="utf-8"))
-        self.assertGreaterEqual(len(blocks), 4)
-        output = ""
-        for language, text in blocks:
-            if language == "sh":
-                output = ""
-                for line in text.splitlines():
-                    result = self.run_line(line)
-                    self.assertEqual(result.returncode, 0, f"{line}\n{result.stdout}{result.stderr}")
-                    output += result.stdout
-            else:
-                for line in text.splitlines():
-                    self.assertIn(line, output)
+        run_document(self, SOURCE_DIR / "docs/accept.md", "tests/cli/live/accept_test.py", self.run_line, 4)
         self.report()
         self.suites()
 

@@ -26,8 +26,10 @@ import jsonschema
 SOURCE_DIR = Path(sys.argv[1]).resolve()
 EDSC = Path(sys.argv[2]).resolve()
 RK5C = Path(sys.argv[3]).resolve()
+sys.path.insert(0, str(SOURCE_DIR / "tests/support"))
+from document_commands import run_document  # noqa: E402
+
 ADDRESS = "socketcand:127.0.0.1:29536/vcan0"  # in the document
-BLOCK = re.compile(r"<!-- run by: tests/cli/live/conform_test.py -->\n```(\w*)\n(.*?)```", re.DOTALL)
 PATIENCE = "--timeout 60000"  # for an answer that must be received, even on a busy machine
 
 
@@ -62,19 +64,7 @@ class Conform(unittest.TestCase):
         return subprocess.run(["bash", "-c", command], cwd=self.folder, env=environment, capture_output=True, text=True)
 
     def test_the_document(self) -> None:
-        blocks = BLOCK.findall((SOURCE_DIR / "docs/conform.md").read_text(encoding="utf-8"))
-        self.assertGreaterEqual(len(blocks), 6)
-        output = ""
-        for language, text in blocks:
-            if language == "sh":
-                output = ""
-                for line in text.splitlines():
-                    result = self.run_line(line)
-                    self.assertEqual(result.returncode, 0, f"{line}\n{result.stdout}{result.stderr}")
-                    output += result.stdout
-            else:
-                for line in text.splitlines():
-                    self.assertIn(line, output)
+        run_document(self, SOURCE_DIR / "docs/conform.md", "tests/cli/live/conform_test.py", self.run_line, 6)
         self.check_reports()
 
     def check_reports(self) -> None:
