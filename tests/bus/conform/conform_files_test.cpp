@@ -1,6 +1,7 @@
 /// Reports of a hand-made conformance run in files: JSON, JUnit, HTML, and a log; SHA-256.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <pugixml.hpp>
 #include <string>
@@ -150,6 +151,19 @@ TEST(ConformHtml, ShortensLongListsOfFrames) {
 }
 
 // ---- log ----
+
+TEST(ConformJson, HasTheNamesOfTheTablesInItsSchema) {
+  std::ifstream file{EDSC_SOURCE_DIR "/docs/schema/conform.schema.json"};
+  const auto definitions = nlohmann::json::parse(file)["$defs"];
+  const auto names_of = [](const auto& rows) {
+    std::vector<std::string> names;
+    for (const auto& row : rows) names.emplace_back(row.name);
+    return names;
+  };
+  EXPECT_EQ(definitions["condition"]["enum"], nlohmann::json(names_of(conditions)));
+  EXPECT_EQ(definitions["level"]["enum"], nlohmann::json(names_of(levels)));
+  EXPECT_EQ(definitions["case"]["properties"]["verdict"]["enum"], nlohmann::json(names_of(verdicts)));
+}
 
 TEST(ConformLog, IsReadByTheDecoder) {
   RunReport run = every_verdict();
