@@ -108,14 +108,14 @@ void CaseFrames::measure_responses(std::uint32_t request_id, std::uint32_t respo
 
 void CaseFrames::measure_response(const Frame& frame, bool sent) {
   if (sent && with_id(request_id_)(frame)) {
-    requested_at_ = elapsed_;
-  } else if (!sent && requested_at_ && with_id(response_id_)(frame)) {
-    const std::uint64_t took = elapsed_ - *requested_at_;
+    request_sent_at_ = elapsed_;
+  } else if (!sent && request_sent_at_ && with_id(response_id_)(frame)) {
+    const std::uint64_t took = elapsed_ - *request_sent_at_;
     const bool is_first = slowest_response_ == 0;
     fastest_response_ = is_first ? took : std::min(fastest_response_, took);
     slowest_response_ = std::max(slowest_response_, took);
     slowest_of_case_ = std::max(slowest_of_case_, took);
-    requested_at_.reset();
+    request_sent_at_.reset();
   }
 }
 

@@ -82,7 +82,7 @@ class CaseFrames {
   std::uint64_t lag_ = 0;
   Mark last_match_ = 0;
   std::uint32_t request_id_ = 0, response_id_ = 0;
-  std::optional<std::uint64_t> requested_at_;
+  std::optional<std::uint64_t> request_sent_at_;  ///< of the request whose response is awaited, microseconds
   std::uint64_t fastest_response_ = 0, slowest_response_ = 0, slowest_of_case_ = 0;  ///< microseconds
 };
 
