@@ -43,7 +43,7 @@ bool has_type_length(const LiveEntry& entry, const SdoOutcome& outcome) {
   return entry.type->bits == 0 || !outcome.size_told || outcome.bytes.size() == bytes_for(entry.type->bits);
 }
 
-/// The value, or why the device has not given one.
+/// The value that the device sent, or the reason why it sent none.
 std::string device_text(const Reading& reading) {
   const SdoOutcome& outcome = reading.outcome;
   if (!reading.was_read) return {};

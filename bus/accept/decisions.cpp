@@ -235,7 +235,7 @@ bool is_mandatory_entry(const Facts& facts) {
   return (is_mandatory(facts) && facts.sub_index() == 0) || is_required_sub_index(facts);
 }
 
-/// The EDS describes a sub-index above its own sub-index 0, which is that of the device.
+/// The EDS describes a sub-index above the value of its own sub-index 0, and the device has the same value.
 bool exceeds_own_count(const Facts& facts) {
   if (!states_highest_sub_index(*facts.object)) return false;
   const auto written = written_count(facts.data, *facts.object);
@@ -495,9 +495,9 @@ constexpr Decision decision_rows[] = {
 
     {Kind::value, "device-info", "[DeviceInfo] has the number of the device", eds_wrong, is_in_device_info,
      "the EDS contradicts itself: [DeviceInfo] has the number of the device, and {entry} another", set_value},
-    {Kind::value, "eds-cob-id", "the COB-ID of the device is that of the pre-defined connection set, and that of the EDS is not", eds_wrong, has_predefined_cob_id,
+    {Kind::value, "eds-cob-id", "the device has the COB-ID of the pre-defined connection set, the EDS has another one", eds_wrong, has_predefined_cob_id,
      "the device has the COB-ID of the pre-defined connection set ({clause}) for its node-ID, and the EDS has another", set_predefined_cob_id},
-    {Kind::value, "predefined-cob-id", "the read-only COB-ID of the EDS is that of the pre-defined connection set, and that of the device is not", device_wrong, lacks_predefined_cob_id,
+    {Kind::value, "predefined-cob-id", "the EDS has the COB-ID of the pre-defined connection set as read-only, the device has another one", device_wrong, lacks_predefined_cob_id,
      "the EDS has the COB-ID of the pre-defined connection set ({clause}), and the device has another that cannot be written"},
     {Kind::value, "eds-sub-index-0", "sub-index 0 of the EDS is not the highest sub-index described, and that of the device is", eds_wrong, contradicts_own_sub_indices,
      "the EDS contradicts itself: sub-index 0 is not the highest sub-index that it describes, and that of the device is", set_value},
@@ -520,7 +520,7 @@ constexpr Decision decision_rows[] = {
     {Kind::unreadable, "abort-without-cause", "none: the abort code does not give the cause", undecided, always,
      "the device has {entry}, but does not give its value; the abort code does not show why"},
 
-    {Kind::no_response, "no-response", "none: there is no response", undecided, always,
+    {Kind::no_response, "no-response", "no response was received", undecided, always,
      "without a response the frames show nothing about {entry}"},
 };
 // clang-format on

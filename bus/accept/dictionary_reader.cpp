@@ -14,7 +14,7 @@ namespace {
 
 using canopen::AbortCode;
 
-/// More frames of one transfer are left out: the first ones have the size or the abort.
+/// The maximum number of frames of one transfer. The size and the abort are in the first frames.
 constexpr std::size_t max_frames = 40;
 /// Enough to show that an entry exists.
 constexpr std::size_t first_bytes = 8;

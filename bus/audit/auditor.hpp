@@ -44,7 +44,7 @@ class Auditor {
   /// The node-ID of the NMT master, if it is a node, too.
   void set_nmt_master(std::uint8_t node_id) { audit_.nmt_master = node_id; }
   void silence(RuleId rule) { audit_.findings.silence(rule); }
-  /// The log is that of this run of `edsc conform`.
+  /// The run of `edsc conform` that wrote the log.
   void expect(Provocations provocations) { audit_.findings.expect(std::move(provocations)); }
 
   /// Judges a frame whose message the decoder has just returned.

@@ -28,7 +28,7 @@ constexpr std::uint8_t verified[] = {1, 2};
 
 constexpr std::uint64_t watched_heartbeat_ms = 100;
 
-/// The SDO timeout where the test does not judge the device.
+/// The SDO timeout of transfers that have no verdict, such as those that restore values.
 constexpr unsigned patient_ms = 3000;
 
 /// The time that a device may need to follow an NMT command. CiA 301 does not specify a limit.

@@ -65,7 +65,7 @@ bool TestedRpdo::use(const Pdo& pdo, bool with_synchronous) {
     other_.push_back(0);
     masks.push_back(0);
     if (mapped.is_dummy()) continue;
-    if (!dut_.is_readable(mapped.index, mapped.sub_index)) return false;  // its value could not be put back
+    if (!dut_.is_readable(mapped.index, mapped.sub_index)) return false;  // the test cannot restore its value
     present_.back() = dut_.read_number(mapped.index, mapped.sub_index) & low_bits(mapped.bits);
     const auto other = other_value(dut_, mapped, present_.back());
     other_.back() = other.value_or(present_.back());
