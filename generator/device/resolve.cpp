@@ -7,6 +7,7 @@
 #include "device/complete_device.hpp"
 #include "device/index_range.hpp"
 #include "device/limits.hpp"
+#include "device/meaning/resolve_meaning.hpp"
 #include "device/objects/entry_resolver.hpp"
 #include "device/objects/object_resolver.hpp"
 #include "device/objects/resolve_modules.hpp"
@@ -40,6 +41,7 @@ class Resolver {
     resolve_objects();
     complete_device(device_, options_, diagnostics_);
     check_option_keys();
+    resolve_meaning(device_, options_, diagnostics_);
     resolve_pdos(device_, options_);
     mark_broken_pdos(device_, options_, diagnostics_);
     resolve_stored_eds(device_, options_, diagnostics_);
