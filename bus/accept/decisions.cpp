@@ -427,9 +427,10 @@ Corrections add_element(const Facts& facts) {
   const Entry* const first = facts.object == nullptr ? nullptr : facts.object->find(1);
   if (first == nullptr || facts.object->type != ObjectType::array) return {};
   const std::string section = section_of(facts);
-  return {{section, "ParameterName", std::nullopt, fmt::format("{} {}", facts.object->name, facts.sub_index())},
-          {section, "DataType", std::nullopt, type_code(*first->type)},
-          {section, "AccessType", std::nullopt, std::string{canopen::row_of(first->access).name}}};
+  return {
+      {section, "ParameterName", std::nullopt, fmt::format("{} {}", facts.object->parameter_name(), facts.sub_index())},
+      {section, "DataType", std::nullopt, type_code(*first->type)},
+      {section, "AccessType", std::nullopt, std::string{canopen::row_of(first->access).name}}};
 }
 
 Corrections add_entry(const Facts& facts) {

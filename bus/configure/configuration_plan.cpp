@@ -60,7 +60,7 @@ constexpr std::uint16_t first_of_manufacturer = 0x2000;
 bool sets_node_id_or_bit_rate(const LiveEntry& entry) {
   if (entry.index == node_id_of_cia301_v3) return true;
   if (entry.index < first_of_manufacturer || entry.entry == nullptr) return false;
-  const std::string words = words_of(entry.name);
+  const std::string words = words_of(entry.name + " " + entry.entry->parameter_name());
   std::string squashed = words;  // `CAN bit rate`, `CanBitRate` and `CAN_Bitrate` are equal
   std::erase(squashed, ' ');
   const bool named = contains_one_of(squashed, commissioning_names) || contains_one_of(words, commissioning_words);

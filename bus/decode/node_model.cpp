@@ -37,8 +37,11 @@ std::uint16_t communication_of(const PdoKind& pdo) {
 }  // namespace
 
 std::string display_name(const Object& object, const Entry& entry) {
-  if (!entry.denotation.empty()) return entry.denotation;
-  const std::string& object_name = object.denotation.empty() ? object.name : object.denotation;
+  const auto has_denotation = [](const auto& named) {
+    return !named.denotation.empty() && named.replaced_name.empty();
+  };
+  if (has_denotation(entry)) return entry.denotation;
+  const std::string& object_name = has_denotation(object) ? object.denotation : object.name;
   return object.has_sub_indices() ? object_name + ", " + entry.name : object_name;
 }
 

@@ -2,6 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <map>
+
+#include "device/uniform_array.hpp"
 #include "system/path.hpp"
 #include "text/snake_case.hpp"
 #include "text/source_file.hpp"
@@ -18,6 +23,31 @@ std::string identifier(const Options& options, std::string_view name, std::uint1
   std::string made = to_snake_case(name);
   if (made.empty()) made = sub_index == 0 ? fmt::format("object_{:04x}", index) : fmt::format("sub_{:02x}", sub_index);
   return made;
+}
+
+/// The name of an element without its number: "field" for "Field 1", "Field1" and, for sub-index 0Ah, "Field A".
+std::string without_number(const Entry& element) {
+  const std::string name = to_snake_case(element.parameter_name());
+  const std::string hexadecimal = fmt::format("{:x}", element.sub_index);
+  std::string rest;
+  for (std::size_t begin = 0; begin < name.size();) {
+    const std::size_t end = std::min(name.find('_', begin), name.size());
+    std::string word = name.substr(begin, end - begin);
+    begin = end + 1;
+    if (word == hexadecimal || word == "0" + hexadecimal) continue;
+    std::erase_if(word, [](char c) { return c >= '0' && c <= '9'; });
+    if (!word.empty()) rest += (rest.empty() ? "" : "_") + word;
+  }
+  return rest;
+}
+
+/// Whether a name differs from those of the object and of the other elements by more than a number. `names`: the number
+/// of elements by name without number.
+bool has_own_name(const Object& object, const Entry& element, const std::map<std::string, int>& names) {
+  const std::string name = without_number(element);
+  if (name.empty() || name == to_snake_case(object.parameter_name())) return false;
+  if (object.entries.size() == 2) return name == to_snake_case(element.parameter_name());
+  return names.at(name) == 1;
 }
 
 std::string name_of_file(const Device& device) {
@@ -42,22 +72,57 @@ Identifiers::Identifiers(const Device& device, const Options& options, std::stri
   IdentifierScope scope;
   for (const Object& object : device.objects) {
     const std::string& name = objects_[object.index] =
-        scope.take(identifier(options, object.name, object.index, 0), fmt::format("{:04x}", object.index));
+        scope.take(identifier(options, object.parameter_name(), object.index, 0), fmt::format("{:04x}", object.index));
     if (object.has_sub_indices()) {
       name_entries(object, options);
     } else {
       entries_[key_of(object.entries.front())] = name;
+      vars_.insert(object.index);
     }
   }
+  for (const Object& object : device.objects) {
+    if (describes_uniform_array(object)) name_elements(object, options, scope);
+  }
+}
+
+std::string Identifiers::full(const Entry& entry) const {
+  const std::string& object = objects_.at(entry.index);
+  if (vars_.contains(entry.index)) return object;
+  if (const std::string* const own = element(entry)) return *own;
+  if (uniform_arrays_.contains(entry.index)) return fmt::format("{}_{}", object, entry.sub_index);
+  return object + "_" + of(entry);
+}
+
+const std::string* Identifiers::element(const Entry& entry) const {
+  const auto at = elements_.find(key_of(entry));
+  return at == elements_.end() ? nullptr : &at->second;
 }
 
 void Identifiers::name_entries(const Object& object, const Options& options) {
   IdentifierScope scope;
   for (const Entry& entry : object.entries) {
-    const bool has_own_name = entry.sub_index != 0 || entry.name != object.name;
-    entries_[key_of(entry)] = scope.take(has_own_name ? identifier(options, entry.name, entry.index, entry.sub_index)
-                                                      : std::string{"highest_sub_index_supported"},
-                                         fmt::format("{:02x}", entry.sub_index));
+    // The options name the object by its sub-index 0.
+    std::string name = entry.sub_index != 0 ? identifier(options, entry.parameter_name(), entry.index, entry.sub_index)
+                                            : to_snake_case(entry.parameter_name());
+    const bool is_of_object = entry.sub_index == 0 && entry.parameter_name() == object.parameter_name();
+    if (name.empty() || is_of_object) name = "highest_sub_index_supported";
+    entries_[key_of(entry)] = scope.take(name, fmt::format("{:02x}", entry.sub_index));
+  }
+}
+
+void Identifiers::name_elements(const Object& object, const Options& options, IdentifierScope& of_device) {
+  uniform_arrays_.insert(object.index);
+  std::map<std::string, int> names;
+  for (const Entry& entry : object.entries) {
+    if (entry.sub_index != 0) ++names[without_number(entry)];
+  }
+  const std::string prefix = of(object) + "_";
+  for (const Entry& entry : object.entries) {
+    const bool is_named = options.names.contains({entry.index, entry.sub_index});
+    if (entry.sub_index == 0 || !(is_named || has_own_name(object, entry, names))) continue;
+    const std::string& name = of(entry);
+    elements_[key_of(entry)] = of_device.take(name.starts_with(prefix) ? name : prefix + name,
+                                              fmt::format("{:04x}_{:02x}", entry.index, entry.sub_index));
   }
 }
 

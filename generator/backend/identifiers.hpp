@@ -36,14 +36,26 @@ class Identifiers {
   [[nodiscard]] const std::string& of(const Object& object) const { return objects_.at(object.index); }
   /// Unique in the object; the identifier of a VAR is the one of its object.
   [[nodiscard]] const std::string& of(const Entry& entry) const { return entries_.at(key_of(entry)); }
+  /// The identifier of an entry without its object, as DBC files, signals of a network and C have it: `statusword`,
+  /// `identity_object_vendor_id`; of an ARRAY of equal elements `gains_p` if the element has its own name, and else
+  /// `gains_1`. C++ has `od::identity_object::vendor_id` and `od::gains<1>` for the parts.
+  [[nodiscard]] std::string full(const Entry& entry) const;
+  /// `gains_p`: the name of an element of an ARRAY of equal elements if the options give it one, or if its
+  /// ParameterName differs from those of the object and of the other elements by more than a number; else null. It is
+  /// unique in the device.
+  [[nodiscard]] const std::string* element(const Entry& entry) const;
 
  private:
   [[nodiscard]] static std::uint32_t key_of(const Entry& entry) { return entry.index * 0x100u + entry.sub_index; }
   void name_entries(const Object& object, const Options& options);
+  void name_elements(const Object& object, const Options& options, IdentifierScope& of_device);
 
   std::string device_;
   std::unordered_map<std::uint16_t, std::string> objects_;
   std::unordered_map<std::uint32_t, std::string> entries_;
+  std::unordered_map<std::uint32_t, std::string> elements_;
+  std::unordered_set<std::uint16_t> vars_;  ///< objects without sub-indices
+  std::unordered_set<std::uint16_t> uniform_arrays_;
 };
 
 }  // namespace edsc

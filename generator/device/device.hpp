@@ -36,7 +36,8 @@ enum class ObjectType : std::uint8_t {
 struct Entry {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
-  std::string name;  ///< ParameterName
+  std::string name;           ///< for texts: the one that the options give, else ParameterName
+  std::string replaced_name;  ///< ParameterName if the options give another name; else empty
   const canopen::DataTypeRow* type = nullptr;
   std::uint32_t octets = 0;  ///< of a string: the length that its DEFTYPE states, in bytes; 0 where none does
   canopen::Access access = canopen::Access::rw;
@@ -58,6 +59,7 @@ struct Entry {
   // Keys of some vendors.
   std::string unit, factor, description;
 
+  [[nodiscard]] const std::string& parameter_name() const { return replaced_name.empty() ? name : replaced_name; }
   /// The PDOs to which the entry can be mapped.
   [[nodiscard]] canopen::Mappable mappable() const {
     return pdo_mapping ? canopen::mappable_by(access) : canopen::Mappable::no;
@@ -67,13 +69,15 @@ struct Entry {
 struct Object {
   std::uint16_t index = 0;
   ObjectType type = ObjectType::var;
-  std::string name;
+  std::string name;            ///< as in an entry
+  std::string replaced_name;   ///< as in an entry
   std::vector<Entry> entries;  ///< ascending by sub-index; exactly one for a VAR or DOMAIN
   Position position;
   std::string denotation;
   std::uint32_t obj_flags = 0;
   std::vector<std::uint16_t> links;  ///< related objects: ObjectLinks
 
+  [[nodiscard]] const std::string& parameter_name() const { return replaced_name.empty() ? name : replaced_name; }
   [[nodiscard]] bool has_sub_indices() const { return type == ObjectType::array || type == ObjectType::record; }
   [[nodiscard]] const Entry* find(std::uint8_t sub_index) const;
   /// Except FFh, which describes the structure of the object (CiA 301, 7.4.4).

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "device/complete_device.hpp"
 #include "device/index_range.hpp"
@@ -40,6 +41,7 @@ class Resolver {
     resolve_objects();
     complete_device(device_, options_, diagnostics_);
     check_option_keys();
+    apply_names();
     resolve_pdos(device_, options_);
     mark_broken_pdos(device_, options_, diagnostics_);
     resolve_stored_eds(device_, options_, diagnostics_);
@@ -120,6 +122,21 @@ class Resolver {
     };
     for (const auto& [entry, sub_index] : options_.stored_by) check_stored(entry, "storage.sub_indices");
     for (const std::uint16_t index : options_.static_mapping.parameters) check_object(index, "pdo.static_mapping");
+  }
+
+  /// The names that the options give, for the texts of all commands. Sub-index 0 is the object.
+  void apply_names() {
+    const auto rename = [](auto& named, const std::string& name) {
+      if (named.name != name) named.replaced_name = std::exchange(named.name, name);
+    };
+    for (const auto& [key, name] : options_.names) {
+      const auto object = std::ranges::lower_bound(device_.objects, key.first, {}, &Object::index);
+      if (object == device_.objects.end() || object->index != key.first) continue;
+      if (key.second == 0) rename(*object, name);
+      if (key.second == 0 && object->has_sub_indices()) continue;
+      const auto entry = std::ranges::find(object->entries, key.second, &Entry::sub_index);
+      if (entry != object->entries.end()) rename(*entry, name);
+    }
   }
 
   void check_object(std::uint16_t index, std::string_view option) {

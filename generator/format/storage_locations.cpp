@@ -61,7 +61,7 @@ std::optional<std::uint8_t> sub_index_of_group(const Device& device, std::string
   for (const Entry& entry : store->entries) {
     const bool assignable =
         entry.sub_index >= canopen::first_group_sub_index && entry.sub_index <= canopen::last_group_sub_index;
-    if (assignable && has_word(entry.name, group)) return entry.sub_index;
+    if (assignable && has_word(entry.parameter_name(), group)) return entry.sub_index;
   }
   return std::nullopt;
 }

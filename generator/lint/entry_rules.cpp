@@ -66,10 +66,11 @@ void check_mapping(const RuleContext& context, const Entry& entry) {
 }
 
 void check_name_length(const RuleContext& context, const Entry& entry) {
-  if (entry.name.size() <= longest_name || count_code_points(entry.name) <= longest_name) return;
+  const std::string& name = entry.parameter_name();
+  if (name.size() <= longest_name || count_code_points(name) <= longest_name) return;
   context.report("name-length", context.place_of(entry, &EntryDescription::parameter_name),
                  fmt::format("the name of {} has {} characters; the maximum is {}",
-                             entry_label(entry.index, entry.sub_index), count_code_points(entry.name), longest_name));
+                             entry_label(entry.index, entry.sub_index), count_code_points(name), longest_name));
 }
 
 void check_flags(const RuleContext& context, const EntryDescription& description) {

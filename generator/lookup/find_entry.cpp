@@ -34,7 +34,7 @@ bool same_name(std::string_view text, std::string_view identifier, std::string_v
 }
 
 const Entry* find_in(const Object& object, std::string_view text, const Identifiers& names) {
-  const auto same = [&](const Entry& entry) { return same_name(text, names.of(entry), entry.name); };
+  const auto same = [&](const Entry& entry) { return same_name(text, names.of(entry), entry.parameter_name()); };
   const auto at = std::ranges::find_if(object.entries, same);
   if (at != object.entries.end()) return &*at;
   const auto sub_index = parse_sub_index(text, 10);
@@ -170,10 +170,11 @@ std::optional<EntryAddress> parse_entry_address(std::string_view text) {
 
 EntryFinder::EntryFinder(const NamedDevice& named) : named_{named} {
   for (const Object& object : named.device.objects) {
-    add_names(objects_, &object, named.identifiers().of(object), object.name);
+    add_names(objects_, &object, named.identifiers().of(object), object.parameter_name());
     if (!object.has_sub_indices()) continue;
     for (const Entry& entry : object.entries) {
-      add_names(entries_, NamedEntry{&object, &entry}, named.identifiers().of(entry), entry.name);
+      add_names(entries_, NamedEntry{&object, &entry}, named.identifiers().of(entry), entry.parameter_name());
+      by_full_name_.emplace(named.identifiers().full(entry), NamedEntry{&object, &entry});
     }
   }
 }
@@ -205,7 +206,7 @@ std::string EntryFinder::near_names(std::string_view text) {
       if (entry.sub_index == 0) continue;
       const std::string label = entry_title(object, entry, names);
       suggestions.consider(names.of(entry), label);
-      suggestions.consider(fmt::format("{}_{}", names.of(object), names.of(entry)), label);
+      suggestions.consider(names.full(entry), label);
     }
   }
   return suggestions.text();
@@ -249,12 +250,16 @@ FoundEntry EntryFinder::find_new(std::string_view text) {
     return no_entry(fmt::format("{} is too long for the name of an entry", quote(text)));
   if (const Object* object = find_object(text)) return found(*object);
   if (const auto address = parse_entry_address(text)) return by_address(named_, *address);
+  if (const auto at = by_full_name_.find(to_snake_case(text)); at != by_full_name_.end()) {
+    return found(*at->second.object, at->second.entry);
+  }
   if (auto both = by_both_names(text)) return *std::move(both);
   return by_entry_name(text);
 }
 
 FoundEntry EntryFinder::find(std::string_view text) {
   text = trim(text);
+  if (text.starts_with("od::")) text.remove_prefix(4);
   const auto [at, is_new] = found_.try_emplace(std::string{text});
   if (is_new) at->second = find_new(text);
   return at->second;

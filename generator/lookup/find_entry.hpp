@@ -34,7 +34,8 @@ class EntryFinder {
  public:
   explicit EntryFinder(const NamedDevice& named);
 
-  /// Finds by address; by identifier, `position_actual_value` or `identity_object.vendor_id`; or by the name in the
+  /// Finds by address; by identifier, `position_actual_value`, `identity_object.vendor_id` or, as in DBC files and
+  /// networks, `identity_object_vendor_id`; by its C++ name, `od::identity_object::vendor_id`; or by the name in the
   /// EDS, `Identity object.Vendor-ID`, ignoring letter case. The name of a sub-index is sufficient if only one object
   /// has it; an element of an array is `name.3` or `name[3]`.
   [[nodiscard]] FoundEntry find(std::string_view text);
@@ -74,8 +75,9 @@ class EntryFinder {
   NamedDevice named_;
   Names<const Object*> objects_;
   Names<NamedEntry> entries_;
-  std::unordered_map<std::string, FoundEntry> found_;  ///< by the text
-  std::size_t suggestions_ = 0;                        ///< number of names for which similar ones were listed
+  std::unordered_map<std::string, NamedEntry> by_full_name_;  ///< of objects with sub-indices
+  std::unordered_map<std::string, FoundEntry> found_;         ///< by the text
+  std::size_t suggestions_ = 0;                               ///< number of names for which similar ones were listed
 };
 
 /// Finds one text.

@@ -21,6 +21,7 @@
 #include "network/node_settings.hpp"
 #include "network/resolve_signals.hpp"
 #include "text/counted.hpp"
+#include "text/snake_case.hpp"
 
 namespace edsc {
 namespace {
@@ -168,9 +169,9 @@ class SignalPlanner {
       }
       sub_index = static_cast<std::uint8_t>(one.sub_index + 1);
     }
-    const Object& object = *end.owner->device().find(end.entry->index);
-    const std::string name =
-        object.has_sub_indices() ? fmt::format("{} {}", object.name, end.entry->name) : object.name;
+    // The master has the identifier of the signal, as C++ and DBC have it.
+    const std::string identifier = end.owner->named().identifiers().full(*end.entry);
+    const std::string name = to_snake_case(end.entry->name) == identifier ? end.entry->name : identifier;
     plan_.master_entries.push_back({index, sub_index, end.owner->name, name, end.entry, is_sent});
     return plan_.master_entries.back();
   }

@@ -39,9 +39,18 @@ std::string to_ascii(std::string_view name) {
   return out;
 }
 
-/// Whether a new word begins at `i`: after a lower-case letter or digit, or where the last capital of a run starts a
-/// word (`RxPDOMapping`: rx, pdo, mapping).
-bool word_begins(std::string_view text, std::size_t i) {
+/// Words of mixed case that are one word of an identifier. Longer ones first. The letter case of a name may differ, but
+/// it is mixed: `CIA` needs no row.
+// clang-format off
+constexpr std::string_view mixed_words[] = {
+    "CANopen", "EtherCAT", "CiA", "WiFi",
+    "mAh", "kWh", "kHz", "mHz", "kPa", "kBit", "kBaud",
+};
+// clang-format on
+
+/// Whether a new word begins at `i` by its letter case: after a lower-case letter or digit, or where the last capital
+/// of a run starts a word (`RxPDOMapping`: rx, pdo, mapping).
+bool changes_case(std::string_view text, std::size_t i) {
   if (i == 0 || !is_upper(text[i])) return false;
   if (is_lower(text[i - 1])) return true;
   if (is_upper(text[i - 1]) && i + 1 < text.size() && is_lower(text[i + 1])) {
@@ -50,17 +59,38 @@ bool word_begins(std::string_view text, std::size_t i) {
   return false;
 }
 
+/// The end of a word of mixed case that begins at `begin`, where a word begins; `begin` if there is none.
+std::size_t end_of_mixed_word(std::string_view text, std::size_t begin) {
+  const auto ends = [&](std::size_t end) { return end == text.size() || !is_letter(text[end]); };
+  // A unit with a prefix: `mV`, `dB`, `pH`.
+  if (begin + 1 < text.size() && is_lower(text[begin]) && is_upper(text[begin + 1]) && ends(begin + 2)) {
+    return begin + 2;
+  }
+  for (const std::string_view word : mixed_words) {
+    const std::string_view part = text.substr(begin, word.size());
+    const std::size_t end = begin + part.size();
+    const bool is_mixed = std::ranges::any_of(part, is_lower) && std::ranges::any_of(part, is_upper);
+    if (is_mixed && std::ranges::equal(part, word, {}, to_lower, to_lower) && (ends(end) || is_upper(text[end])))
+      return end;
+  }
+  return begin;
+}
+
 }  // namespace
 
 std::string to_snake_case(std::string_view name) {
   const std::string text = to_ascii(name);
   std::string out;
   out.reserve(text.size() + 4);
+  std::size_t end_of_word = 0;  // of a word of mixed case
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool letter = is_lower(text[i]) || is_upper(text[i]) || is_digit(text[i]);
-    const bool gap = !letter || word_begins(text, i);
-    if (gap && !out.empty() && out.back() != '_') out += '_';
-    if (letter) out += to_lower(text[i]);
+    const bool is_part = is_letter(text[i]) || is_digit(text[i]);
+    const bool is_start = i == 0 || !is_letter(text[i - 1]);
+    const bool is_after = i == end_of_word && i != 0 && is_letter(text[i]);
+    const bool begins = i >= end_of_word && (is_after || changes_case(text, i));
+    if ((!is_part || begins) && !out.empty() && out.back() != '_') out += '_';
+    if (is_start || begins) end_of_word = std::max(end_of_word, end_of_mixed_word(text, i));
+    if (is_part) out += to_lower(text[i]);
   }
   while (!out.empty() && out.back() == '_') out.pop_back();
   if (!out.empty() && is_digit(out.front())) out.insert(0, "n_");

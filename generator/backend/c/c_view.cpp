@@ -121,15 +121,9 @@ class CView {
   }
 
  private:
-  [[nodiscard]] std::string name_of(const Object& object, const Entry& entry) const {
-    if (!object.has_sub_indices()) return names_.of(object);
-    return fmt::format("{}_{}", names_.of(object), names_.of(entry));
-  }
-
   [[nodiscard]] ordered_json entry_row(const Object& object, const Entry& entry) {
-    const std::string name =
-        fmt::format("{}_{}", space_,
-                    scope_.take(name_of(object, entry), fmt::format("{:04x}_{:02x}", entry.index, entry.sub_index)));
+    const std::string name = fmt::format(
+        "{}_{}", space_, scope_.take(names_.full(entry), fmt::format("{:04x}_{:02x}", entry.index, entry.sub_index)));
     const std::string type = type_of(*entry.type);
     ordered_json constants = ordered_json::array();
     add_constant(constants, "DEFAULT", entry.default_value, *entry.type);
@@ -176,7 +170,7 @@ class CView {
 
   [[nodiscard]] ordered_json member_row(const PdoEntry& mapped, IdentifierScope& scope) const {
     const Entry& entry = *mapped.object;
-    const std::string name = member_name(name_of(*device_.find(entry.index), entry));
+    const std::string name = member_name(names_.full(entry));
     const DataTypeRow& type = *entry.type;
     const std::string c_type = type_of(type);
     const bool is_unsigned = type.kind == DataClass::unsigned_integer || type.kind == DataClass::time;

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "backend/cpp/identifier.hpp"
-#include "backend/cpp/placement.hpp"
+#include "device/uniform_array.hpp"
 #include "system/path.hpp"
 #include "text/source_file.hpp"
 
@@ -19,6 +19,7 @@ std::string CppNames::of(const Entry& entry) const { return without_reserved_wor
 
 CppType CppNames::type_of(const Object& object, const Entry& entry) const {
   if (!object.has_sub_indices()) return {fmt::format("od::{}", of(object)), ""};
+  if (const std::string* const own = identifiers_.element(entry)) return {"od::" + without_reserved_word(*own), ""};
   if (describes_uniform_array(object)) return {fmt::format("od::{}<{}>", of(object), entry.sub_index), ""};
   return {fmt::format("od::{}", of(object)), fmt::format("::{}", of(entry))};
 }

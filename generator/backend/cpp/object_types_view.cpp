@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <string>
 #include <utility>
 
 #include "backend/cpp/cpp_text.hpp"
 #include "backend/cpp/identifier.hpp"
 #include "backend/cpp/json_object.hpp"
-#include "backend/cpp/placement.hpp"
 #include "device/drive_modes.hpp"
+#include "device/uniform_array.hpp"
 #include "system/path.hpp"
 #include "text/source_file.hpp"
 #include "text/utf8.hpp"
@@ -44,38 +43,21 @@ std::string padded(std::string text, std::size_t column) {
   return text;
 }
 
-/// The name of an element without its number: "field" for "Field 1", "Field1" and, for sub-index 0Ah, "Field A".
-std::string without_number(const Entry& element) {
-  const std::string name = to_cpp_identifier(element.name);
-  const std::string hexadecimal = fmt::format("{:x}", element.sub_index);
-  std::string rest;
-  for (std::size_t begin = 0; begin < name.size();) {
-    const std::size_t end = std::min(name.find('_', begin), name.size());
-    std::string word = name.substr(begin, end - begin);
-    begin = end + 1;
-    if (word == hexadecimal || word == "0" + hexadecimal) continue;
-    std::erase_if(word, [](char c) { return c >= '0' && c <= '9'; });
-    if (!word.empty()) rest += (rest.empty() ? "" : "_") + word;
-  }
-  return rest;
-}
-
 class ObjectTypes {
  public:
   ObjectTypes(const NamedDevice& named, const Options& options)
       : device_{named.device}, names_{named.names}, options_{options} {
     file_ = cpp_comment(file_name_of(device_.source->name()));
-    for (const Object& object : device_.objects) static_cast<void>(scope_.take(names_.of(object), ""));
   }
 
-  [[nodiscard]] ordered_json view() {
+  [[nodiscard]] ordered_json view() const {
     ordered_json rows = json_array(device_.objects.size());
     for (const Object& object : device_.objects) rows.push_back(object_row(object));
     return rows;
   }
 
  private:
-  [[nodiscard]] ordered_json object_row(const Object& object) {
+  [[nodiscard]] ordered_json object_row(const Object& object) const {
     const bool is_var = !object.has_sub_indices();
     const bool is_array = !is_var && describes_uniform_array(object);
     return json_object("var", is_var ? entry_row(object.entries.front()) : nullptr,  //
@@ -91,7 +73,7 @@ class ObjectTypes {
                        std::move(entries));
   }
 
-  [[nodiscard]] ordered_json array_row(const Object& object) {
+  [[nodiscard]] ordered_json array_row(const Object& object) const {
     const Entry& first = object.entries[1];
     const std::size_t length = object.entries.size() - 1;
     const std::string label = fmt::format("{}:01..{:02X}", index_label(object.index), length);
@@ -104,37 +86,16 @@ class ObjectTypes {
   }
 
   /// Elements that have their own name, such as `gains_p` for `gains<1>`; null if there are none.
-  [[nodiscard]] ordered_json element_names(const Object& object) {
-    std::map<std::string, int> names;
-    for (const Entry& entry : object.entries) {
-      if (entry.sub_index != 0) ++names[without_number(entry)];
-    }
+  [[nodiscard]] ordered_json element_names(const Object& object) const {
     ordered_json rows = ordered_json::array();
     for (const Entry& entry : object.entries) {
-      if (entry.sub_index == 0 || !has_own_name(object, entry, names)) continue;
-      const std::string suffix = fmt::format("{:04x}_{:02x}", entry.index, entry.sub_index);
+      const std::string* const name = names_.identifiers().element(entry);
+      if (name == nullptr) continue;
       rows.push_back(json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)),
-                                 "identifier", scope_.take(element_name(object, entry), suffix), "number",
-                                 entry.sub_index));
+                                 "identifier", without_reserved_word(*name), "number", entry.sub_index));
     }
     if (rows.empty()) return nullptr;
     return json_object("array", names_.of(object), "rows", std::move(rows));
-  }
-
-  /// Whether the options name an element, or its name differs from those of the object and of the other elements by
-  /// more than a number. `names`: the number of elements by name without number.
-  [[nodiscard]] bool has_own_name(const Object& object, const Entry& element,
-                                  const std::map<std::string, int>& names) const {
-    if (options_.names.contains({element.index, element.sub_index})) return true;
-    const std::string name = without_number(element);
-    if (name.empty() || name == to_cpp_identifier(object.name)) return false;
-    if (object.entries.size() == 2) return name == to_cpp_identifier(element.name);
-    return names.at(name) == 1;
-  }
-
-  [[nodiscard]] std::string element_name(const Object& object, const Entry& element) const {
-    const std::string& name = names_.identifiers().of(element);
-    return name.starts_with(names_.of(object) + "_") ? name : names_.of(object) + "_" + name;
   }
 
   [[nodiscard]] ordered_json entry_row(const Entry& entry) const {
@@ -200,7 +161,6 @@ class ObjectTypes {
   const CppNames& names_;
   const Options& options_;
   std::string file_;
-  IdentifierScope scope_;  ///< the names of all objects, then of elements
 };
 
 }  // namespace

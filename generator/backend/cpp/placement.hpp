@@ -55,9 +55,6 @@ class Placement {
 [[nodiscard]] std::uint64_t lowest(const canopen::DataTypeRow& type);
 [[nodiscard]] std::uint64_t highest(const canopen::DataTypeRow& type);
 
-/// An ARRAY whose elements 1..N have the same numeric type, access and limits: one template in C++.
-[[nodiscard]] bool describes_uniform_array(const Object& object);
-
 /// Whether the entry is zero after a reset.
 [[nodiscard]] bool is_zero(const Entry& entry);
 

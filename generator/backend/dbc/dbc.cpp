@@ -72,13 +72,6 @@ struct Range {
   return type.kind == boolean || type.kind == unsigned_integer || type.kind == signed_integer || type.kind == real;
 }
 
-/// The name of a signal: that of the object, and of the entry if it has sub-indices.
-[[nodiscard]] std::string signal_name(const DbcNode& node, const Entry& entry) {
-  const Object* const object = node.device->find(entry.index);
-  if (object == nullptr || !object->has_sub_indices()) return node.names->of(entry);
-  return node.names->of(*object) + "_" + node.names->of(entry);
-}
-
 /// The CAN-ID of a message, and whether it has 29 bits.
 using MessageId = std::pair<std::uint32_t, bool>;
 
@@ -231,7 +224,7 @@ class DbcWriter {
   void add_signal(std::uint32_t id, const NodePdo& message, const PdoEntry& mapped, DbcNames& names) {
     const Entry& entry = *mapped.object;
     const bool has_value = is_number(*entry.type);
-    const std::string long_name = signal_name(*message.node, entry);
+    const std::string long_name = message.node->names->full(entry);
     const std::string name = names.take(long_name);
     const double factor = has_value ? factor_of(entry) : 1;
     const Range range = has_value ? range_of(entry, factor) : Range{};
@@ -239,7 +232,7 @@ class DbcWriter {
     sections_.messages += fmt::format(" SG_ {} : {}|{}@1{} ({},0) [{}|{}] {} {}\n", name, mapped.offset, mapped.bits,
                                       is_signed ? '-' : '+', factor, range.min, range.max, dbc_string(entry.unit),
                                       receivers(message, mapped.offset, mapped.bits));
-    std::string comment = fmt::format("{} {}", entry_label(entry.index, entry.sub_index), entry.name);
+    std::string comment = fmt::format("{} {}", entry_label(entry.index, entry.sub_index), entry.parameter_name());
     if (!has_value) comment += fmt::format(", {} as a number", entry.type->name);
     if (!entry.description.empty()) comment += ": " + entry.description;
     sections_.comments += fmt::format("CM_ SG_ {} {} {};\n", id, name, dbc_string(comment));

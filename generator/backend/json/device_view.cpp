@@ -44,7 +44,7 @@ ordered_json entry_view(const Entry& entry, const Identifiers& names) {
   ordered_json view;
   view["index"] = entry.index;
   view["sub_index"] = entry.sub_index;
-  view["name"] = entry.name;
+  view["name"] = entry.parameter_name();
   view["identifier"] = names.of(entry);
   view["data_type"] = entry.type->name;
   view["bits"] = entry.type->bits;
@@ -106,7 +106,7 @@ ordered_json pdo_view(const Pdo& pdo) {
     row["sub_index"] = entry.sub_index;
     row["offset"] = entry.offset;
     row["bits"] = entry.bits;
-    row["name"] = entry.object != nullptr  ? entry.object->name
+    row["name"] = entry.object != nullptr  ? entry.object->parameter_name()
                   : entry.dummy != nullptr ? std::string{entry.dummy->name}
                                            : "";
     row["dummy"] = entry.dummy != nullptr;
@@ -141,7 +141,7 @@ ordered_json object_view(const Object& object, const Identifiers& names) {
   ordered_json view;
   view["index"] = object.index;
   view["object_type"] = to_string(object.type);
-  view["name"] = object.name;
+  view["name"] = object.parameter_name();
   view["identifier"] = names.of(object);
   add_text("denotation", object.denotation, view);
   if (object.obj_flags != 0) view["obj_flags"] = object.obj_flags;

@@ -68,8 +68,8 @@ inline constexpr OptionGroup lss{"lss", "LSS", "a device with this group, even i
 
 inline constexpr OptionRow rows[] = {
     {cpp, "names", "", structured,
-     "C++ names by entry, instead of those derived from ParameterName: `{\"6040h:00\": \"controlword\"}`; for an element of an "
-     "ARRAY, `{\"2000h:01\": \"p\"}` gives `gains_p`"},
+     "names by entry, instead of those derived from ParameterName: `{\"6040h:00\": \"controlword\"}`; for an element of an "
+     "ARRAY, `{\"2000h:01\": \"p\"}` gives `gains_p`. They are used in C++, DBC files, networks, documents and messages"},
     {cpp, "string_capacity", "", structured, "capacity in bytes of strings in RAM, by entry", "",
      "length of the default value, else 16"},
     {cpp, "settable", "", structured,

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "backend/cpp/placement.hpp"
+#include "backend/cpp/identifier.hpp"
 #include "device/complete_device.hpp"
 
 namespace edsc {
@@ -41,11 +41,7 @@ std::vector<LinkedValue> linked_values(const PdoLink& link) {
 }
 
 std::string signal_identifier(const NamedDevice& named, const PdoEntry& entry) {
-  const auto& [device, names] = named;
-  const Object& object = *device.find(entry.index);
-  if (!object.has_sub_indices()) return names.of(object);
-  if (describes_uniform_array(object)) return fmt::format("{}_{}", names.of(object), entry.sub_index);
-  return fmt::format("{}_{}", names.of(object), names.of(*entry.object));
+  return without_reserved_word(named.identifiers().full(*entry.object));
 }
 
 }  // namespace edsc

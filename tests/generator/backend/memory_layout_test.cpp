@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "backend/cpp/views.hpp"
+#include "device/uniform_array.hpp"
 #include "support/device_from_text.hpp"
 
 namespace edsc {
