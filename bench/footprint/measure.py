@@ -31,6 +31,7 @@ COMPILER = ("arm-none-eabi-g++", "-std=c++20", "-mthumb", "-ffunction-sections",
             "-nostartfiles", "-Wl,--gc-sections", f"-T{BENCH / 'cortex_m/firmware.ld'}")
 sys.path.insert(0, str(BENCH))
 import sheets  # noqa: E402
+import twins  # noqa: E402
 
 SMALL = ("-mcpu=cortex-m0plus", "-Os", "-flto=auto")
 FAST = ("-mcpu=cortex-m4", "-O2", "-flto=auto", "-DCOUNT")
@@ -331,7 +332,8 @@ def page(bench: Bench) -> str:
     return (HERE / "page.md").read_text(encoding="utf-8").format(
         sizes=beside_marks("bytes", sizes(bench)), whole_frames=beside_marks("instructions", whole_frames(bench)),
         parts=table("instructions", "edsc", rows=[(what, f"{count:g}") for what, count in parts(bench)]),
-        services=with_bytes("service", services(bench)), objects=with_bytes("object", objects(bench)))
+        services=with_bytes("service", services(bench)), objects=with_bytes("object", objects(bench)),
+        twins="\n".join(twins.table(bench.runtime)))
 
 
 def main() -> None:

@@ -11,6 +11,8 @@
 #include <utility>
 
 // The headers whose checks users meet are included first: the compiler lists the files by which it came to them.
+#include "canopen/base/constant_errors.hpp"
+//
 #include "canopen/od/value_for.hpp"
 //
 #include "canopen/node/object_setters.hpp"
@@ -39,6 +41,7 @@
 #include "canopen/node/services.hpp"
 #include "canopen/node/value_check.hpp"
 #include "canopen/od/access_probe.hpp"
+#include "canopen/od/closed_objects.hpp"
 #include "canopen/od/device_object.hpp"
 #include "canopen/od/object_store.hpp"
 #include "canopen/pdo/mpdo.hpp"
@@ -196,7 +199,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// map the object are sent with the next `on_time` or `on_frame`. In a write handler of the same object, this value
   /// replaces the written one. A parameter in 1000h..1FFFh is checked as for SDO: a PDO can be mapped or get a
   /// different CAN-ID only while it is not valid.
-  using ObjectValues<Node>::get, ObjectValues<Node>::set, ObjectValues<Node>::send_mpdo;
+  using ObjectValues<Node>::get, ObjectValues<Node>::set, ObjectValues<Node>::modify, ObjectValues<Node>::send_mpdo;
 
   /// Returns the value of an object, whatever its access type.
   template <DictionaryObject Object>
@@ -225,6 +228,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
       if (service::DriveModes<Device>::checks(index, sub_index) && !accepts_mode<Device>(index, bytes[0]))
         return AbortCode::invalid_value;
     }
+    if (const AbortCode code = check_closed<Device>(index, sub_index, bytes); code != ok) return code;
     handler_calls_.object_is_set(object_key(index, sub_index));
     if (!entry::is_domain(word) && entries().holds(word, bytes)) return ok;
     // Values set in Initialisation belong to the configuration of the device after a reset.
@@ -401,17 +405,25 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
       if (const AbortCode code = check_limits<Object>(value); code != ok) return code;
     }
     if constexpr (can_be_refused<Object> && is_communication_index(Object::index) &&
-                  std::is_integral_v<typename Object::type>) {
+                  std::is_integral_v<RawOf<typename Object::type>>) {
       typename Object::type checked = value;
       const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&checked), (Object::bits + 7) / 8};
       if (const AbortCode code = host().check_write(Object::index, Object::sub_index, bytes); code != ok) return code;
-      return take_over<Object>(checked);
+      return take_over_number<Object>(checked);
+    } else {
+      return take_over_number<Object>(value);
+    }
+  }
+
+  /// Sets a value that has passed all checks. A value with a meaning is passed on as its raw number.
+  template <DictionaryObject Object>
+  AbortCode take_over_number(const typename Object::type& value) {
+    if constexpr (Meaningful<typename Object::type>) {
+      return take_over<NumbersOf<Object>>(to_raw(value));
     } else {
       return take_over<Object>(value);
     }
   }
-
-  /// Sets a value that has passed all checks.
   template <DictionaryObject Object>
   AbortCode take_over(const typename Object::type& value) {
     if constexpr (HandlerTypes::template handles_write<Object>) {

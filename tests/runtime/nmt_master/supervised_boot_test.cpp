@@ -60,7 +60,9 @@ struct Network : SlaveBus {
   void run(std::chrono::milliseconds span) {
     for (; span > 0ms; span -= 1ms) {
       bus.run_for(1ms);
-      if (!log.results.empty()) ASSERT_EQ(master.status(NodeId{5}), log.results.back().status);
+      if (!log.results.empty()) {
+        ASSERT_EQ(master.status(NodeId{5}), log.results.back().status);
+      }
     }
   }
   void start() { master.start(bus.now()); }

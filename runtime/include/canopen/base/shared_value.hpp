@@ -43,7 +43,7 @@ class WordCell {
   [[nodiscard]] Type read() {
     const Word word = word_.load(std::memory_order_acquire);
     Type value;
-    std::memcpy(&value, &word, sizeof word);
+    std::memcpy(static_cast<void*>(&value), &word, sizeof word);
     return value;
   }
 

@@ -114,8 +114,8 @@ class BlockingObjects {
   requires remote_detail::WrittenTo<std::decay_t<const ValueType&>, Object, Device>
   [[nodiscard]] Result<void> write(const ValueType& value) {
     if constexpr (NumberObject<Object>) {
-      if (const AbortCode code = check_value<Object>(value); code != ok) return code;
-      return write_number<Object>(static_cast<typename Object::type>(value));
+      if (const AbortCode code = remote_detail::check<Object>(value); code != ok) return code;
+      return write_number<Object>(remote_detail::converted<Object>(value));
     } else if constexpr (std::convertible_to<const ValueType&, std::string_view>) {
       const std::string_view text = value;
       return write_bytes<Object>(std::span{reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -126,14 +126,27 @@ class BlockingObjects {
   template <DictionaryObject Object, class ValueType>
   requires remote_detail::WrittenTo<std::decay_t<const ValueType&>, Object, Device>
   [[nodiscard]] Result<void> write(Object, const ValueType& value) { return write<Object>(value); }
+  /// Writes a constant with a unit.
+  template <NumberObject Object>
+  requires(Meaningful<typename Object::type>&& remote_detail::WrittenTo<typename Object::type, Object, Device>)
+      [[nodiscard]] Result<void> write(std::type_identity_t<ConstantOf<Object>> constant) {
+    return write_number<Object>(constant.value());
+  }
+  template <NumberObject Object>
+  requires(Meaningful<typename Object::type>&& remote_detail::WrittenTo<typename Object::type, Object, Device>)
+      [[nodiscard]] Result<void> write(Object, std::type_identity_t<ConstantOf<Object>> constant) {
+    return write_number<Object>(constant.value());
+  }
   /// What does not compile.
   template <DictionaryObject Object, class ValueType>
-  remote_detail::NotWritten write(const ValueType&) {
+  requires remote_detail::NeverWritten<std::decay_t<const ValueType&>, Object, Device> remote_detail::NotWritten write(
+      const ValueType&) {
     static_cast<void>(remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>());
     return {};
   }
   template <DictionaryObject Object, class ValueType>
-  remote_detail::NotWritten write(Object, const ValueType&) {
+  requires remote_detail::NeverWritten<std::decay_t<const ValueType&>, Object, Device> remote_detail::NotWritten write(
+      Object, const ValueType&) {
     static_cast<void>(remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>());
     return {};
   }

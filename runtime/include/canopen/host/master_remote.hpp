@@ -66,14 +66,27 @@ class MasterRemote {
   template <DictionaryObject Object, class ValueType>
   requires remote_detail::WrittenTo<std::decay_t<const ValueType&>, Object, Device>
   [[nodiscard]] Result<void> write(Object, const ValueType& value) { return objects().template write<Object>(value); }
+  /// Writes a constant with a unit.
+  template <NumberObject Object>
+  requires(Meaningful<typename Object::type>&& remote_detail::WrittenTo<typename Object::type, Object, Device>)
+      [[nodiscard]] Result<void> write(std::type_identity_t<ConstantOf<Object>> constant) {
+    return objects().template write<Object>(constant.value());
+  }
+  template <NumberObject Object>
+  requires(Meaningful<typename Object::type>&& remote_detail::WrittenTo<typename Object::type, Object, Device>)
+      [[nodiscard]] Result<void> write(Object, std::type_identity_t<ConstantOf<Object>> constant) {
+    return objects().template write<Object>(constant.value());
+  }
   /// What does not compile.
   template <DictionaryObject Object, class ValueType>
-  remote_detail::NotWritten write(const ValueType&) {
+  requires remote_detail::NeverWritten<std::decay_t<const ValueType&>, Object, Device> remote_detail::NotWritten write(
+      const ValueType&) {
     static_cast<void>(remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>());
     return {};
   }
   template <DictionaryObject Object, class ValueType>
-  remote_detail::NotWritten write(Object, const ValueType&) {
+  requires remote_detail::NeverWritten<std::decay_t<const ValueType&>, Object, Device> remote_detail::NotWritten write(
+      Object, const ValueType&) {
     static_cast<void>(remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>());
     return {};
   }
@@ -191,10 +204,10 @@ class MasterRemote {
   }
   template <class Object, class ValueType>
   [[nodiscard]] static AbortCode checked_value([[maybe_unused]] const ValueType& value) {
-    if constexpr (NumberObject<Object> && std::is_arithmetic_v<typename Object::type>) {
+    if constexpr (NumberObject<Object> && std::is_arithmetic_v<RawOf<typename Object::type>>) {
       static_assert(remote_detail::has_the_type_of<Object, ValueType>,
                     "send: this value is not of the type of the object");
-      if constexpr (remote_detail::has_the_type_of<Object, ValueType>) return check_value<Object>(value);
+      if constexpr (remote_detail::has_the_type_of<Object, ValueType>) return remote_detail::check<Object>(value);
     } else if constexpr (remote_detail::is_text_for<Object, ValueType>) {
       return Object::type::from(value).abort_code();
     }
@@ -205,7 +218,7 @@ class MasterRemote {
     if constexpr (remote_detail::is_text_for<Object, ValueType>) {
       return Object::type::truncated(value);
     } else {
-      return static_cast<typename Object::type>(value);
+      return remote_detail::converted<Object>(value);
     }
   }
   template <class Layout, std::size_t... Position, class... Values>

@@ -84,10 +84,15 @@ struct Handled : HandlesNothing {};
 template <class Device, class Node, class Object, class Function>
 struct Handled<Device, Node, WriteHandler<Object, Function>> : HandlesNothing {
   using BeforeWrite = ObjectList<Object>;
-  template <DictionaryObject>
+  /// A profile names an object by the type of its raw number.
+  template <DictionaryObject Written>
   static constexpr AbortCode before_write(WriteHandler<Object, Function>& handler, Node& node,
-                                          const typename Object::type& value) {
-    return code_of([&]() -> decltype(auto) { return call(handler.call, node, value); });
+                                          const typename Written::type& value) {
+    if constexpr (std::is_same_v<typename Written::type, typename Object::type>) {
+      return code_of([&]() -> decltype(auto) { return call(handler.call, node, value); });
+    } else {
+      return before_write<Object>(handler, node, from_raw<typename Object::type>(to_raw(value)));
+    }
   }
 };
 

@@ -21,6 +21,7 @@
 #include "canopen/emcy/error_register.hpp"
 #include "canopen/nmt/nmt.hpp"
 #include "canopen/node/object_setters.hpp"
+#include "canopen/node/value_check.hpp"
 #include "canopen/od/object.hpp"
 
 namespace canopen {
@@ -78,6 +79,15 @@ class Locked : public ObjectSetters<Locked<Node, LockType>> {
     return with([](Node& node) { return node.template get<Object>(); });
   }
   using ObjectSetters<Locked>::set;
+  /// Changes the value of an object while the lock is held, so that no other context changes it meanwhile.
+  template <DictionaryObject Object, class Change>
+  requires(!can_be_refused<Object>) AbortCode modify(Object object, Change change) {
+    return with([&](Node& node) { return node.modify(object, change); });
+  }
+  template <DictionaryObject Object, class Change>
+  requires(can_be_refused<Object>) [[nodiscard]] AbortCode modify(Object object, Change change) {
+    return with([&](Node& node) { return node.modify(object, change); });
+  }
   template <std::uint16_t Number, class Layout>
   [[nodiscard]] AbortCode map() {
     return with([](Node& node) { return node.template map<Number, Layout>(); });

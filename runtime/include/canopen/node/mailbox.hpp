@@ -46,7 +46,8 @@ class Mailbox {
   /// The same for an object with limits. value_too_high, value_too_low: outside the limits of the EDS; invalid_value: a
   /// REAL is NaN. The value posted before remains.
   template <LimitedObject Object, FitsInto<typename Object::type> Value>
-  [[nodiscard]] AbortCode post(Object, Value value) {
+  [[nodiscard]] AbortCode post(Object, Value given) {
+    const auto value = value_for_detail::value_as<typename Object::type>(given);
     const AbortCode code = check_limits<Object>(value);
     if (code == ok) slot<Object>().publish(value);
     return code;

@@ -42,12 +42,12 @@ class ObjectSetters {
 
   /// value_too_high, value_too_low, or invalid_value for NaN: outside the limits of the object.
   template <LimitedObject Object, FitsInto<typename Object::type> ValueType>
-  [[nodiscard]] AbortCode set(Object, ValueType value) {
-    return assign<Object>(value);
+  requires(!ClosedObject<Object> || is_raw_number<ValueType>) [[nodiscard]] AbortCode set(Object, ValueType value) {
+    return assign<Object>(value_for_detail::value_as<typename Object::type>(value));
   }
   template <LimitedObject Object, FitsInto<typename Object::type> ValueType>
-  [[nodiscard]] AbortCode set(ValueType value) {
-    return assign<Object>(value);
+  requires(!ClosedObject<Object> || is_raw_number<ValueType>) [[nodiscard]] AbortCode set(ValueType value) {
+    return assign<Object>(value_for_detail::value_as<typename Object::type>(value));
   }
   /// A constant is not refused.
   template <LimitedObject Object>
@@ -58,6 +58,12 @@ class ObjectSetters {
   AbortCode set(std::type_identity_t<CheckedValue<Object>> value) {
     return assign<Object>(value.value());
   }
+
+  /// A closed enumeration: its enumerators are not refused, a variable may be.
+  template <LimitedObject Object>
+  requires ClosedObject<Object> AbortCode set(Object, typename Object::type value) { return assign<Object>(value); }
+  template <LimitedObject Object>
+  requires ClosedObject<Object> AbortCode set(typename Object::type value) { return assign<Object>(value); }
 
   /// A parameter of a service is refused if it may not be changed now.
   template <ServiceParameter Object>
@@ -81,9 +87,15 @@ class ObjectSetters {
 
   /// A constant as a template argument: `set<od::target_position, 4'000>()`.
   template <DictionaryObject Object, auto Value>
-  requires(ValueFor<decltype(Value), Object>) AbortCode set() {
+  requires(ValueFor<std::remove_cv_t<decltype(Value)>, Object>) AbortCode set() {
     static_assert(check_value<Object>(Value) == ok, "this value is outside the limits of the object");
     return assign<Object>(static_cast<typename Object::type>(Value));
+  }
+  /// A constant with a unit, or a raw number: `set<od::setpoint, 21.5_degC>()`.
+  template <DictionaryObject Object, auto Value>
+  requires(Meaningful<typename Object::type> && !ValueFor<std::remove_cv_t<decltype(Value)>, Object>) AbortCode set() {
+    constexpr CheckedValue<Object> checked{Value};
+    return assign<Object>(checked.value());
   }
 
  private:

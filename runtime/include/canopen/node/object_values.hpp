@@ -30,7 +30,7 @@ namespace object_values_detail {
 
 /// An object whose value is a number or a BOOLEAN.
 template <class Object>
-concept Arithmetic = NumberObject<Object> && std::is_arithmetic_v<typename Object::type>;
+concept Arithmetic = NumberObject<Object> && std::is_arithmetic_v<RawOf<typename Object::type>>;
 
 }  // namespace object_values_detail
 
@@ -61,12 +61,28 @@ class ObjectValues : public ObjectSetters<NodeType> {
                               std::type_identity_t<ValueOf<Array<whole_array>>> value) {
     using Element = Array<whole_array>;
     if (sub_index == 0) return AbortCode::no_sub_index;
-    typename Element::type element = value.value();
+    RawOf<typename Element::type> element = to_raw(value.value());
     const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&element), (Element::bits + 7) / 8};
     if constexpr (is_communication_index(Element::index)) {
       if (const AbortCode code = node().host().check_write(Element::index, sub_index, bytes); code != ok) return code;
     }
     return node().set(Element::index, sub_index, bytes);
+  }
+
+  /// Changes the value of an object: `modify(od::controlword{}, [](auto& word) { word.quick_stop(true).halt(false);
+  /// })`. Its TPDOs are sent as with `set`.
+  template <object_values_detail::Arithmetic Object, class Change>
+  requires(!can_be_refused<Object>) AbortCode modify(Object, Change change) {
+    typename Object::type value = node().template get<Object>();
+    change(value);
+    return node().template set<Object>(value);
+  }
+  /// The same for an object that rejects values outside its limits: the value is then not changed.
+  template <object_values_detail::Arithmetic Object, class Change>
+  requires(can_be_refused<Object>) [[nodiscard]] AbortCode modify(Object, Change change) {
+    typename Object::type value = node().template get<Object>();
+    change(value);
+    return node().template set<Object>(value);
   }
 
   /// Maps these objects into TPDO or RPDO `Number`: `node.map<2, canopen::Tpdo<od::pressure, od::temperature>>()`. The

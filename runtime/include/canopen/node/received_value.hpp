@@ -10,6 +10,7 @@
 #include "canopen/base/optimization.hpp"
 #include "canopen/node/services/drive_modes.hpp"
 #include "canopen/node/value_check.hpp"
+#include "canopen/od/closed_objects.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object_store.hpp"
 
@@ -20,7 +21,8 @@ namespace canopen {
 template <class Host>
 [[nodiscard]] inline AbortCode before_write(Host& host, std::uint16_t index, std::uint8_t sub_index,
                                             std::span<std::uint8_t> bytes) {
-  if (may_concern_services(index) || service::DriveModes<typename Host::Device>::checks(index, sub_index)) {
+  if (may_concern_services(index) || service::DriveModes<typename Host::Device>::checks(index, sub_index) ||
+      is_closed<typename Host::Device>(index, sub_index)) {
     if (const AbortCode code = host.check_write(index, sub_index, bytes); code != ok) return code;
   }
   const std::uint32_t key = object_key(index, sub_index);

@@ -4,6 +4,7 @@
 #include "canopen/node/service_set.hpp"
 #include "canopen/node/services/bound_domains.hpp"
 #include "canopen/node/services/bus_errors.hpp"
+#include "canopen/node/services/closed_values.hpp"
 #include "canopen/node/services/drive_modes.hpp"
 #include "canopen/node/services/emergency.hpp"
 #include "canopen/node/services/emergency_consumer.hpp"
@@ -58,6 +59,7 @@ using NodeServices = ServiceSet<
     service::ErrorReaction<Device>,
     service::StoredEds<Device>,
     service::DriveModes<Device>,
+    service::ClosedValues<Device>,
     service::BoundDomains<Device, Handlers...>>;
 // clang-format on
 

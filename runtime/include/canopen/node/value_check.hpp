@@ -7,6 +7,7 @@
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/optimization.hpp"
 #include "canopen/od/object.hpp"
+#include "canopen/od/typed_value.hpp"
 #include "canopen/od/value_for.hpp"
 
 namespace canopen {
@@ -21,7 +22,7 @@ namespace canopen {
 /// than its type, or is a parameter of a service.
 template <DictionaryObject Object>
 inline constexpr bool can_be_refused = [] {
-  using Type = typename Object::type;
+  using Type = RawOf<typename Object::type>;
   if (!std::is_arithmetic_v<Type>) return false;
   if (std::is_integral_v<Type> && is_communication_index(Object::index)) return true;
   return rejects_values<Object>;

@@ -3,6 +3,9 @@
 
 #include <cstdint>
 
+#include "canopen/od/object.hpp"
+#include "canopen/od/typed_value.hpp"
+
 namespace canopen {
 
 /// Consecutive values of an INTEGER8.
@@ -61,7 +64,9 @@ template <class Device>
 /// `accepted`, an array of ranges, unless it accepts all of them.
 template <class Object>
 [[nodiscard]] constexpr bool accepts([[maybe_unused]] typename Object::type value) {
-  if constexpr (requires { Object::accepted; }) {
+  if constexpr (Meaningful<typename Object::type>) {
+    return accepts<NumbersOf<Object>>(to_raw(value));
+  } else if constexpr (requires { Object::accepted; }) {
     constexpr AcceptedBits accepted = [] {
       AcceptedBits all;
       for (const ValueRange& range : Object::accepted) all.add(range);

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "canopen/od/access.hpp"
+#include "canopen/od/typed_value.hpp"
 #include "canopen/od/value.hpp"
 
 namespace canopen {
@@ -52,12 +53,18 @@ concept DictionaryObject = requires {
   { ObjectType::mappable } -> std::convertible_to<Mappable>;
 };
 
-/// Lowest and highest value of an object: the limits of the EDS, otherwise the range of its bits.
+/// An object with the raw numbers of another one as its values.
 template <class ObjectType>
-[[nodiscard]] constexpr typename ObjectType::type low_limit() {
-  using Type = typename ObjectType::type;
+struct NumbersOf : ObjectType {
+  using type = RawOf<typename ObjectType::type>;
+};
+
+/// Lowest and highest raw number of an object: the limits of the EDS, otherwise the range of its bits.
+template <class ObjectType>
+[[nodiscard]] constexpr RawOf<typename ObjectType::type> low_limit() {
+  using Type = RawOf<typename ObjectType::type>;
   if constexpr (requires { ObjectType::low_limit; }) {
-    return ObjectType::low_limit;
+    return to_raw(ObjectType::low_limit);
   } else if constexpr (std::is_integral_v<Type> && std::is_signed_v<Type> && ObjectType::bits < sizeof(Type) * 8) {
     return static_cast<Type>(-(Type{1} << (ObjectType::bits - 1)));
   } else {
@@ -66,10 +73,10 @@ template <class ObjectType>
 }
 
 template <class ObjectType>
-[[nodiscard]] constexpr typename ObjectType::type high_limit() {
-  using Type = typename ObjectType::type;
+[[nodiscard]] constexpr RawOf<typename ObjectType::type> high_limit() {
+  using Type = RawOf<typename ObjectType::type>;
   if constexpr (requires { ObjectType::high_limit; }) {
-    return ObjectType::high_limit;
+    return to_raw(ObjectType::high_limit);
   } else if constexpr (std::is_same_v<Type, bool>) {
     return true;
   } else if constexpr (std::is_integral_v<Type> && ObjectType::bits < sizeof(Type) * 8) {

@@ -29,7 +29,9 @@ class ObjectStore {
   [[nodiscard]] typename ObjectType::type get() const {
     constexpr entry::Word word = word_of<ObjectType>();
     using Type = typename ObjectType::type;
-    if constexpr (entry::place_of(word) == entry::Place::ram) {
+    if constexpr (Meaningful<Type>) {
+      return from_raw<Type>(get<NumbersOf<ObjectType>>());
+    } else if constexpr (entry::place_of(word) == entry::Place::ram) {
       return load<Type, entry::offset_of(word)>(reinterpret_cast<const std::uint8_t*>(&values_));
     } else if constexpr (entry::place_of(word) == entry::Place::rom) {
       return load<Type, entry::offset_of(word)>(static_cast<const std::uint8_t*>(Device::dictionary.constants));
@@ -44,13 +46,20 @@ class ObjectStore {
 
   /// Sets an object in RAM. Returns whether its value has changed.
   template <DictionaryObject ObjectType>
-  bool set(const typename ObjectType::type& value) {
+  requires(!Meaningful<typename ObjectType::type>) bool set(const typename ObjectType::type& value) {
     constexpr entry::Word word = word_of<ObjectType>();
     static_assert(entry::place_of(word) == entry::Place::ram, "a constant of the EDS cannot be set");
     const bool changed = !holds(ram() + entry::offset_of(word), value);
     std::memcpy(std::assume_aligned<alignof(typename ObjectType::type)>(ram() + entry::offset_of(word)), &value,
                 sizeof value);
     return changed;
+  }
+
+  /// The same for a value with a meaning, by its raw number: a class of two bytes is passed by its address.
+  template <DictionaryObject ObjectType>
+  requires Meaningful<typename ObjectType::type>
+  [[gnu::always_inline]] bool set(const typename ObjectType::type& value) {
+    return set<NumbersOf<ObjectType>>(to_raw(value));
   }
 
   /// Whether an object can be set: constants cannot.

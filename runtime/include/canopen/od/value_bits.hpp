@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "canopen/od/object.hpp"
+#include "canopen/od/typed_value.hpp"
 #include "canopen/od/value.hpp"
 
 namespace canopen::value_detail {
@@ -30,7 +31,9 @@ concept TextValue = StringValue<Type> && std::same_as<decltype(std::declval<cons
 /// Returns the bits of a value as on the wire; above those of its type, signed values are sign-extended.
 template <class Type>
 [[nodiscard]] constexpr auto raw_of(const Type& value) {
-  if constexpr (std::is_same_v<Type, float>) {
+  if constexpr (Meaningful<Type>) {
+    return raw_of(to_raw(value));
+  } else if constexpr (std::is_same_v<Type, float>) {
     return std::bit_cast<std::uint32_t>(value);
   } else if constexpr (std::is_same_v<Type, double>) {
     return std::bit_cast<std::uint64_t>(value);
@@ -49,7 +52,9 @@ template <class Type>
 
 template <class Type>
 [[nodiscard]] constexpr std::uint64_t to_bits(const Type& value) {
-  if constexpr (std::is_signed_v<Type> && std::is_integral_v<Type>) {
+  if constexpr (Meaningful<Type>) {
+    return to_bits(to_raw(value));
+  } else if constexpr (std::is_signed_v<Type> && std::is_integral_v<Type>) {
     return static_cast<std::uint64_t>(value);
   } else {
     return raw_of(value);
@@ -72,7 +77,9 @@ template <class Type, unsigned Bits>
 /// Returns a value from its `Bits` bits; the other bits of `raw` must be zero.
 template <class Type, unsigned Bits>
 [[nodiscard]] constexpr Type from_bits(std::uint64_t raw) {
-  if constexpr (std::is_same_v<Type, float>) {
+  if constexpr (Meaningful<Type>) {
+    return from_raw<Type>(from_bits<RawOf<Type>, Bits>(raw));
+  } else if constexpr (std::is_same_v<Type, float>) {
     return std::bit_cast<float>(static_cast<std::uint32_t>(raw));
   } else if constexpr (std::is_same_v<Type, double>) {
     return std::bit_cast<double>(raw);
@@ -95,7 +102,9 @@ template <class Type, unsigned Bits>
 template <DictionaryObject Object>
 [[nodiscard]] typename Object::type value_from(std::span<std::uint8_t> bytes) {
   using Type = typename Object::type;
-  if constexpr (std::is_same_v<Type, Domain>) {
+  if constexpr (Meaningful<Type>) {
+    return from_raw<Type>(value_from<NumbersOf<Object>>(bytes));
+  } else if constexpr (std::is_same_v<Type, Domain>) {
     const auto size = static_cast<std::uint32_t>(bytes.size());
     return Domain{bytes.data(), size, size};
   } else if constexpr (Object::bits == 0) {

@@ -12,9 +12,11 @@
 #include <utility>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/base/constant_errors.hpp"
 #include "canopen/base/result.hpp"
 #include "canopen/od/accepted_values.hpp"
 #include "canopen/od/object.hpp"
+#include "canopen/od/typed_value.hpp"
 #include "canopen/od/value.hpp"
 
 namespace canopen {
@@ -41,6 +43,15 @@ concept Integer = std::integral<ValueType> && !std::same_as<ValueType, bool> && 
 template <class ValueType>
 concept Number = Integer<ValueType> || std::floating_point<ValueType>;
 
+template <class Type>
+struct NumberIn {
+  using type = void;
+};
+template <class Number>
+struct NumberIn<RawNumber<Number>> {
+  using type = Number;
+};
+
 }  // namespace value_for_detail
 
 /// A value that can be written to an object: of the same type, an integer to an integer, any number to a REAL.
@@ -50,13 +61,22 @@ concept ValueFor = NumberObject<ObjectType> &&
      (value_for_detail::Integer<ValueType> && value_for_detail::Integer<typename ObjectType::type>) ||
      (value_for_detail::Number<ValueType> && std::floating_point<typename ObjectType::type>));
 
-/// A type whose values all fit into another one: the same type, or an integer or REAL that is not wider.
+/// A type whose values all fit into another one: the same type, an integer or REAL that is not wider, or the raw number
+/// of a value with a meaning.
 template <class ValueType, class Type>
 concept FitsInto = std::same_as<ValueType, Type> ||
-                   (value_for_detail::Integer<ValueType>&& value_for_detail::Integer<Type>&& std::cmp_greater_equal(
-                        std::numeric_limits<ValueType>::min(), std::numeric_limits<Type>::min()) &&
+                   (is_raw_number<ValueType>&& Meaningful<Type>&&
+                        std::same_as<typename value_for_detail::NumberIn<ValueType>::type, RawOf<Type>>) ||
+                   (value_for_detail::Integer<ValueType> && value_for_detail::Integer<Type> &&
+                    std::cmp_greater_equal(std::numeric_limits<ValueType>::min(), std::numeric_limits<Type>::min()) &&
                     std::cmp_less_equal(std::numeric_limits<ValueType>::max(), std::numeric_limits<Type>::max())) ||
                    (std::same_as<ValueType, float> && std::same_as<Type, double>);
+
+/// An object of a closed enumeration: `is_value` is true for the values that it accepts.
+template <class ObjectType>
+concept ClosedObject = requires(typename ObjectType::type value) {
+  { ObjectType::is_value(value) } -> std::same_as<bool>;
+};
 
 /// Checks a value against the range of the object's type and its limits: value_too_high, value_too_low, or
 /// invalid_value for a NaN written to a REAL with limits, and for a value between the limits that is not accepted. A
@@ -64,7 +84,12 @@ concept FitsInto = std::same_as<ValueType, Type> ||
 template <NumberObject ObjectType, ValueFor<ObjectType> ValueType>
 [[nodiscard]] constexpr AbortCode check_value(ValueType value) {
   using Type = typename ObjectType::type;
-  if constexpr (value_for_detail::Integer<Type>) {
+  if constexpr (Meaningful<Type>) {
+    if constexpr (ClosedObject<ObjectType>) {
+      if (!ObjectType::is_value(value)) return AbortCode::invalid_value;
+    }
+    return check_value<NumbersOf<ObjectType>>(to_raw(value));
+  } else if constexpr (value_for_detail::Integer<Type>) {
     if (std::cmp_greater(value, high_limit<ObjectType>())) return AbortCode::value_too_high;
     if (std::cmp_less(value, low_limit<ObjectType>())) return AbortCode::value_too_low;
     if (!accepts<ObjectType>(static_cast<Type>(value))) return AbortCode::invalid_value;
@@ -147,16 +172,16 @@ concept Variable = !std::is_const_v<ValueType>;
 /// an integer may be those of its type; a REAL with limits rejects NaN.
 template <DictionaryObject ObjectType>
 inline constexpr bool rejects_values = [] {
-  using Type = typename ObjectType::type;
+  using Type = RawOf<typename ObjectType::type>;
   if constexpr (!std::is_arithmetic_v<Type> || std::same_as<Type, bool>) {
     return false;
   } else {
     bool any = requires { ObjectType::accepted; }
-    || ObjectType::bits < sizeof(Type) * 8;
+    || ClosedObject<ObjectType> || ObjectType::bits < sizeof(Type) * 8;
     if constexpr (requires { ObjectType::low_limit; })
-      any = any || !std::is_integral_v<Type> || ObjectType::low_limit != std::numeric_limits<Type>::lowest();
+      any = any || !std::is_integral_v<Type> || to_raw(ObjectType::low_limit) != std::numeric_limits<Type>::lowest();
     if constexpr (requires { ObjectType::high_limit; })
-      any = any || !std::is_integral_v<Type> || ObjectType::high_limit != std::numeric_limits<Type>::max();
+      any = any || !std::is_integral_v<Type> || to_raw(ObjectType::high_limit) != std::numeric_limits<Type>::max();
     return any;
   }
 }();
@@ -266,6 +291,135 @@ class ValueOf {
   type value_;
 };
 
+/// A constant with a unit for an object with a meaning, as the parameter of a function.
+template <NumberObject ObjectType>
+class ConstantOf {
+ public:
+  using type = typename ObjectType::type;
+
+  /// A constant with a unit: `set(od::setpoint{}, 21.5_degC)`.
+  template <class Unit, std::int64_t Numerator, std::int64_t Denominator>
+  requires is_quantity<type>
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  constexpr ConstantOf(Constant<Unit, Numerator, Denominator>) {
+    using Found = quantity_detail::Fitting<type, ObjectType, Constant<Unit, Numerator, Denominator>>;
+    if constexpr (Found::result == quantity_detail::Fit::fits) {
+      value_ = from_raw<type>(Found::number);
+    } else if constexpr (Found::result == quantity_detail::Fit::between) {
+      constant_error::between<ObjectType, typename Found::Nearest, typename Found::Next>();
+    } else if constexpr (Found::result == quantity_detail::Fit::above) {
+      constant_error::above<ObjectType, typename Found::Nearest>();
+    } else if constexpr (Found::result == quantity_detail::Fit::below) {
+      constant_error::below<ObjectType, typename Found::Nearest>();
+    } else if constexpr (Found::result == quantity_detail::Fit::not_exact) {
+      constant_error::not_exact<ObjectType, Unit>();
+    } else {
+      constant_error::other_dimension<ObjectType, Unit>();
+    }
+  }
+  /// A value of another type.
+  template <class ValueType>
+  requires(!FitsInto<ValueType, type> && !is_raw_number<ValueType> && !(is_quantity<type> && is_constant<ValueType>))
+      // NOLINTNEXTLINE(google-explicit-constructor)
+      constexpr ConstantOf(const ValueType&) {
+    if constexpr (std::is_arithmetic_v<ValueType>) {
+      constant_error::number<ObjectType, ValueType>();
+    } else {
+      constant_error::value_of_another<ObjectType, ValueType>();
+    }
+  }
+  [[nodiscard]] constexpr type value() const { return value_; }
+
+ protected:
+  constexpr ConstantOf() = default;
+
+  /// Returns a raw number as a value. One that is not accepted is not a constant expression.
+  template <class Number>
+  [[nodiscard]] static consteval type accepted(RawNumber<Number> constant) {
+    using namespace value_for_detail;
+    const AbortCode code = check_value<NumbersOf<ObjectType>>(constant.number);
+    if (constant_is_above_the_high_limit<ObjectType>[element_of(code, AbortCode::value_too_high)]) return {};
+    if (constant_is_below_the_low_limit<ObjectType>[element_of(code, AbortCode::value_too_low)]) return {};
+    const type value = from_raw<type>(static_cast<RawOf<type>>(constant.number));
+    const bool is_other = check_value<ObjectType>(value) == AbortCode::invalid_value;
+    if (constant_is_not_an_accepted_value<ObjectType>[is_other ? 1 : 0]) return {};
+    return value;
+  }
+
+  type value_{};
+};
+
+template <NumberObject ObjectType>
+requires Meaningful<typename ObjectType::type>
+class CheckedValue<ObjectType> : public ConstantOf<ObjectType> {
+ public:
+  using type = typename ObjectType::type;
+  using ConstantOf<ObjectType>::ConstantOf;
+
+  /// Returns value_too_high, value_too_low or invalid_value for a value that the object does not accept.
+  [[nodiscard]] static constexpr Result<CheckedValue> from(type value) {
+    if (const AbortCode code = check_value<ObjectType>(value); code != ok) return code;
+    CheckedValue checked;
+    checked.value_ = value;
+    return checked;
+  }
+  /// The same for a raw number.
+  template <class Number>
+  [[nodiscard]] static constexpr Result<CheckedValue> from(RawNumber<Number> raw) {
+    if (const AbortCode code = check_value<NumbersOf<ObjectType>>(raw.number); code != ok) return code;
+    return from(from_raw<type>(static_cast<RawOf<type>>(raw.number)));
+  }
+
+  // NOLINTNEXTLINE(google-explicit-constructor): `pack(od::mode::value::homing)` converts the value
+  consteval CheckedValue(const type& constant) {
+    using namespace value_for_detail;
+    const AbortCode code = check_value<ObjectType>(constant);
+    if (constant_is_above_the_high_limit<ObjectType>[element_of(code, AbortCode::value_too_high)]) return;
+    if (constant_is_below_the_low_limit<ObjectType>[element_of(code, AbortCode::value_too_low)]) return;
+    if (constant_is_not_an_accepted_value<ObjectType>[element_of(code, AbortCode::invalid_value)]) return;
+    this->value_ = constant;
+  }
+  /// A raw number: `set(od::setpoint{}, canopen::raw(215))`.
+  template <class Number>
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  consteval CheckedValue(RawNumber<Number> constant) {
+    this->value_ = ConstantOf<ObjectType>::accepted(constant);
+  }
+  /// A variable, which has not been checked.
+  template <value_for_detail::Variable ValueType>
+  requires(std::same_as<ValueType, type>)
+      // NOLINTNEXTLINE(google-explicit-constructor)
+      constexpr CheckedValue(ValueType&) {
+    static_assert(value_for_detail::is_checked<ObjectType, ValueType>,
+                  "this variable may be outside the limits of the object: use CheckedValue<...>::from(variable)");
+  }
+
+ private:
+  friend class Result<CheckedValue>;
+  constexpr CheckedValue() = default;
+};
+
+template <NumberObject ObjectType>
+requires Meaningful<typename ObjectType::type>
+class ValueOf<ObjectType> : public ConstantOf<ObjectType> {
+ public:
+  using type = typename ObjectType::type;
+  using ConstantOf<ObjectType>::ConstantOf;
+
+  constexpr ValueOf(const type& value) { this->value_ = value; }  // NOLINT(google-explicit-constructor)
+  /// A raw number of the type of the object, which every value of it may be.
+  constexpr ValueOf(RawNumber<RawOf<type>> raw) {  // NOLINT(google-explicit-constructor)
+    this->value_ = from_raw<type>(raw.number);
+  }
+  /// A raw number: `set(od::setpoint{}, canopen::raw(215))`.
+  template <class Number>
+  requires(!std::same_as<Number, RawOf<type>>)
+      // NOLINTNEXTLINE(google-explicit-constructor)
+      consteval ValueOf(RawNumber<Number> constant) {
+    this->value_ = ConstantOf<ObjectType>::accepted(constant);
+  }
+};
+
 /// A string for an object, as the parameter of a function: a value of its type, or a literal, whose length the compiler
 /// checks.
 template <StringObject ObjectType>
@@ -316,13 +470,24 @@ struct Parameter {
   using type = const typename ObjectType::type&;
 };
 template <class ObjectType>
-requires(NumberObject<ObjectType>&& std::is_arithmetic_v<typename ObjectType::type>) struct Parameter<ObjectType> {
+requires(
+    NumberObject<ObjectType>&& std::is_arithmetic_v<RawOf<typename ObjectType::type>>) struct Parameter<ObjectType> {
   using type = ValueOf<ObjectType>;
 };
 template <StringObject ObjectType>
 struct Parameter<ObjectType> {
   using type = StringOf<ObjectType>;
 };
+
+/// Returns the value of an object with this value or raw number.
+template <class Type, FitsInto<Type> ValueType>
+[[nodiscard]] constexpr Type value_as(ValueType value) {
+  if constexpr (is_raw_number<ValueType>) {
+    return from_raw<Type>(value.number);
+  } else {
+    return value;
+  }
+}
 
 template <class Type>
 [[nodiscard]] constexpr const Type& value_in(const Type& value) {

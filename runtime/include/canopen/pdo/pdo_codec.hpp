@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "canopen/base/bit_copy.hpp"
+#include "canopen/od/typed_value.hpp"
 #include "canopen/od/value_bits.hpp"
 
 namespace canopen::pdo_detail {
@@ -62,7 +63,7 @@ template <unsigned Bits, class Type>
 /// Returns the low `Bits` bits of a value; the others are zero.
 template <unsigned Bits, class Type>
 [[nodiscard]] constexpr Raw<Bits> masked(const Type& value) {
-  if constexpr (std::is_same_v<Type, bool>) {
+  if constexpr (std::is_same_v<RawOf<Type>, bool>) {
     return unmasked<Bits>(value);
   } else {
     return unmasked<Bits>(value) & static_cast<Raw<Bits>>(mask(Bits));
@@ -201,11 +202,16 @@ template <class Type, unsigned At, unsigned Bits, unsigned Align, unsigned First
 /// are read too.
 template <class Type, unsigned At, unsigned Bits, unsigned Align = 1, bool Shared = false>
 [[nodiscard]] constexpr Type value_at(const Data& data) {
-  constexpr Window window = Shared ? shared_window_of(At, Bits, Align) : window_of(At, Bits, Align);
-  if constexpr (window.bytes > 0) {
-    if (!std::is_constant_evaluated()) return value_in_window<Type, At, Bits, Align, window.first, window.bytes>(data);
+  if constexpr (Meaningful<Type>) {
+    return from_raw<Type>(value_at<RawOf<Type>, At, Bits, Align, Shared>(data));
+  } else {
+    constexpr Window window = Shared ? shared_window_of(At, Bits, Align) : window_of(At, Bits, Align);
+    if constexpr (window.bytes > 0) {
+      if (!std::is_constant_evaluated())
+        return value_in_window<Type, At, Bits, Align, window.first, window.bytes>(data);
+    }
+    return from_bits<Type, Bits>(take_bytewise<At, Bits>(data.data()));
   }
-  return from_bits<Type, Bits>(take_bytewise<At, Bits>(data.data()));
 }
 
 /// Writes the low `Bits` bits of a value at bit `At` of data, where the bits must be zero.

@@ -11,6 +11,7 @@
 
 #include "canopen/base/label.hpp"
 #include "canopen/base/verdict.hpp"
+#include "canopen/od/typed_value.hpp"
 #include "canopen/pdo/pdo.hpp"
 
 namespace canopen {
@@ -22,7 +23,9 @@ enum class EntryKind : std::uint8_t { boolean, unsigned_integer, signed_integer,
 
 template <class Type>
 [[nodiscard]] constexpr EntryKind kind_of() {
-  if constexpr (std::is_same_v<Type, bool>) {
+  if constexpr (Meaningful<Type>) {
+    return kind_of<RawOf<Type>>();
+  } else if constexpr (std::is_same_v<Type, bool>) {
     return EntryKind::boolean;
   } else if constexpr (std::is_floating_point_v<Type>) {
     return EntryKind::real;
@@ -35,7 +38,16 @@ template <class Type>
   }
 }
 
-enum class Link : std::uint8_t { fits, too_short, nothing_begins_there, other_length, other_kind };
+/// Whether two quantities have one unit, scale and offset. A value without unit is what its consumer takes it for.
+template <class One, class Other>
+inline constexpr bool is_same_quantity = true;
+template <class One, class Unit, class Scale, class Offset, class Other, class OtherUnit, class OtherScale,
+          class OtherOffset>
+inline constexpr bool
+    is_same_quantity<Quantity<One, Unit, Scale, Offset>, Quantity<Other, OtherUnit, OtherScale, OtherOffset>> =
+        std::is_same_v<Unit, OtherUnit>&& std::is_same_v<Scale, OtherScale>&& std::is_same_v<Offset, OtherOffset>;
+
+enum class Link : std::uint8_t { fits, too_short, nothing_begins_there, other_length, other_kind, other_unit };
 
 /// Placeholder in a message for a missing object.
 struct NoObject {
@@ -75,7 +87,8 @@ struct LinkOf {
     } else if constexpr (Producer::bits != Consumer::bits) {
       return Link::other_length;
     } else {
-      return kind_of<typename Producer::type>() == kind_of<typename Consumer::type>() ? Link::fits : Link::other_kind;
+      if (kind_of<typename Producer::type>() != kind_of<typename Consumer::type>()) return Link::other_kind;
+      return is_same_quantity<typename Producer::type, typename Consumer::type> ? Link::fits : Link::other_unit;
     }
   }();
 };
@@ -98,6 +111,8 @@ struct CompatibleEntry {
   static_assert(Found != Link::other_length,
                 "PDO link: the entry of the TPDO has another length than that of the RPDO");
   static_assert(Found != Link::other_kind, "PDO link: the entry of the TPDO is of another kind than that of the RPDO");
+  static_assert(Found != Link::other_unit,
+                "PDO link: the entry of the TPDO has another unit, scale or offset than that of the RPDO");
 };
 
 template <std::size_t Position, class Link>

@@ -69,7 +69,7 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
   template <ReceivedBy<Network> SignalType>
   [[nodiscard]] std::optional<typename SignalType::type> get(SignalType) const {
     if (!fresh_[Network::Received::template position_of<SignalType>]) return std::nullopt;
-    return node_.template get<typename SignalType::object>();
+    return value_of<SignalType>();
   }
 
   /// Sends a value with the next PDO, which an event-driven TPDO sends at once. value_too_high or value_too_low: it is
@@ -79,9 +79,9 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
       set(SignalType, std::type_identity_t<ParameterFor<typename SignalType::receiver>> value) {
     return store<SignalType>(value_for_detail::value_in(value));
   }
-  template <SentBy<Network> SignalType, FitsInto<typename SignalType::type> Value>
+  template <SentBy<Network> SignalType, FitsInto<typename SignalType::receiver::type> Value>
   requires(can_be_refused<typename SignalType::receiver>) [[nodiscard]] AbortCode set(SignalType, Value value) {
-    return store<SignalType>(value);
+    return store<SignalType>(value_for_detail::value_as<typename SignalType::receiver::type>(value));
   }
   /// A constant, whose limits the compiler checks.
   template <SentBy<Network> SignalType>
@@ -93,7 +93,7 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
   /// Returns the value that is sent.
   template <SentBy<Network> SignalType>
   [[nodiscard]] typename SignalType::type get(SignalType) const {
-    return node_.template get<typename SignalType::object>();
+    return value_of<SignalType>();
   }
 
   /// Starts the master's device, resets the nodes and boots them.
@@ -169,9 +169,14 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
   };
 
   template <class SignalType>
-  [[nodiscard]] AbortCode store(const typename SignalType::type& value) {
+  [[nodiscard]] AbortCode store(const typename SignalType::receiver::type& value) {
     if (const AbortCode code = check_limits<typename SignalType::receiver>(value); code != ok) return code;
-    return node_.template set<typename SignalType::object>(value);
+    return node_.template set<typename SignalType::object>(from_raw<typename SignalType::object::type>(to_raw(value)));
+  }
+  /// The value of the master's object, which may not have the meaning that the node's object has.
+  template <class SignalType>
+  [[nodiscard]] typename SignalType::type value_of() const {
+    return from_raw<typename SignalType::type>(to_raw(node_.template get<typename SignalType::object>()));
   }
 
   [[nodiscard]] static std::optional<std::size_t> position_of(NodeId node_id) {
@@ -199,8 +204,7 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
       if (SignalType::Rpdo::number == number) fresh_[Position] = true;
     });
     Network::Received::for_each([&]<class SignalType, std::size_t Position>() {
-      if (SignalType::Rpdo::number == number)
-        std::get<Position>(functions_).call(node_.template get<typename SignalType::object>());
+      if (SignalType::Rpdo::number == number) std::get<Position>(functions_).call(value_of<SignalType>());
     });
   }
 
@@ -218,11 +222,11 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
       constexpr bool is_on_change =
           SignalType::Tpdo::parameters.event_timer == 0 && (SignalType::Tpdo::parameters.transmission_type == 0 ||
                                                             SignalType::Tpdo::parameters.transmission_type >= 254);
-      if constexpr (is_on_change && std::is_arithmetic_v<typename SignalType::type>) {
+      if constexpr (is_on_change && std::is_arithmetic_v<RawOf<typename SignalType::type>>) {
         if (SignalType::node != position) return;
-        using Object = typename SignalType::object;
-        const typename SignalType::type value = node_.template get<Object>();
-        static_cast<void>(node_.template set<Object>(static_cast<typename SignalType::type>(value == 0 ? 1 : 0)));
+        using Object = NumbersOf<typename SignalType::object>;
+        const typename Object::type value = node_.template get<Object>();
+        static_cast<void>(node_.template set<Object>(static_cast<typename Object::type>(value == 0 ? 1 : 0)));
         static_cast<void>(node_.template set<Object>(value));
       }
     });

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "canopen/can/cob_id.hpp"
+#include "canopen/od/typed_value.hpp"
 #include "canopen/pdo/pdo.hpp"
 #include "canopen/pdo/pdo_compatible.hpp"
 
@@ -37,8 +38,11 @@ struct LinkedEntry {
   using Rpdo = Consumed;
   using sent_object = typename Produced::template Entry<Sent>;
   using taken_object = typename Consumed::template Entry<Taken>;
-  using type = typename taken_object::type;
-  static_assert(std::is_same_v<type, typename sent_object::type>,
+  /// The type of the receiver's object; that of the sender's if only this one has a meaning.
+  using type = std::conditional_t<Meaningful<typename taken_object::type> || !Meaningful<typename sent_object::type>,
+                                  typename taken_object::type, typename sent_object::type>;
+  static_assert(std::is_same_v<RawOf<type>, RawOf<typename sent_object::type>> &&
+                    std::is_same_v<RawOf<type>, RawOf<typename taken_object::type>>,
                 "signal: the entry of the TPDO is of another type than that of the RPDO");
   static_assert(Produced::offsets[Sent] == Consumed::offsets[Taken] && sent_object::bits == taken_object::bits,
                 "signal: the entry of the TPDO is at other bits than that of the RPDO");

@@ -57,7 +57,9 @@ class EncoderNode : public ProfileNode<EncoderNode<Parts, BusType, Sensor, Handl
 
     template <DictionaryObject Object>
     requires is_preset<Object>
-    void written(Object, const typename Object::type& value) { encoder->preset(static_cast<std::int32_t>(value)); }
+    void written(Object, const typename Object::type& value) {
+      encoder->preset(static_cast<std::int32_t>(to_raw(value)));
+    }
 
     template <DictionaryObject Object>
     requires(has_timers&& Object::index == 0x6200) void written(Object, const typename Object::type& value,

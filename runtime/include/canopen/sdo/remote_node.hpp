@@ -14,6 +14,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "canopen/base/constant_errors.hpp"
+//
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
 #include "canopen/base/result.hpp"
@@ -52,16 +54,21 @@ template <class Object>
 inline constexpr bool is_readable = readable(Object::access);
 template <class Object>
 inline constexpr bool is_writable = writable(Object::access);
+/// A raw number, whose range is checked when it is written.
 template <class Object, class ValueType>
-inline constexpr bool has_the_type_of = NumberObject<Object>
-                                            ? ValueFor<ValueType, Object>
-                                            : std::is_convertible_v<ValueType, std::span<const std::uint8_t>> ||
-                                                  (StringObject<Object> &&
-                                                   std::is_convertible_v<ValueType, std::string_view>);
+inline constexpr bool is_raw_for = is_raw_number<ValueType>&& Meaningful<typename Object::type>;
+
+template <class Object, class ValueType>
+inline constexpr bool has_the_type_of = is_raw_for<Object, ValueType> ||
+                                        (NumberObject<Object>
+                                             ? ValueFor<ValueType, Object>
+                                             : std::is_convertible_v<ValueType, std::span<const std::uint8_t>> ||
+                                                   (StringObject<Object> &&
+                                                    std::is_convertible_v<ValueType, std::string_view>));
 template <class Object, auto Value>
 inline constexpr bool is_within_the_limits_of = true;
 template <class Object, auto Value>
-requires ValueFor<decltype(Value), Object>
+requires ValueFor<std::remove_cv_t<decltype(Value)>, Object>
 inline constexpr bool is_within_the_limits_of<Object, Value> = check_value<Object>(Value) == ok;
 
 /// A string, or a literal, for a string object.
@@ -92,6 +99,33 @@ template <class Object, class Device, class ValueType>
 template <class ValueType, class Object, class Device>
 concept WrittenTo = device_has<Object, Device> && is_of_device<Object, Device> && is_writable<Object> &&
     has_the_type_of<Object, ValueType>;
+
+/// Whether ConstantOf<Object> checks a value: that of an object with a meaning that can be written.
+template <class ValueType, class Object, class Device>
+concept IsConstantFor = Meaningful<typename Object::type> && WrittenTo<typename Object::type, Object, Device> &&
+    !has_the_type_of<Object, ValueType>;
+
+/// Whether no overload of `write` but the one that fails to compile accepts a value.
+template <class ValueType, class Object, class Device>
+concept NeverWritten = !WrittenTo<ValueType, Object, Device> && !IsConstantFor<ValueType, Object, Device>;
+
+/// Checks a value or a raw number against the object.
+template <class Object, class ValueType>
+[[nodiscard]] constexpr AbortCode check(const ValueType& value) {
+  if constexpr (is_raw_for<Object, ValueType>) {
+    return CheckedValue<Object>::from(value).abort_code();
+  } else {
+    return check_value<Object>(value);
+  }
+}
+template <class Object, class ValueType>
+[[nodiscard]] constexpr typename Object::type converted(const ValueType& value) {
+  if constexpr (is_raw_for<Object, ValueType>) {
+    return from_raw<typename Object::type>(static_cast<RawOf<typename Object::type>>(value.number));
+  } else {
+    return static_cast<typename Object::type>(value);
+  }
+}
 
 /// What `write` returns where it does not compile: the compiler then does not also report that it is not used.
 struct NotWritten : Result<void> {
@@ -140,12 +174,19 @@ class RemoteNode {
   /// Starts to write an object. A value outside the limits is rejected at once and not sent.
   template <NumberObject Object, remote_detail::WrittenTo<Object, Device> ValueType>
   [[nodiscard]] Result<void> write(ValueType value, TimePoint now) {
-    if (const AbortCode code = check_value<Object>(value); code != ok) return code;
-    return begun(client_.template write<Object>(static_cast<typename Object::type>(value), now));
+    if (const AbortCode code = remote_detail::check<Object>(value); code != ok) return code;
+    return begun(client_.template write<Object>(remote_detail::converted<Object>(value), now));
+  }
+  /// Starts to write a constant of an object with a meaning: with a unit.
+  template <NumberObject Object>
+  requires(Meaningful<typename Object::type>&& remote_detail::WrittenTo<typename Object::type, Object, Device>)
+      [[nodiscard]] Result<void> write(std::type_identity_t<ConstantOf<Object>> constant, TimePoint now) {
+    return begun(client_.template write<Object>(constant.value(), now));
   }
   /// What does not compile.
   template <NumberObject Object, class ValueType>
-  remote_detail::NotWritten write(ValueType, TimePoint) {
+  requires remote_detail::NeverWritten<ValueType, Object, Device> remote_detail::NotWritten write(ValueType,
+                                                                                                  TimePoint) {
     static_cast<void>(remote_detail::can_be_written<Object, Device, ValueType>());
     return {};
   }

@@ -11,6 +11,7 @@
 #include "canopen/base/abort_code.hpp"
 #include "canopen/can/cob_id.hpp"
 #include "canopen/nmt/error_behavior.hpp"
+#include "canopen/od/closed_objects.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object_store.hpp"
 #include "canopen/pdo/communication_parameters.hpp"
@@ -100,6 +101,7 @@ class StoredValueCheck {
   [[nodiscard]] static bool is_possible(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                         std::span<const std::uint8_t> bytes) {
     if (EntryAccess<Device>::check_value(index, sub_index, word, bytes) != ok) return false;
+    if (check_closed<Device>(index, sub_index, bytes) != ok) return false;
     if constexpr (!Device::dictionary.accepted.empty()) {
       if (!bytes.empty() && !Device::dictionary.accepts(index, static_cast<std::int8_t>(bytes[0]))) return false;
     }
