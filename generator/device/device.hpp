@@ -6,12 +6,14 @@
 #include <canopen/od/access.hpp>
 #include <canopen/od/data_type.hpp>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "device/information.hpp"
+#include "device/meaning/meaning.hpp"
 #include "diagnostics/diagnostics.hpp"
 #include "pdo/mapping.hpp"
 #include "values/little_endian.hpp"
@@ -57,7 +59,9 @@ struct Entry {
   std::string download_file;  ///< of a DOMAIN: file for the download
 
   // Keys of some vendors.
-  std::string unit, factor, description;
+  std::string unit, factor, offset, description;
+
+  std::shared_ptr<const Meaning> meaning;  ///< shared by entries with the same one; null without one
 
   [[nodiscard]] const std::string& parameter_name() const { return replaced_name.empty() ? name : replaced_name; }
   /// The PDOs to which the entry can be mapped.
@@ -141,12 +145,13 @@ struct Device {
   std::uint32_t vendor_number = 0;
   std::uint32_t product_number = 0;
   std::uint32_t revision_number = 0;
-  std::optional<std::uint8_t> node_id;  ///< fixed at generation time
-  std::vector<std::uint16_t> dummies;   ///< data type indices that RPDOs may map as dummy entries
-  std::vector<Object> objects;          ///< ascending by index
-  std::vector<TypeDefinition> types;    ///< ascending by index: for DataType, not part of the dictionary
-  std::vector<Pdo> pdos;                ///< RPDOs, then TPDOs, each ascending by number
-  Information information;              ///< the other contents of the data sheet
+  std::optional<std::uint8_t> node_id;     ///< fixed at generation time
+  std::vector<std::uint16_t> dummies;      ///< data type indices that RPDOs may map as dummy entries
+  std::vector<Object> objects;             ///< ascending by index
+  std::vector<TypeDefinition> types;       ///< ascending by index: for DataType, not part of the dictionary
+  std::vector<Pdo> pdos;                   ///< RPDOs, then TPDOs, each ascending by number
+  Information information;                 ///< the other contents of the data sheet
+  std::vector<ErrorCodeName> error_codes;  ///< of EMCY, 1003h and 603Fh, ascending
 
   [[nodiscard]] const Object* find(std::uint16_t index) const;
   [[nodiscard]] const Entry* find(std::uint16_t index, std::uint8_t sub_index) const;

@@ -12,16 +12,20 @@
 
 namespace edsc {
 
-/// With the unit of the entry if raw values are in it (no Factor other than 1). UNSIGNED32 values of communication
+/// A number with a unit is the physical value: raw * scale + offset. UNSIGNED32 values of communication
 /// parameters, such as COB-IDs and mappings, in hexadecimal only.
 void append_value(std::string& text, const Entry& entry, std::span<const std::uint8_t> bytes);
 /// The same as a separate string.
 [[nodiscard]] std::string value_text(const Entry& entry, std::span<const std::uint8_t> bytes);
 
+/// The quantity of a number with a unit, scale or offset; null for other entries.
+[[nodiscard]] const Quantity* quantity_of(const Entry& entry);
+
 /// `0..3000 rpm`: the limits in the EDS; empty if it has none.
 [[nodiscard]] std::string limits_text(const Entry& entry);
 
-/// Checks the limits of the entry; its unit may follow the number, unless the entry has a Factor other than 1.
+/// Checks the limits of the entry. A number with a unit is a physical value, also in another unit of the dimension; a
+/// number without a unit is the raw number.
 [[nodiscard]] ParsedValue parse_value_text(const Entry& entry, std::string_view text);
 
 }  // namespace edsc

@@ -8,6 +8,7 @@
 #include "device/complete_device.hpp"
 #include "device/index_range.hpp"
 #include "device/limits.hpp"
+#include "device/meaning/resolve_meaning.hpp"
 #include "device/objects/entry_resolver.hpp"
 #include "device/objects/object_resolver.hpp"
 #include "device/objects/resolve_modules.hpp"
@@ -42,6 +43,7 @@ class Resolver {
     complete_device(device_, options_, diagnostics_);
     check_option_keys();
     apply_names();
+    resolve_meaning(device_, options_, diagnostics_);
     resolve_pdos(device_, options_);
     mark_broken_pdos(device_, options_, diagnostics_);
     resolve_stored_eds(device_, options_, diagnostics_);

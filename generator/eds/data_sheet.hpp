@@ -74,7 +74,7 @@ struct EntryDescription {
   Field upload_file;
   Field download_file;
   Field param_refd;
-  Field unit, factor, description;  ///< not of CiA 306, but widely used
+  Field unit, factor, offset, description;  ///< not of CiA 306, but widely used
 };
 
 struct SubObjectDescription : EntryDescription {

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "device/meaning/resolve_meaning.hpp"
 #include "device/objects/object_type_name.hpp"
 #include "device/resolve_information.hpp"
 #include "device/types/type_name.hpp"
@@ -80,7 +81,13 @@ std::optional<Entry> EntryResolver::resolve(const EntryDescription& description,
   entry.param_refd = description.param_refd.text;
   entry.unit = description.unit.text;
   entry.factor = description.factor.text;
+  entry.offset = description.offset.text;
   entry.description = description.description.text;
+  if (auto quantity = quantity_of_keys(description, diagnostics_)) {
+    Meaning meaning;
+    meaning.quantity = std::move(quantity);
+    entry.meaning = std::make_shared<const Meaning>(std::move(meaning));
+  }
   if (!is_opaque) resolve_default(description, entry);
   if (has_limits(*entry.type)) resolve_limits(description, type, entry);
   resolve_files(description, entry);

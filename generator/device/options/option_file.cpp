@@ -30,8 +30,13 @@ std::optional<EntryKey> parse_option_entry(std::string_view text) {
 
 void OptionFile::error(const JsonFile::Json& value, std::string_view path, std::string_view message,
                        std::vector<Note> notes) {
+  error_at(file_.name_position(value), path, message, std::move(notes));
+}
+
+void OptionFile::error_at(const Position& position, std::string_view path, std::string_view message,
+                          std::vector<Note> notes) {
   const std::string place = path.empty() ? "" : fmt::format("{}: ", path);
-  diagnostics_.error("options", file_.name_position(value), fmt::format("{}{}", place, message), std::move(notes));
+  diagnostics_.error("options", position, fmt::format("{}{}", place, message), std::move(notes));
 }
 
 }  // namespace edsc

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "device/options/options.hpp"
+#include "device/entry_address.hpp"
 #include "json/json_file.hpp"
 
 namespace edsc {
@@ -30,6 +30,9 @@ class OptionFile {
   /// in the message: `lss.fastscan`; it may be empty.
   void error(const JsonFile::Json& value, std::string_view path, std::string_view message,
              std::vector<Note> notes = {});
+  /// The same at a position.
+  void error_at(const Position& position, std::string_view path, std::string_view message,
+                std::vector<Note> notes = {});
 
  private:
   const JsonFile& file_;

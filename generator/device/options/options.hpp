@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "device/entry_address.hpp"
+#include "device/meaning/description.hpp"
 #include "diagnostics/diagnostics.hpp"
 #include "text/source_file.hpp"
 
@@ -108,6 +109,8 @@ struct Options {
   /// Expected findings.
   std::vector<AllowedFindings> allow;
   std::vector<DeprecatedOption> deprecated;
+  /// What values mean: units, names of values and bits, error codes.
+  MeaningDescriptions meaning;
 
   [[nodiscard]] bool is_settable(std::uint16_t index, std::uint8_t sub_index) const {
     return std::ranges::binary_search(settable, EntryKey{index, sub_index});

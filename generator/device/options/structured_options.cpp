@@ -69,6 +69,7 @@ class StructuredOptions {
         {"", "settable", &StructuredOptions::settable},
         {"", "connected_modules", &StructuredOptions::connected_modules},
         {"", "stored_eds", &StructuredOptions::stored_eds},
+        {"", "meaning", &StructuredOptions::meaning},
         {"", "silence", &StructuredOptions::silence},
         {"", "allow", &StructuredOptions::allow},
         {"pdo", "static_mapping", &StructuredOptions::static_mapping},
@@ -164,6 +165,8 @@ class StructuredOptions {
                 "not an entry such as \"1018h:04\"");
     sort_unique(options_.settable);
   }
+
+  void meaning(const json& value) { options_.meaning = read_meaning(value, path_, MeaningSource::options, file_); }
 
   void silence(const json& value) {
     each_item(value, "expected an array of rule ids", [&](const json& item) {

@@ -99,6 +99,7 @@ inline constexpr KeyRow<EntryDescription> entry_keys[] = {
     // Not in CiA 306, but usual.
     {{"Unit"}, &EntryDescription::unit},
     {{"Factor"}, &EntryDescription::factor},
+    {{"Offset"}, &EntryDescription::offset},
     {{"Description"}, &EntryDescription::description},
 };
 

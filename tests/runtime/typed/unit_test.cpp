@@ -36,8 +36,10 @@ TEST(Unit, IsFoundByEachSpellingWhichNoOtherUnitHas) {
     EXPECT_TRUE(names.insert(row.name).second) << row.name;
     EXPECT_TRUE(literals.insert(row.literal).second) << row.literal;
     std::set<std::string_view> own{row.symbol, row.ascii};
-    for (const std::string_view other : row.other_spellings) {
-      if (other.empty()) break;
+    for (std::string_view rest = row.other_spellings; !rest.empty();) {
+      const std::size_t end = rest.find(';');
+      const std::string_view other = rest.substr(0, end);
+      rest = end == std::string_view::npos ? std::string_view{} : rest.substr(end + 1);
       EXPECT_TRUE(own.insert(other).second) << row.name << " has " << other << " twice";
     }
     for (const std::string_view spelling : own) {
