@@ -88,7 +88,7 @@ struct UnitRow {
   Row(degree,                           deg,        "°",      "deg",      angle,                   1,          360,           0,     1,   true, "º") \
   Row(radian,                           rad,        "rad",    "rad",      angle,                   78256779,   491701844,     0,     1,   false, "") \
   Row(milliradian,                      mrad,       "mrad",   "mrad",     angle,                   78256779,   491701844000,  0,     1,   false, "") \
-  Row(revolution_per_second,            rev_per_s,  "rev/s",  "rev/s",    rotational_speed,        1,          1,             0,     1,   true, "rps;r/s;1/s;s-1") \
+  Row(revolution_per_second,            rev_per_s,  "rev/s",  "rev/s",    rotational_speed,        1,          1,             0,     1,   true, "rps;RPS;r/s;1/s;s-1") \
   Row(revolution_per_minute,            rpm,        "rpm",    "rpm",      rotational_speed,        1,          60,            0,     1,   true, "1/min;min-1;min^-1;min⁻¹;rev/min;r/min;RPM;U/min") \
   Row(degree_per_second,                deg_per_s,  "°/s",    "deg/s",    rotational_speed,        1,          360,           0,     1,   true, "") \
   Row(radian_per_second,                rad_per_s,  "rad/s",  "rad/s",    rotational_speed,        78256779,   491701844,     0,     1,   false, "") \
@@ -98,7 +98,7 @@ struct UnitRow {
   Row(millimetre_per_second,            mm_per_s,   "mm/s",   "mm/s",     speed,                   1,          1000,          0,     1,   true, "") \
   Row(millimetre_per_minute,            mm_per_min, "mm/min", "mm/min",   speed,                   1,          60000,         0,     1,   true, "") \
   Row(micrometre_per_second,            um_per_s,   "µm/s",   "um/s",     speed,                   1,          1000000,       0,     1,   true, "μm/s") \
-  Row(revolution_per_second_squared,    rev_per_s2, "rev/s²", "rev/s2",   rotational_acceleration, 1,          1,             0,     1,   true, "rev/s^2;r/s2") \
+  Row(revolution_per_second_squared,    rev_per_s2, "rev/s²", "rev/s2",   rotational_acceleration, 1,          1,             0,     1,   true, "rev/s^2;r/s2;RPS^2") \
   Row(revolution_per_minute_per_second, rpm_per_s,  "rpm/s",  "rpm/s",    rotational_acceleration, 1,          60,            0,     1,   true, "") \
   Row(degree_per_second_squared,        deg_per_s2, "°/s²",   "deg/s2",   rotational_acceleration, 1,          360,           0,     1,   true, "deg/s^2") \
   Row(radian_per_second_squared,        rad_per_s2, "rad/s²", "rad/s2",   rotational_acceleration, 78256779,   491701844,     0,     1,   false, "rad/s^2") \
@@ -108,7 +108,7 @@ struct UnitRow {
   Row(degree_per_second_cubed,          deg_per_s3, "°/s³",   "deg/s3",   rotational_jerk,         1,          360,           0,     1,   true, "deg/s^3") \
   Row(metre_per_second_cubed,           m_per_s3,   "m/s³",   "m/s3",     jerk,                    1,          1,             0,     1,   true, "m/s^3") \
   Row(millimetre_per_second_cubed,      mm_per_s3,  "mm/s³",  "mm/s3",    jerk,                    1,          1000,          0,     1,   true, "mm/s^3") \
-  Row(increment,                        inc,        "inc",    "inc",      increments,              1,          1,             0,     1,   true, "increment;increments") \
+  Row(increment,                        inc,        "inc",    "inc",      increments,              1,          1,             0,     1,   true, "increment;increments;Inc;pulse;pulses") \
   Row(increment_per_second,             inc_per_s,  "inc/s",  "inc/s",    increment_rate,          1,          1,             0,     1,   true, "") \
   Row(increment_per_millisecond,        inc_per_ms, "inc/ms", "inc/ms",   increment_rate,          1000,       1,             0,     1,   true, "") \
   Row(increment_per_second_squared,     inc_per_s2, "inc/s²", "inc/s2",   increment_acceleration,  1,          1,             0,     1,   true, "inc/s^2") \
