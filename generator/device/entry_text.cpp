@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include "device/meaning/physical.hpp"
+#include "device/meaning/value_parts.hpp"
 #include "text/ascii.hpp"
+#include "text/suggestion.hpp"
 #include "values/append.hpp"
 #include "values/little_endian.hpp"
 #include "values/read_value.hpp"
@@ -16,12 +18,37 @@ using canopen::DataType;
 using canopen::DataTypeRow;
 using Bytes = std::span<const std::uint8_t>;
 
-/// A number with its unit, or another value.
-void append_with_unit(std::string& text, const Entry& entry, Bytes bytes) {
+/// The number in an integer; negative for a negative INTEGER.
+std::int64_t integer_of(const DataTypeRow& type, std::uint64_t bits) {
+  if (type.kind != DataClass::signed_integer) return static_cast<std::int64_t>(bits);
+  return static_cast<std::int64_t>(sign_extended(bits, type.bits));
+}
+
+/// A value by its meaning, or else by its type.
+void append_by_meaning(std::string& text, const Entry& entry, Bytes bytes, std::optional<std::int64_t> other) {
   const DataTypeRow& type = *entry.type;
-  const Quantity* const quantity = quantity_of(entry);
-  if (quantity == nullptr || bytes.size() * 8 != type.bits) return append_value(text, type, bytes);
-  append_physical(text, *quantity, type, number_of(bytes), type.bits);
+  if (!entry.meaning || bytes.size() != bytes_for(type.bits)) return append_value(text, type, bytes);
+  const std::uint64_t bits = number_of(bytes);
+  if (const Meaning* const meaning = meaning_of_integer(entry)) {
+    const NamedValue* const named = meaning->values ? meaning->values->find(integer_of(type, bits)) : nullptr;
+    if (named != nullptr) {
+      append_decimal(text, named->value);
+      text.append(" ").append(named->name);
+      return;
+    }
+    if (meaning->has_fields()) {
+      append_hex_number(text, bits, (type.bits + 3U) / 4);
+      text += ' ';
+      const std::size_t before = text.size();
+      append_parts(text, *meaning, bits, other);
+      if (text.size() == before) text.pop_back();
+      return;
+    }
+  }
+  if (const Quantity* const quantity = quantity_of(entry)) {
+    return append_physical(text, *quantity, type, bits, type.bits);
+  }
+  append_value(text, type, bytes);
 }
 
 std::string limit_with_unit(const Entry& entry, const Value& limit) {
@@ -48,7 +75,56 @@ std::string limit_problem(const Entry& entry, std::uint64_t number, std::string_
   return "";
 }
 
+/// `; did you mean "homing"?`, or all names if there are few.
+std::string names_hint(const Enumeration& values, std::string_view text) {
+  constexpr std::size_t max_listed = 8;
+  std::vector<std::string> names;
+  for (const NamedValue& one : values.values) names.push_back(one.name);
+  std::string hint = did_you_mean(text, names);
+  if (hint.empty() && names.size() <= max_listed) hint = fmt::format("; expected {}", fmt::join(names, ", "));
+  return hint;
+}
+
+/// The value of a name, or of names of bits; nothing for a text that begins with a number.
+std::optional<RawNumber> named_number(const Meaning& meaning, const DataTypeRow& type, std::string_view text) {
+  if (text.empty() || is_digit(text.front()) || text.front() == '-' || text.front() == '+') return std::nullopt;
+  if (meaning.values) {
+    if (const NamedValue* const named = meaning.values->find(text)) {
+      return RawNumber{static_cast<std::uint64_t>(named->value) & low_bits(type.bits), ""};
+    }
+    if (!meaning.has_fields()) {
+      return RawNumber{
+          0, fmt::format("\"{}\" is not a number or a named value{}", text, names_hint(*meaning.values, text))};
+    }
+  }
+  return meaning.has_fields() ? std::optional{parse_parts(meaning, text)} : std::nullopt;
+}
+
+/// The number before names, if the whole text is what edsc writes for it: `3 profile_velocity`.
+std::optional<ParsedValue> number_with_names(const Entry& entry, std::string_view text) {
+  const std::size_t blank = text.find(' ');
+  if (blank == std::string_view::npos) return std::nullopt;
+  ParsedValue number = parse_value_text(*entry.type, text.substr(0, blank));
+  if (!number.ok() || value_text(entry, number.bytes) != text) return std::nullopt;
+  return number;
+}
+
+/// Why a closed enumeration does not have the number; empty if it does.
+std::string closed_problem(const Entry& entry, std::uint64_t bits, std::string_view text) {
+  const Meaning* const meaning = meaning_of_integer(entry);
+  if (meaning == nullptr || !meaning->values || !meaning->values->closed) return "";
+  if (meaning->values->find(integer_of(*entry.type, bits)) != nullptr) return "";
+  return fmt::format("{} is not a value of {} \"{}\"{}", text, entry_label(entry.index, entry.sub_index), entry.name,
+                     names_hint(*meaning->values, text));
+}
+
 }  // namespace
+
+const Meaning* meaning_of_integer(const Entry& entry) {
+  const bool is_integer =
+      entry.type->kind == DataClass::unsigned_integer || entry.type->kind == DataClass::signed_integer;
+  return is_integer ? entry.meaning.get() : nullptr;
+}
 
 const Quantity* quantity_of(const Entry& entry) {
   const bool is_number = entry.type->kind == DataClass::unsigned_integer ||
@@ -56,19 +132,21 @@ const Quantity* quantity_of(const Entry& entry) {
   return is_number && entry.meaning && entry.meaning->quantity ? &*entry.meaning->quantity : nullptr;
 }
 
-void append_value(std::string& text, const Entry& entry, Bytes bytes) {
+void append_value(std::string& text, const Entry& entry, Bytes bytes, std::optional<std::int64_t> other) {
   constexpr std::uint16_t cycle_period = 0x1006, window_length = 0x1007;  // in us
   const bool communication =
       entry.index >= 0x1000 && entry.index < 0x2000 && entry.index != cycle_period && entry.index != window_length;
-  if (!communication || entry.type->type != DataType::unsigned32 || bytes.size() != sizeof(std::uint32_t)) {
-    return append_with_unit(text, entry, bytes);
+  const bool has_names = entry.meaning && (entry.meaning->values || entry.meaning->has_fields());
+  if (!communication || has_names || entry.type->type != DataType::unsigned32 ||
+      bytes.size() != sizeof(std::uint32_t)) {
+    return append_by_meaning(text, entry, bytes, other);
   }
   append_hex_number(text, number_of(bytes), 8);
 }
 
-std::string value_text(const Entry& entry, Bytes bytes) {
+std::string value_text(const Entry& entry, Bytes bytes, std::optional<std::int64_t> other) {
   std::string text;
-  append_value(text, entry, bytes);
+  append_value(text, entry, bytes, other);
   return text;
 }
 
@@ -91,19 +169,28 @@ ParsedValue parse_value_text(const Entry& entry, std::string_view text) {
   if (!number) return parse_value_text(type, text);
   text = trim(text);
   ParsedValue result;
-  const Quantity* const quantity = quantity_of(entry);
-  const auto physical = quantity != nullptr ? split_physical(text) : std::nullopt;
-  if (physical && (physical->unit == quantity->symbol || canopen::find_unit(physical->unit) != nullptr)) {
-    const RawNumber raw = raw_number(*quantity, type, *physical);
+  const auto take = [&](const RawNumber& raw) {
     if (raw.ok()) {
       result.bytes = bytes_of(raw.bits, bytes_for(type.bits));
     } else {
       result.problem = fmt::format("{}: {} \"{}\"", raw.problem, entry_label(entry.index, entry.sub_index), entry.name);
     }
+  };
+  const Meaning* const meaning = meaning_of_integer(entry);
+  const auto named = meaning != nullptr ? named_number(*meaning, type, text) : std::nullopt;
+  const Quantity* const quantity = quantity_of(entry);
+  const auto physical = quantity != nullptr ? split_physical(text) : std::nullopt;
+  if (named) {
+    take(*named);
+  } else if (physical && (physical->unit == quantity->symbol || canopen::find_unit(physical->unit) != nullptr)) {
+    take(raw_number(*quantity, type, *physical));
+  } else if (auto with_names = meaning != nullptr ? number_with_names(entry, text) : std::nullopt) {
+    result = std::move(*with_names);
   } else {
     result = parse_value_text(type, text);
   }
   if (result.ok()) result.problem = limit_problem(entry, number_of(result.bytes), text);
+  if (result.ok()) result.problem = closed_problem(entry, number_of(result.bytes), text);
   if (!result.ok()) result.bytes.clear();
   return result;
 }

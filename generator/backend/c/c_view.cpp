@@ -110,7 +110,7 @@ class CView {
   [[nodiscard]] ordered_json view() {
     ordered_json entries = ordered_json::array();
     for (const Object& object : device_.objects) {
-      for (const Entry& entry : object.entries) entries.push_back(entry_row(object, entry));
+      for (const Entry& entry : object.entries) entries.push_back(entry_row(entry));
     }
     ordered_json pdos = ordered_json::array();
     ordered_json left_out = ordered_json::array();
@@ -121,7 +121,7 @@ class CView {
   }
 
  private:
-  [[nodiscard]] ordered_json entry_row(const Object& object, const Entry& entry) {
+  [[nodiscard]] ordered_json entry_row(const Entry& entry) {
     const std::string name = fmt::format(
         "{}_{}", space_, scope_.take(names_.full(entry), fmt::format("{:04x}_{:02x}", entry.index, entry.sub_index)));
     const std::string type = type_of(*entry.type);

@@ -34,8 +34,21 @@ double real_of(const DataTypeRow& type, std::uint64_t bits) {
   return std::bit_cast<double>(bits);
 }
 
+/// Decimals that distinguish neighbouring raw numbers: a hundredth of the scale, at most 12.
+unsigned decimals_of(const Quantity& quantity) {
+  constexpr unsigned max_decimals = 12;
+  const double step = std::abs(quantity.scale.to_double());
+  unsigned decimals = 0;
+  for (double unit = 1; decimals < max_decimals && unit > step / 100; unit /= 10) ++decimals;
+  return decimals;
+}
+
+std::string number_text(const Rational& number, const Quantity& quantity) {
+  return decimal_text(number, decimals_of(quantity));
+}
+
 std::string with_unit(const Rational& number, const Quantity& quantity) {
-  std::string text = decimal_text(number);
+  std::string text = number_text(number, quantity);
   append_unit(text, quantity.symbol);
   return text;
 }
@@ -145,7 +158,8 @@ RawNumber raw_number(const Quantity& quantity, const DataTypeRow& type, const Ph
     // A number without a finite decimal is accepted as edsc prints it.
     for (const std::int64_t raw : {floor->raw, floor->raw + 1}) {
       const auto physical = physical_of(quantity, raw);
-      if (physical && text.unit == quantity.symbol && decimal_text(*physical) == text.number && is_in_type(type, raw)) {
+      if (physical && text.unit == quantity.symbol && number_text(*physical, quantity) == text.number &&
+          is_in_type(type, raw)) {
         return {bits_of(type, raw), ""};
       }
     }

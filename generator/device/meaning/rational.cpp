@@ -155,7 +155,7 @@ std::optional<Rational> parse_rational(std::string_view text) {
   return denominator ? quotient(*numerator, *denominator) : std::nullopt;
 }
 
-std::string decimal_text(const Rational& number, unsigned digits) {
+std::string decimal_text(const Rational& number, unsigned decimals) {
   std::string text = number.numerator() < 0 ? "-" : "";
   const std::uint64_t numerator = magnitude(number.numerator());
   const auto denominator = static_cast<std::uint64_t>(number.denominator());
@@ -167,8 +167,7 @@ std::string decimal_text(const Rational& number, unsigned digits) {
   while (odd % 5 == 0) odd /= 5;
   const bool is_finite = odd == 1;
   std::string fraction;
-  unsigned significant = 0;
-  while (rest != 0 && (is_finite || significant < digits)) {
+  while (rest != 0 && (is_finite || fraction.size() < decimals)) {
     // Long division: ten times rest does not fit for large denominators.
     unsigned digit = 0;
     std::uint64_t tenfold = 0;
@@ -181,7 +180,6 @@ std::string decimal_text(const Rational& number, unsigned digits) {
     }
     rest = tenfold;
     fraction += static_cast<char>('0' + digit);
-    if (significant != 0 || digit != 0) ++significant;
   }
   const bool rounds_up = rest != 0 && rest >= denominator - rest;
   for (std::size_t at = fraction.size(); rounds_up && at-- > 0;) {

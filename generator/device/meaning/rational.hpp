@@ -44,8 +44,8 @@ class Rational {
 /// Reads `1/10`, `-40`, `0.001`, `1e-3`; blanks may surround it.
 [[nodiscard]] std::optional<Rational> parse_rational(std::string_view text);
 
-/// `21.5`; a fraction that is not a finite decimal is rounded to `digits` significant digits.
-[[nodiscard]] std::string decimal_text(const Rational& number, unsigned digits = 6);
+/// `21.5`; a fraction that is not a finite decimal is rounded to this number of decimals.
+[[nodiscard]] std::string decimal_text(const Rational& number, unsigned decimals = 6);
 
 /// `1/10`, `3`: the exact number.
 [[nodiscard]] std::string fraction_text(const Rational& number);

@@ -117,6 +117,19 @@ struct StatedQuantity {
   }
 };
 
+/// Whether a decimal of the EDS is another number than that of the options. A decimal that is rounded is not: 0.33 for
+/// 1/3.
+bool contradicts(const Rational& in_options, const Rational& in_eds) {
+  const std::string decimal = decimal_text(in_eds);
+  const std::size_t point = decimal.find('.');
+  if (point == std::string::npos) return in_options != in_eds;
+  std::int64_t last_decimal = 1;
+  for (std::size_t i = point + 1; i < decimal.size() && last_decimal < 1'000'000'000'000'000; ++i) last_decimal *= 10;
+  const auto rounding = Rational::of(1, 2 * last_decimal);
+  const auto low = difference(in_eds, *rounding), high = sum(in_eds, *rounding);
+  return !low || !high ? in_options != in_eds : in_options < *low || *high < in_options;
+}
+
 class Resolver {
  public:
   Resolver(Device& device, const Options& options, Diagnostics& diagnostics)
@@ -259,10 +272,10 @@ class Resolver {
         (keys.unit == nullptr || keys.unit != canopen::find_unit(stated.unit->value))) {
       report(stated.unit->position, "unit", stated.unit->value, keys.symbol);
     }
-    if (stated.scale != nullptr && !entry.factor.empty() && keys.scale != stated.scale->value) {
+    if (stated.scale != nullptr && !entry.factor.empty() && contradicts(stated.scale->value, keys.scale)) {
       report(stated.scale->position, "scale", fraction_text(stated.scale->value), entry.factor);
     }
-    if (stated.offset != nullptr && keys.offset != Rational{0} && keys.offset != stated.offset->value) {
+    if (stated.offset != nullptr && keys.offset != Rational{0} && contradicts(stated.offset->value, keys.offset)) {
       report(stated.offset->position, "offset", fraction_text(stated.offset->value), fraction_text(keys.offset));
     }
   }

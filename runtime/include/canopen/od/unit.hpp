@@ -198,8 +198,9 @@ struct UnitRow {
   Row(megabit_per_second,               Mbit_per_s, "Mbit/s", "Mbit/s",   data_rate,               1000000,    1,             0,     1,   true, "Mbps")
 // clang-format on
 
-#define CANOPEN_UNIT(name, literal, symbol, ascii, dimension, numerator, denominator, offset, under, is_exact, spellings) \
-  {#name,           #literal, symbol,       ascii, Dimension::dimension, {numerator, denominator},                  \
+#define CANOPEN_UNIT(name, literal, symbol, ascii, dimension, numerator, denominator, offset, under, is_exact, \
+                     spellings)                                                                                \
+  {#name,           #literal, symbol,   ascii, Dimension::dimension, {numerator, denominator},                 \
    {offset, under}, is_exact, spellings},
 inline constexpr UnitRow unit_rows[] = {CANOPEN_UNITS(CANOPEN_UNIT)};
 #undef CANOPEN_UNIT
