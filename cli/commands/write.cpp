@@ -48,7 +48,9 @@ ParsedValue value_to_write(const Settings& settings, const LiveEntry& entry) {
   }
   const std::string text = fmt::format("{}", fmt::join(settings.value, " "));
   if (settings.raw) return parse_value_text(*find_type("octets"), text);
-  if (entry.entry != nullptr && !settings.force) return parse_value_text(*entry.entry, text);
+  if (entry.entry != nullptr) {
+    return settings.force ? parse_unchecked(*entry.entry, text) : parse_value_text(*entry.entry, text);
+  }
   if (entry.type != nullptr) return parse_value_text(*entry.type, text);
   value.problem = "without an EDS the value requires a type (--type u16), or bytes (--raw)";
   return value;

@@ -18,6 +18,11 @@ using canopen::DataType;
 using canopen::DataTypeRow;
 using Bytes = std::span<const std::uint8_t>;
 
+bool is_number(const DataTypeRow& type) {
+  return type.kind == DataClass::unsigned_integer || type.kind == DataClass::signed_integer ||
+         type.kind == DataClass::real;
+}
+
 /// The number in an integer; negative for a negative INTEGER.
 std::int64_t integer_of(const DataTypeRow& type, std::uint64_t bits) {
   if (type.kind != DataClass::signed_integer) return static_cast<std::int64_t>(bits);
@@ -85,19 +90,12 @@ std::string names_hint(const Enumeration& values, std::string_view text) {
   return hint;
 }
 
-/// The value of a name, or of names of bits; nothing for a text that begins with a number.
-std::optional<RawNumber> named_number(const Meaning& meaning, const DataTypeRow& type, std::string_view text) {
-  if (text.empty() || is_digit(text.front()) || text.front() == '-' || text.front() == '+') return std::nullopt;
-  if (meaning.values) {
-    if (const NamedValue* const named = meaning.values->find(text)) {
-      return RawNumber{static_cast<std::uint64_t>(named->value) & low_bits(type.bits), ""};
-    }
-    if (!meaning.has_fields()) {
-      return RawNumber{
-          0, fmt::format("\"{}\" is not a number or a named value{}", text, names_hint(*meaning.values, text))};
-    }
-  }
-  return meaning.has_fields() ? std::optional{parse_parts(meaning, text)} : std::nullopt;
+/// The value of a name, or of names of bits.
+RawNumber named_number(const Meaning& meaning, const DataTypeRow& type, std::string_view text) {
+  const NamedValue* const named = meaning.values ? meaning.values->find(text) : nullptr;
+  if (named != nullptr) return {static_cast<std::uint64_t>(named->value) & low_bits(type.bits), ""};
+  if (meaning.has_fields()) return parse_parts(meaning, text);
+  return {0, fmt::format("\"{}\" is not a number or a named value{}", text, names_hint(*meaning.values, text))};
 }
 
 /// The number before names, if the whole text is what edsc writes for it: `3 profile_velocity`.
@@ -127,17 +125,14 @@ const Meaning* meaning_of_integer(const Entry& entry) {
 }
 
 const Quantity* quantity_of(const Entry& entry) {
-  const bool is_number = entry.type->kind == DataClass::unsigned_integer ||
-                         entry.type->kind == DataClass::signed_integer || entry.type->kind == DataClass::real;
-  return is_number && entry.meaning && entry.meaning->quantity ? &*entry.meaning->quantity : nullptr;
+  return is_number(*entry.type) && entry.meaning && entry.meaning->quantity ? &*entry.meaning->quantity : nullptr;
 }
 
 void append_value(std::string& text, const Entry& entry, Bytes bytes, std::optional<std::int64_t> other) {
-  constexpr std::uint16_t cycle_period = 0x1006, window_length = 0x1007;  // in us
-  const bool communication =
-      entry.index >= 0x1000 && entry.index < 0x2000 && entry.index != cycle_period && entry.index != window_length;
-  const bool has_names = entry.meaning && (entry.meaning->values || entry.meaning->has_fields());
-  if (!communication || has_names || entry.type->type != DataType::unsigned32 ||
+  const bool is_communication = entry.index >= 0x1000 && entry.index < 0x2000;
+  const bool has_meaning =
+      entry.meaning && (entry.meaning->quantity || entry.meaning->values || entry.meaning->has_fields());
+  if (!is_communication || has_meaning || entry.type->type != DataType::unsigned32 ||
       bytes.size() != sizeof(std::uint32_t)) {
     return append_by_meaning(text, entry, bytes, other);
   }
@@ -162,35 +157,45 @@ std::string limits_text(const Entry& entry) {
   return text;
 }
 
-ParsedValue parse_value_text(const Entry& entry, std::string_view text) {
+ParsedValue parse_unchecked(const Entry& entry, std::string_view text) {
   const DataTypeRow& type = *entry.type;
-  const bool number = type.kind == DataClass::unsigned_integer || type.kind == DataClass::signed_integer ||
-                      type.kind == DataClass::real;
-  if (!number) return parse_value_text(type, text);
+  if (!is_number(type)) return parse_value_text(type, text);
   text = trim(text);
   ParsedValue result;
   const auto take = [&](const RawNumber& raw) {
     if (raw.ok()) {
-      result.bytes = bytes_of(raw.bits, bytes_for(type.bits));
+      result = {bytes_of(raw.bits, bytes_for(type.bits)), ""};
     } else {
       result.problem = fmt::format("{}: {} \"{}\"", raw.problem, entry_label(entry.index, entry.sub_index), entry.name);
     }
   };
-  const Meaning* const meaning = meaning_of_integer(entry);
-  const auto named = meaning != nullptr ? named_number(*meaning, type, text) : std::nullopt;
   const Quantity* const quantity = quantity_of(entry);
   const auto physical = quantity != nullptr ? split_physical(text) : std::nullopt;
-  if (named) {
-    take(*named);
-  } else if (physical && (physical->unit == quantity->symbol || canopen::find_unit(physical->unit) != nullptr)) {
+  if (physical && (physical->unit == quantity->symbol || canopen::find_unit(physical->unit) != nullptr)) {
     take(raw_number(*quantity, type, *physical));
-  } else if (auto with_names = meaning != nullptr ? number_with_names(entry, text) : std::nullopt) {
-    result = std::move(*with_names);
-  } else {
-    result = parse_value_text(type, text);
+    if (!result.ok()) result.bytes.clear();
+    return result;
   }
-  if (result.ok()) result.problem = limit_problem(entry, number_of(result.bytes), text);
-  if (result.ok()) result.problem = closed_problem(entry, number_of(result.bytes), text);
+  result = parse_value_text(type, text);
+  const Meaning* const meaning = meaning_of_integer(entry);
+  const bool has_names = meaning != nullptr && (meaning->values || meaning->has_fields());
+  if (has_names && !is_digit(text.empty() ? '0' : text.front())) {
+    // A name may look like a number: each, or 0EACh.
+    const RawNumber named = named_number(*meaning, type, text);
+    if (named.ok() || !result.ok()) take(named);
+  }
+  if (has_names && !result.ok()) {
+    if (auto with_names = number_with_names(entry, text)) result = std::move(*with_names);
+  }
+  if (!result.ok()) result.bytes.clear();
+  return result;
+}
+
+ParsedValue parse_value_text(const Entry& entry, std::string_view text) {
+  ParsedValue result = parse_unchecked(entry, text);
+  if (!result.ok() || !is_number(*entry.type)) return result;
+  result.problem = limit_problem(entry, number_of(result.bytes), trim(text));
+  if (result.ok()) result.problem = closed_problem(entry, number_of(result.bytes), trim(text));
   if (!result.ok()) result.bytes.clear();
   return result;
 }

@@ -37,5 +37,7 @@ void append_value(std::string& text, const Entry& entry, std::span<const std::ui
 /// values and fields of a word (`parse_parts`). Checks the limits of the entry, and that a value of a closed
 /// enumeration is named.
 [[nodiscard]] ParsedValue parse_value_text(const Entry& entry, std::string_view text);
+/// The same without these checks, to send a value that the device should reject.
+[[nodiscard]] ParsedValue parse_unchecked(const Entry& entry, std::string_view text);
 
 }  // namespace edsc

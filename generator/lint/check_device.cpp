@@ -20,6 +20,7 @@ void check_device(const NamedDevice& named, const DataSheet& sheet, const Option
   check_writes(context);
   check_mpdos(context);
   check_profile(context);
+  check_meanings(context);
   check_names(context, named.names);
 }
 

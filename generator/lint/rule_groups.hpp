@@ -34,6 +34,8 @@ void check_pdo_mapping(const RuleContext& context);
 void check_mpdos(const RuleContext& context);
 /// Requirements of the device profile in 1000h.
 void check_profile(const RuleContext& context);
+/// Units, named values and fields of the options and the EDS.
+void check_meanings(const RuleContext& context);
 /// Names as C++ identifiers.
 void check_names(const RuleContext& context, const CppNames& names);
 

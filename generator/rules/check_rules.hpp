@@ -251,7 +251,7 @@ inline constexpr Rule check[] = {
     Rule{"network-event-rate", note, "an event-driven TPDO whose rate nothing limits", "CiA 301, 7.5.2.37"},
     // This compiler.
     Rule{"meaning-bits", error, "a field is outside the type of its entry, or overlaps another one", "edsc"},
-    Rule{"meaning-value", warning, "a named value is outside the type or limits of its entry", "edsc", error},
+    Rule{"meaning-value", error, "a named value is outside the type or limits of its entry", "edsc", warning},
     Rule{"meaning-unit", error, "a unit that edsc does not know", "edsc", note},
     Rule{"meaning-scale", error, "a scale is 0, or Factor or Offset is not a number", "edsc", warning},
     Rule{"meaning-contradicts-eds", warning, "the options state another unit, scale or offset than the EDS", "edsc"},

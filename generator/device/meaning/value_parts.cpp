@@ -135,6 +135,8 @@ void append_parts(std::string& text, const Meaning& meaning, std::uint64_t raw, 
       text += part.named->name;
     } else if (field.quantity) {
       append_physical(text, *field.quantity, type_of(field), static_cast<std::uint64_t>(part.number), 64);
+    } else if (field.bits >= 8 && !field.is_signed) {
+      append_hex_number(text, static_cast<std::uint64_t>(part.number), (field.bits + 3U) / 4);
     } else {
       append_decimal(text, part.number);
     }

@@ -55,7 +55,7 @@ void for_each_part(const Meaning& meaning, std::uint64_t raw, std::optional<std:
 }
 
 /// Appends the parts of a word, separated by `, `: `operation_enabled, remote, gear=3`. Flags that are not set are
-/// left out.
+/// left out. Numbers of 8 and more bits are hexadecimal: `can_id=181h`.
 void append_parts(std::string& text, const Meaning& meaning, std::uint64_t raw,
                   std::optional<std::int64_t> other = std::nullopt);
 

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "device/entry_text.hpp"
-#include "device/scaled_unit.hpp"
 #include "values/parse_value.hpp"
 
 namespace edsc {
@@ -145,7 +144,11 @@ Entry speed() {
   entry.index = 0x2000;
   entry.name = "Speed setpoint";
   entry.type = &row(DataType::integer16);
-  entry.unit = "rpm";
+  Meaning meaning;
+  meaning.quantity.emplace();
+  meaning.quantity->symbol = "rpm";
+  meaning.quantity->unit = canopen::find_unit("rpm");
+  entry.meaning = std::make_shared<const Meaning>(meaning);
   entry.low_limit = Value{static_cast<std::uint64_t>(-100), false, false, "", {}, {}};
   entry.high_limit = Value{3000, false, false, "", {}, {}};
   return entry;
@@ -162,51 +165,6 @@ TEST(ValueText, KnowsUnitAndLimitsOfAnEntry) {
   EXPECT_EQ(parse_value_text(entry, "-101").problem,
             "-101 is below the low limit of 2000h:00 \"Speed setpoint\", -100");
   EXPECT_TRUE(parse_value_text(entry, "3001").bytes.empty());
-}
-
-/// Raw values of a scaled entry are not in its Unit: 1000 with Unit V and Factor 0.1 is 100 V.
-TEST(ValueText, AValueOfAScaledEntryHasNoUnit) {
-  struct Row {
-    std::string factor;
-    std::string unit;
-    bool is_scaled;
-    std::string physical_unit;
-  };
-  const Row rows[] = {
-      {"", "rpm", false, "rpm"},
-      {"1", "rpm", false, "rpm"},
-      {"1.0", "rpm", false, "rpm"},
-      {"0.1", "rpm", true, "0.1 rpm"},
-      {"10", "rpm", true, "10 rpm"},
-      {"-1", "rpm", true, "-1 rpm"},
-      {"1e-3", "rpm", true, "1e-3 rpm"},
-      {"0", "rpm", true, "0 rpm"},
-      {"0,1", "rpm", true, "0,1 rpm"},
-      {"1/10", "rpm", true, "1/10 rpm"},
-      {"tenths", "rpm", true, "tenths rpm"},
-      {"0.1", "", true, "0.1"},
-      {"", "", false, ""},
-  };
-  for (const Row& row : rows) {
-    SCOPED_TRACE(row.factor);
-    Entry entry = speed();
-    entry.factor = row.factor;
-    entry.unit = row.unit;
-    EXPECT_EQ(is_scaled(entry), row.is_scaled);
-    EXPECT_EQ(physical_unit(entry), row.physical_unit);
-    const std::string suffix = row.is_scaled || row.unit.empty() ? "" : " " + row.unit;
-    EXPECT_EQ(value_text(entry, Bytes{0x9C, 0xFF}), "-100" + suffix);
-    EXPECT_EQ(limits_text(entry), "-100..3000" + suffix);
-    EXPECT_EQ(parse_value_text(entry, "-100").bytes, (Bytes{0x9C, 0xFF}));
-    if (row.unit.empty()) continue;
-    const ParsedValue with_unit = parse_value_text(entry, "5 " + row.unit);
-    EXPECT_EQ(with_unit.ok(), !row.is_scaled) << with_unit.problem;
-    if (row.is_scaled) {
-      EXPECT_EQ(with_unit.problem, "\"5 rpm\" has a unit, but 2000h:00 \"Speed setpoint\" is in steps of " +
-                                       row.physical_unit +
-                                       " (Factor of the EDS); give the number of steps, without a unit");
-    }
-  }
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ enum class Dimension : std::uint8_t {
   increment_rate,
   increment_acceleration,
   increment_jerk,
+  increment_resolution,
   temperature,
   voltage,
   current,
@@ -113,6 +114,7 @@ struct UnitRow {
   Row(increment_per_millisecond,        inc_per_ms, "inc/ms", "inc/ms",   increment_rate,          1000,       1,             0,     1,   true, "") \
   Row(increment_per_second_squared,     inc_per_s2, "inc/s²", "inc/s2",   increment_acceleration,  1,          1,             0,     1,   true, "inc/s^2") \
   Row(increment_per_second_cubed,       inc_per_s3, "inc/s³", "inc/s3",   increment_jerk,          1,          1,             0,     1,   true, "inc/s^3") \
+  Row(increment_per_revolution,         inc_per_rev, "inc/rev", "inc/rev", increment_resolution,    1,          1,             0,     1,   true, "PPR;ppr;pulses/rev;increments/rev") \
   Row(kelvin,                           K,          "K",      "K",        temperature,             1,          1,             0,     1,   true, "") \
   Row(degree_celsius,                   degC,       "°C",     "degC",     temperature,             1,          1,             27315, 100, true, "ºC;℃;deg C;Celsius") \
   Row(degree_fahrenheit,                degF,       "°F",     "degF",     temperature,             5,          9,             45967, 180, true, "ºF;℉;deg F;Fahrenheit") \
