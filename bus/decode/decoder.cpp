@@ -177,7 +177,7 @@ void Decoder::decode(const TimedFrame& timed, Message& message) {
     case Use::emcy: {
       const NodeModel* const model = model_of(route.node_id);
       message.node_id = route.node_id;
-      return decode_emcy(frame, model != nullptr ? model->profile() : std::uint16_t{0}, message);
+      return decode_emcy(frame, model != nullptr ? &model->device() : nullptr, message);
     }
     case Use::error_control: return decode_error_control(frame, message);
     case Use::lss: return decode_lss(frame, message);
@@ -223,7 +223,7 @@ void Decoder::decode_error_control(const Frame& frame, Message& message) {
 }
 
 void Decoder::decode_pdo(const Frame& frame, std::span<const Route> routes, Message& message) {
-  const NodeModel& node = *model_of(routes.front().node_id);
+  NodeModel& node = *model_of(routes.front().node_id);
   const PdoLayout& pdo = node.pdos()[routes.front().place];
   message.service = pdo.direction == PdoDirection::transmit ? Service::tpdo : Service::rpdo;
   message.node_id = node.node_id();
@@ -239,7 +239,7 @@ void Decoder::decode_pdo(const Frame& frame, std::span<const Route> routes, Mess
     const bool is_own = address.destination && address.node_id == 0;
     return decode_mpdo(frame, address, is_own ? &node : model_of(address.node_id), message);
   }
-  append_pdo(frame, pdo, message);
+  append_pdo(frame, pdo, node, message);
   for (const Route& route : routes.subspan(1)) {
     if (route.use != Use::pdo) continue;
     const PdoLayout& taken = model_of(route.node_id)->pdos()[route.place];

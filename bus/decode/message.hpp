@@ -59,17 +59,22 @@ inline constexpr std::size_t service_count = std::size(services);
   return services[static_cast<std::size_t>(service)];
 }
 
+struct WordText;
+
 /// The value of an object in a PDO or a finished SDO transfer.
 struct MessageValue {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
   std::string_view name;                       ///< empty if the object is in no known EDS
   const canopen::DataTypeRow* type = nullptr;  ///< null if unknown
-  std::string_view unit;
-  std::uint64_t number = 0;             ///< of a PDO: the bits
-  std::uint8_t bits = 0;                ///< of a PDO: their number; 0 if `bytes` holds the value
-  std::span<const std::uint8_t> bytes;  ///< of an SDO, until the next frame
-  std::size_t text_begin = 0;           ///< position of the value in the text of the message
+  const Meaning* meaning = nullptr;            ///< of an integer of the length of its type; null without one
+  const Quantity* quantity = nullptr;          ///< of a number of the length of its type; null without one
+  std::optional<std::int64_t> other;           ///< the value of the object on which fields depend, if known
+  WordText* word = nullptr;                    ///< of a word with fields in a PDO, until the next frame
+  std::uint64_t number = 0;                    ///< of a PDO: the bits
+  std::uint8_t bits = 0;                       ///< of a PDO: their number; 0 if `bytes` holds the value
+  std::span<const std::uint8_t> bytes;         ///< of an SDO, until the next frame
+  std::size_t text_begin = 0;                  ///< position of the value in the text of the message
   std::size_t text_end = 0;
 };
 
@@ -107,6 +112,7 @@ struct Message {
   std::optional<canopen::NmtState> state;      ///< of boot-up, heartbeat, guarding
   std::uint16_t error_code = 0;                ///< of EMCY
   std::uint8_t error_register = 0;             ///< of EMCY
+  std::string_view error_text;                 ///< of EMCY: the name of its code
   std::int16_t counter = -1;                   ///< of SYNC, if present
 
   TransferStep step = TransferStep::none;

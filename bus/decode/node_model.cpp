@@ -47,7 +47,7 @@ std::string display_name(const Object& object, const Entry& entry) {
 
 NodeModel::NodeModel(std::uint8_t node_id, const Device& device, std::uint32_t inhibit_time_unit)
     : node_id_{node_id}, device_{&device}, inhibit_time_unit_{inhibit_time_unit} {
-  profile_ = static_cast<std::uint16_t>(parameter(0x1000, 0).value_or(0));
+  find_selectors();
   lay_out_all();
 }
 
@@ -85,8 +85,37 @@ std::vector<SdoServerIds> NodeModel::further_sdo_servers() const {
   return servers;
 }
 
-DriveWord NodeModel::drive_word(std::uint16_t index, std::uint8_t sub_index) const {
-  return profile_ == 402 ? drive_word_at(index, sub_index) : DriveWord::none;
+void NodeModel::find_selectors() {
+  constexpr std::size_t max_selectors = 256;
+  for (const Object& object : device_->objects) {
+    for (const Entry& entry : object.entries) {
+      if (!entry.meaning || !entry.meaning->depends_on) continue;
+      const auto [index, sub_index] = *entry.meaning->depends_on;
+      const Entry* const other = device_->find(index, sub_index);
+      const bool is_integer = other != nullptr && (other->type->kind == canopen::DataClass::signed_integer ||
+                                                   other->type->kind == canopen::DataClass::unsigned_integer);
+      if (!is_integer || selector_place(index, sub_index) || selectors_.size() >= max_selectors) continue;
+      selectors_.push_back({other, std::nullopt});
+    }
+  }
+}
+
+SelectorPlace NodeModel::selector_place(std::uint16_t index, std::uint8_t sub_index) const {
+  const auto found = std::ranges::find_if(
+      selectors_, [&](const Selector& one) { return one.entry->index == index && one.entry->sub_index == sub_index; });
+  if (found == selectors_.end()) return std::nullopt;
+  return static_cast<std::uint8_t>(found - selectors_.begin());
+}
+
+std::optional<std::int64_t> NodeModel::selector_of(const Entry& entry) const {
+  if (!entry.meaning || !entry.meaning->depends_on) return std::nullopt;
+  return selector(selector_place(entry.meaning->depends_on->first, entry.meaning->depends_on->second));
+}
+
+void NodeModel::select(std::uint8_t place, std::uint64_t number) {
+  Selector& one = selectors_[place];
+  const bool is_signed = one.entry->type->kind == canopen::DataClass::signed_integer;
+  one.value = is_signed ? sign_extended(number, one.entry->type->bits) : static_cast<std::int64_t>(number);
 }
 
 PdoField NodeModel::field(const PlacedObject& mapped) const {
@@ -96,7 +125,16 @@ PdoField NodeModel::field(const PlacedObject& mapped) const {
   if (field.entry != nullptr) {
     field.type = field.entry->type;
     field.name = display_name(*object, *field.entry);
-    if (field.bits == 16) field.drive_word = drive_word(field.index, field.sub_index);
+    field.is_formatted = field.type->bits == field.bits && field.type->kind != canopen::DataClass::string &&
+                         field.type->kind != canopen::DataClass::domain;
+    if (field.is_formatted) {
+      field.format = ValueFormat{*device_, *field.entry};
+      field.selects = selector_place(field.index, field.sub_index);
+      const Meaning* const meaning = field.format.meaning();
+      if (meaning != nullptr && meaning->depends_on) {
+        field.depends_on = selector_place(meaning->depends_on->first, meaning->depends_on->second);
+      }
+    }
   } else if (const auto* dummy = canopen::find_data_type(field.index); dummy != nullptr && field.sub_index == 0) {
     field.type = dummy;
     field.name = "(dummy)";
@@ -138,7 +176,10 @@ void NodeModel::lay_out_all() {
 
 bool NodeModel::learn(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value, bool written) {
   constexpr std::size_t max_bytes = 4;
-  if (value.empty() || value.size() > max_bytes) return false;
+  if (value.empty()) return false;
+  const SelectorPlace selects = selector_place(index, sub_index);
+  if (selects && value.size() == bytes_for(selectors_[*selects].entry->type->bits)) select(*selects, number_of(value));
+  if (value.size() > max_bytes) return false;
   const auto number = static_cast<std::uint32_t>(number_of(value));
   constexpr std::uint16_t store = 0x1010, restore = 0x1011;
   constexpr std::uint8_t communication = 2;  // 1: all parameters
@@ -158,6 +199,7 @@ bool NodeModel::learn(std::uint16_t index, std::uint8_t sub_index, std::span<con
 }
 
 bool NodeModel::reset() {
+  for (Selector& one : selectors_) one.value.reset();
   if (written_ == stored_) return false;
   written_ = stored_;
   lay_out_all();

@@ -9,19 +9,25 @@
 #include <string>
 #include <vector>
 
+#include "decode/value_format.hpp"
 #include "device/device.hpp"
 #include "device/options/options.hpp"
 #include "pdo/mapping.hpp"
-#include "values/drive_words.hpp"
 
 namespace edsc {
 
+/// The place of an object in `NodeModel` on whose value fields of other objects depend.
+using SelectorPlace = std::optional<std::uint8_t>;
+
 /// An object in a PDO.
 struct PdoField : PlacedObject {
-  DriveWord drive_word = DriveWord::none;
   const Entry* entry = nullptr;                ///< null: a dummy, or an entry that does not exist
   const canopen::DataTypeRow* type = nullptr;  ///< null if neither is known
   std::string name = {};                       ///< `Statusword`
+  ValueFormat format = {};                     ///< of a number with the length of its type
+  bool is_formatted = false;                   ///< whether `format` applies
+  SelectorPlace selects = {};                  ///< fields of other objects depend on this one
+  SelectorPlace depends_on = {};               ///< fields of this object depend on that one
 };
 
 struct PdoLayout {
@@ -51,9 +57,6 @@ class NodeModel {
   [[nodiscard]] const Device& device() const { return *device_; }
   /// Of PDOs, in microseconds.
   [[nodiscard]] std::uint32_t inhibit_time_unit() const { return inhibit_time_unit_; }
-  /// The low word of the device type 1000h: 402 for a drive.
-  [[nodiscard]] std::uint16_t profile() const { return profile_; }
-
   [[nodiscard]] const std::vector<PdoLayout>& pdos() const { return pdos_; }
   /// Not valid if the node does not have the service.
   [[nodiscard]] canopen::CobId sync() const { return cob_id(0x1005); }
@@ -62,8 +65,14 @@ class NodeModel {
   /// The servers from 1201h on; every node has the default SDO.
   [[nodiscard]] std::vector<SdoServerIds> further_sdo_servers() const;
 
-  /// Whether an entry is a controlword or statusword of this device.
-  [[nodiscard]] DriveWord drive_word(std::uint16_t index, std::uint8_t sub_index) const;
+  /// The last value, since the boot-up, of the object on which fields of an entry depend: 6061h for 6041h. Nothing if
+  /// the log does not have one, and for other entries.
+  [[nodiscard]] std::optional<std::int64_t> selector_of(const Entry& entry) const;
+  [[nodiscard]] std::optional<std::int64_t> selector(SelectorPlace place) const {
+    return place ? selectors_[*place].value : std::nullopt;
+  }
+  /// A PDO has a value of an object on which fields depend.
+  void select(std::uint8_t place, std::uint64_t number);
 
   /// The value in force of a COB-ID, mapping or timing parameter: of the EDS, or as written or read in the log. Empty
   /// if neither states one.
@@ -86,13 +95,20 @@ class NodeModel {
 
   [[nodiscard]] canopen::CobId cob_id(std::uint16_t index, std::uint8_t sub_index = 0) const;
   [[nodiscard]] PdoField field(const PlacedObject& mapped) const;
+  [[nodiscard]] SelectorPlace selector_place(std::uint16_t index, std::uint8_t sub_index) const;
+  void find_selectors();
   void lay_out(std::size_t pdo);
   void lay_out_all();
 
   std::uint8_t node_id_;
-  std::uint16_t profile_ = 0;
   const Device* device_;
   std::uint32_t inhibit_time_unit_;
+  /// An object on whose value fields of other objects depend.
+  struct Selector {
+    const Entry* entry;
+    std::optional<std::int64_t> value;
+  };
+  std::vector<Selector> selectors_;
   std::vector<PdoLayout> pdos_;  ///< in the order of the device
   Parameters written_;           ///< values that differ from the EDS
   Parameters stored_;            ///< those of them that remain after a reset

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 
-#include "device/scaled_unit.hpp"
 #include "text/counted.hpp"
 #include "values/append.hpp"
 #include "values/little_endian.hpp"
@@ -16,26 +15,35 @@ namespace {
 
 using canopen::Frame;
 
-void append_field(std::string& text, const PdoField& field, std::uint64_t word, Message& message) {
+std::uint64_t number_in(const PdoField& field, std::uint64_t word) {
+  return field.offset < classical_can.bits() ? word >> field.offset & low_bits(field.bits) : 0;
+}
+
+/// `other`: the value of the object on which fields depend.
+void append_field(std::string& text, const PdoField& field, std::uint64_t word, std::optional<std::int64_t> other,
+                  Message& message) {
   MessageValue value;
   value.index = field.index;
   value.sub_index = field.sub_index;
   value.name = field.name;
   value.type = field.type;
-  value.number = field.offset < classical_can.bits() ? word >> field.offset & low_bits(field.bits) : 0;
+  value.number = number_in(field, word);
   value.bits = field.bits;
   text += field.name;
   text += " = ";
   value.text_begin = text.size();
-  if (field.drive_word != DriveWord::none) {
-    append_drive_word(text, field.drive_word, static_cast<std::uint16_t>(value.number));
+  if (field.is_formatted) {
+    value.meaning = field.format.meaning();
+    value.quantity = field.format.quantity();
+    value.other = other;
+    value.word = field.format.word(value.number, other);
+    field.format.append(text, value.number, other);
   } else if (field.type == nullptr) {
     append_hex_number(text, value.number, (field.bits + 3U) / 4U);
   } else if (field.type->kind == canopen::DataClass::string) {
     append_value(text, *field.type, bytes_of(value.number, std::min<std::size_t>(bytes_for(field.bits), 8)));
   } else {
-    if (field.entry != nullptr) value.unit = raw_unit(*field.entry);
-    append_number(text, *field.type, value.number, field.bits, value.unit);
+    append_number(text, *field.type, value.number, field.bits);
   }
   value.text_end = text.size();
   message.values.push_back(value);
@@ -43,15 +51,18 @@ void append_field(std::string& text, const PdoField& field, std::uint64_t word, 
 
 }  // namespace
 
-void append_pdo(const Frame& frame, const PdoLayout& pdo, Message& message) {
+void append_pdo(const Frame& frame, const PdoLayout& pdo, NodeModel& node, Message& message) {
   const std::uint64_t word = number_of(data_of(frame));
   const unsigned bits = frame.size * 8U;
   const std::size_t bytes = bytes_for(pdo.bits);
+  for (const PdoField& field : pdo.fields) {
+    if (field.selects && field.end() <= bits) node.select(*field.selects, number_in(field, word));
+  }
   const char* separator = "";
   for (const PdoField& field : pdo.fields) {
     if (field.end() > bits) break;
     message.text += separator;
-    append_field(message.text, field, word, message);
+    append_field(message.text, field, word, node.selector(field.depends_on), message);
     separator = ", ";
   }
   if (pdo.fields.empty()) {
@@ -84,11 +95,15 @@ void decode_mpdo(const Frame& frame, MpdoAddress address, const NodeModel* owner
     field.type = field.entry->type;
     if (field.type->bits > 0 && field.type->bits < 32) field.bits = field.type->bits;
     field.name += " " + display_name(*object, *field.entry);
+    field.is_formatted = field.type->bits == field.bits;
+    if (field.is_formatted) field.format = ValueFormat{owner->device(), *field.entry};
   }
   message.values_node = address.node_id;
   message.text += address.destination ? "to " : "from ";
   message.text += address.node_id == 0 ? "all nodes, " : fmt::format("node {}, ", address.node_id);
-  append_field(message.text, field, number_of(data_of(frame)), message);
+  const auto other = field.entry != nullptr ? owner->selector_of(*field.entry) : std::nullopt;
+  append_field(message.text, field, number_of(data_of(frame)), other, message);
+  message.values.back().word = nullptr;  // it belongs to the field of this function
   message.values.back().name = field.entry != nullptr ? std::string_view{field.entry->name} : std::string_view{};
 }
 

@@ -9,7 +9,8 @@
 
 namespace edsc {
 
-void append_pdo(const canopen::Frame& frame, const PdoLayout& pdo, Message& message);
+/// Also notes the values on which fields of other objects depend.
+void append_pdo(const canopen::Frame& frame, const PdoLayout& pdo, NodeModel& node, Message& message);
 
 /// The node whose object a multiplex PDO carries (CiA 301, 7.2.2.5).
 struct MpdoAddress {

@@ -9,7 +9,6 @@
 
 #include "device/entry_text.hpp"
 #include "device/index_range.hpp"
-#include "device/scaled_unit.hpp"
 #include "text/counted.hpp"
 #include "values/append.hpp"
 #include "values/little_endian.hpp"
@@ -92,17 +91,19 @@ void SdoFollower::put_value(Message& message) const {
   value.sub_index = sub_index_;
   value.name = name_;
   value.type = entry_ != nullptr ? entry_->type : nullptr;
-  value.unit = entry_ != nullptr ? raw_unit(*entry_) : std::string_view{};
+  if (entry_ != nullptr && entry_->meaning && kept_.size() == total_ && kept_.size() == bytes_for(entry_->type->bits)) {
+    value.meaning = meaning_of_integer(*entry_);
+    value.quantity = quantity_of(*entry_);
+    value.other = model_->selector_of(*entry_);
+  }
   value.bytes = kept_;
   value.text_begin = message.text.size();
   const bool maps = model_ != nullptr && contains(mapping_parameters, index_) && sub_index_ != 0 && kept_.size() == 4;
   if (const auto mapping = static_cast<std::uint32_t>(number_of(kept_)); maps && mapping != 0) {
     append_hex_number(message.text, mapping, 8);
     message.text += " " + model_->mapped_name(mapping);
-  } else if (drive_word_ != DriveWord::none && kept_.size() == 2) {
-    append_drive_word(message.text, drive_word_, static_cast<std::uint16_t>(number_of(kept_)));
   } else if (entry_ != nullptr) {
-    append_value(message.text, *entry_, kept_);
+    append_device_value(message.text, model_->device(), *entry_, kept_, value.other);
   } else {
     append_untyped(message.text, kept_);
   }
@@ -154,7 +155,6 @@ void SdoFollower::begin(const Step& step, bool download, std::string_view how) {
   model_ = step.model;
   const Object* object = model_ != nullptr ? model_->device().find(index_) : nullptr;
   entry_ = object != nullptr ? object->find(sub_index_) : nullptr;
-  drive_word_ = model_ != nullptr ? model_->drive_word(index_, sub_index_) : DriveWord::none;
   name_ = entry_ != nullptr ? display_name(*object, *entry_) : object != nullptr ? object->name : "";
   label_.clear();
   append_entry_label(label_, index_, sub_index_);

@@ -13,7 +13,6 @@
 
 #include "decode/message.hpp"
 #include "decode/node_model.hpp"
-#include "values/drive_words.hpp"
 
 namespace edsc {
 
@@ -106,9 +105,8 @@ class SdoFollower {
   std::uint16_t crc_ = 0;
   const NodeModel* model_ = nullptr;
   const Entry* entry_ = nullptr;  ///< null if it is in no known EDS
-  DriveWord drive_word_ = DriveWord::none;
-  std::string name_;   ///< `Manufacturer device name`
-  std::string label_;  ///< `1008h:00 Manufacturer device name`
+  std::string name_;              ///< `Manufacturer device name`
+  std::string label_;             ///< `1008h:00 Manufacturer device name`
   std::vector<std::uint8_t> kept_;
 
   // A sub-block is used when it is confirmed: until then its segments may be repeated.

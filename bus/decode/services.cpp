@@ -1,13 +1,13 @@
 #include "decode/services.hpp"
 
-#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <canopen/od/data_type.hpp>
 #include <iterator>
 
-#include "decode/emergency_text.hpp"
+#include "decode/error_register_text.hpp"
+#include "device/error_code_text.hpp"
 #include "text/counted.hpp"
 #include "values/append.hpp"
 #include "values/little_endian.hpp"
@@ -58,15 +58,19 @@ void decode_time(const Frame& frame, Message& message) {
   append_number(message.text, *type, number_of(data_of(frame)), type->bits);
 }
 
-void decode_emcy(const Frame& frame, std::uint16_t profile, Message& message) {
+void decode_emcy(const Frame& frame, const Device* device, Message& message) {
   message.service = Service::emcy;
   if (frame.remote || frame.size < 3) return wrong_length(frame, "8", message);
   message.error_code = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
   message.error_register = frame.data[2];
-  const bool gone = message.error_code <= 0x00FF;
-  message.problem = !gone;
-  fmt::format_to(std::back_inserter(message.text), FMT_COMPILE("{:04X}h {}, error register {:02X}h ("),
-                 message.error_code, emergency_text(message.error_code, profile), message.error_register);
+  message.problem = is_error(device, message.error_code);
+  message.error_text = error_code_text(device, message.error_code);
+  append_hex_number(message.text, message.error_code, 4);
+  message.text += ' ';
+  message.text += message.error_text;
+  message.text += ", error register ";
+  append_hex_number(message.text, message.error_register, 2);
+  message.text += " (";
   append_error_register(message.text, message.error_register);
   message.text += ')';
   const auto manufacturer = data_of(frame).subspan(3);

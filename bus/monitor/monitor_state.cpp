@@ -115,7 +115,7 @@ bool MonitorState::add_pdo(const canopen::Frame& frame, const Message& message, 
     if (value.text_end < value.text_begin || value.text_end > message.text.size()) continue;
     pdo.values.push_back({value.index, value.sub_index, std::string{value.name},
                           message.text.substr(value.text_begin, value.text_end - value.text_begin),
-                          std::string{value.unit}, finite_number_of(value)});
+                          value.quantity != nullptr ? value.quantity->symbol : std::string{}, finite_number_of(value)});
   }
   return !is_same;
 }

@@ -7,7 +7,7 @@
 #include "decode/log/log_decoder.hpp"
 #include "decode/log/ordered_time.hpp"
 #include "decode/log/value_number.hpp"
-#include "device/scaled_unit.hpp"
+#include "device/entry_text.hpp"
 #include "lookup/find_entry.hpp"
 #include "monitor/progress_line.hpp"
 #include "plot/plot_svg.hpp"
@@ -50,9 +50,10 @@ PlotLine line_of(std::uint8_t node_id, const NodeLabels& labels, const Object& o
   line.name =
       fmt::format("node {} {}{}{} ", node_id, node_name, node_name.empty() ? "" : " ", display_name(object, entry));
   append_entry_label(line.name, object.index, entry.sub_index);
-  line.unit = raw_unit(entry);
+  const Quantity* const quantity = quantity_of(entry);
+  if (quantity != nullptr) line.unit = quantity->symbol;
   line.panel = line.unit.empty() ? fmt::format("{:04X}:{:02X}", object.index, entry.sub_index) : "unit " + line.unit;
-  line.whole = entry.type->kind != DataClass::real;
+  line.whole = entry.type->kind != DataClass::real && (quantity == nullptr || quantity->is_raw());
   line.steps = entry.type->kind == DataClass::boolean || (line.whole && line.unit.empty());
   return line;
 }

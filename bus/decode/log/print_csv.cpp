@@ -1,8 +1,10 @@
 #include "decode/log/print_csv.hpp"
 
 #include "decode/log/value_number.hpp"
+#include "device/meaning/value_parts.hpp"
 #include "text/printable.hpp"
 #include "values/append.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc {
 namespace {
@@ -32,6 +34,18 @@ struct CsvRecord {
 [[nodiscard]] std::string_view text_of_value(const CsvRecord& record) {
   const MessageValue& value = *record.value;
   return std::string_view{record.message.text}.substr(value.text_begin, value.text_end - value.text_begin);
+}
+
+/// The name of the value, or the names of its masked values and fields: `operation_enabled, remote`.
+[[nodiscard]] std::string names_of(const MessageValue& value) {
+  const auto raw = value.meaning != nullptr ? integer_of(value) : std::nullopt;
+  if (!raw) return "";
+  const Meaning& meaning = *value.meaning;
+  const NamedValue* const named = meaning.values ? meaning.values->find(*raw) : nullptr;
+  if (named != nullptr) return named->name;
+  std::string names;
+  append_parts(names, meaning, value.bits != 0 ? value.number : number_of(value.bytes), value.other);
+  return names;
 }
 
 struct CsvColumn {
@@ -71,9 +85,18 @@ constexpr CsvColumn csv_columns[] = {
        if (const auto number = plain_number(*of.value)) return append_number(out, *number);
        append_field_text(out, text_of_value(of));
      }},
+    {"physical",
+     [](std::string& out, const CsvRecord& of) {
+       const auto physical = of.value != nullptr ? physical_number(*of.value) : std::nullopt;
+       if (physical) append_number(out, *physical);
+     }},
     {"unit",
      [](std::string& out, const CsvRecord& of) {
-       if (of.value != nullptr) append_field_text(out, of.value->unit);
+       if (of.value != nullptr && of.value->quantity != nullptr) append_field_text(out, of.value->quantity->symbol);
+     }},
+    {"names",
+     [](std::string& out, const CsvRecord& of) {
+       if (of.value != nullptr) append_field_text(out, names_of(*of.value));
      }},
     {"problem", [](std::string& out, const CsvRecord& of) { out += of.message.problem ? "true" : "false"; }},
     {"text",

@@ -8,9 +8,12 @@
 #include <nlohmann/json.hpp>
 
 #include "decode/log/value_number.hpp"
+#include "decode/value_format.hpp"
+#include "device/meaning/value_parts.hpp"
 #include "text/printable.hpp"
 #include "text/utf8.hpp"
 #include "values/append.hpp"
+#include "values/little_endian.hpp"
 #include "values/nmt_text.hpp"
 
 namespace edsc {
@@ -79,6 +82,61 @@ void append_json_value(std::string& out, const MessageValue& value, std::string_
   append_number(out, *number);
 }
 
+/// The number in a field as a name, a physical value, a flag or a number.
+void append_field_value(std::string& out, const ValuePart& part) {
+  if (part.masked != nullptr) return append_json_string(out, part.masked->name);
+  const BitField& field = *part.field;
+  if (part.named != nullptr) return append_json_string(out, part.named->name);
+  if (field.is_flag()) {
+    out += part.number != 0 ? "true" : "false";
+    return;
+  }
+  const auto physical = field.quantity
+                            ? physical_value(*field.quantity, type_of(field), static_cast<std::uint64_t>(part.number))
+                            : std::nullopt;
+  if (physical) return append_number(out, physical->to_double());
+  append_decimal(out, part.number);
+}
+
+/// `{"state":"operation_enabled","remote":true}`
+void append_fields(std::string& out, const MessageValue& value) {
+  char separator = '{';
+  const std::uint64_t bits = value.bits != 0 ? value.number : number_of(value.bytes);
+  for_each_part(*value.meaning, bits, value.other, [&](const ValuePart& part) {
+    out += separator;
+    separator = ',';
+    append_json_string(out, part.name());
+    out += ':';
+    append_field_value(out, part);
+  });
+  out += separator == '{' ? "{}" : "}";
+}
+
+/// The physical value, the name of the value and the fields, where the entry has them.
+void append_meaning(std::string& out, const MessageValue& value) {
+  if (value.quantity != nullptr) {
+    const auto physical = physical_number(value);
+    const auto raw = physical && value.quantity->is_raw() ? plain_number(value) : std::nullopt;
+    if (physical) append_key(out, "physical");
+    if (raw) {
+      append_number(out, *raw);
+    } else if (physical) {
+      append_number(out, *physical);
+    }
+    if (!value.quantity->symbol.empty()) append_member(out, "unit", value.quantity->symbol);
+  }
+  const auto raw = value.meaning != nullptr ? integer_of(value) : std::nullopt;
+  if (!raw) return;
+  const Meaning& meaning = *value.meaning;
+  const NamedValue* const named = meaning.values ? meaning.values->find(*raw) : nullptr;
+  if (named != nullptr) append_member(out, "value_name", named->name);
+  if (!meaning.has_fields()) return;
+  append_key(out, "fields");
+  if (value.word == nullptr) return append_fields(out, value);
+  if (value.word->json.empty()) append_fields(value.word->json, value);
+  out += value.word->json;
+}
+
 void append_values(std::string& out, const Message& message) {
   if (message.values.empty()) return;
   append_key(out, "values");
@@ -94,7 +152,7 @@ void append_values(std::string& out, const Message& message) {
     if (value.type != nullptr) append_member(out, "type", value.type->name);
     append_key(out, "value");
     append_json_value(out, value, text);
-    if (!value.unit.empty()) append_member(out, "unit", value.unit);
+    append_meaning(out, value);
     append_member(out, "text", text);
     out += '}';
     separator = ',';
@@ -203,6 +261,7 @@ void append_json(std::string& out, const LogLine& line, const Message& message, 
   if (message.counter >= 0) append_member(out, "counter", static_cast<std::uint64_t>(message.counter));
   if (message.service == Service::emcy) {
     append_member(out, "error_code", message.error_code);
+    if (!message.error_text.empty()) append_member(out, "error_text", message.error_text);
     append_member(out, "error_register", message.error_register);
   }
   if (message.step != TransferStep::none) append_transfer(out, message);

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <type_traits>
 
+#include "device/meaning/physical.hpp"
 #include "values/append.hpp"
 #include "values/little_endian.hpp"
 
@@ -32,7 +33,30 @@ std::optional<ValueNumber> plain_number(const MessageValue& value) {
   return std::nullopt;
 }
 
+std::optional<double> physical_number(const MessageValue& value) {
+  if (value.quantity == nullptr) return std::nullopt;
+  const Quantity& quantity = *value.quantity;
+  const auto raw = plain_number(value);
+  if (!raw) return std::nullopt;
+  double physical = std::visit([](auto of) { return static_cast<double>(of); }, *raw);
+  if (!quantity.is_raw()) {
+    const std::uint64_t bits = value.bits != 0 ? value.number : number_of(value.bytes);
+    const auto exact = physical_value(quantity, *value.type, bits);
+    physical = exact ? exact->to_double() : physical * quantity.scale.to_double() + quantity.offset.to_double();
+  }
+  return std::isfinite(physical) ? std::optional{physical} : std::nullopt;
+}
+
+std::optional<std::int64_t> integer_of(const MessageValue& value) {
+  const auto number = plain_number(value);
+  if (!number) return std::nullopt;
+  if (const auto* const whole = std::get_if<std::uint64_t>(&*number)) return static_cast<std::int64_t>(*whole);
+  if (const auto* const whole = std::get_if<std::int64_t>(&*number)) return *whole;
+  return std::nullopt;
+}
+
 std::optional<double> finite_number_of(const MessageValue& value) {
+  if (value.quantity != nullptr) return physical_number(value);
   const auto number = plain_number(value);
   if (!number) return std::nullopt;
   const double real = std::visit([](auto of) { return static_cast<double>(of); }, *number);

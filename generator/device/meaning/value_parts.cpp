@@ -117,29 +117,38 @@ const canopen::DataTypeRow& type_of(const BitField& field) {
       static_cast<std::uint32_t>(field.is_signed ? canopen::DataType::integer64 : canopen::DataType::unsigned64));
 }
 
+void append_part(std::string& text, const ValuePart& part) {
+  if (part.masked != nullptr) {
+    text += part.masked->name;
+    return;
+  }
+  const BitField& field = *part.field;
+  text += field.name;
+  if (field.is_flag()) return;
+  text += '=';
+  if (part.named != nullptr) {
+    text += part.named->name;
+  } else if (field.quantity) {
+    append_physical(text, *field.quantity, type_of(field), static_cast<std::uint64_t>(part.number), 64);
+  } else if (field.bits >= 8 && !field.is_signed) {
+    append_hex_number(text, static_cast<std::uint64_t>(part.number), (field.bits + 3U) / 4);
+  } else {
+    append_decimal(text, part.number);
+  }
+}
+
 void append_parts(std::string& text, const Meaning& meaning, std::uint64_t raw, std::optional<std::int64_t> other) {
   std::string_view separator;
+  std::uint64_t named_bits = 0;
   for_each_part(meaning, raw, other, [&](const ValuePart& part) {
-    if (part.field != nullptr && part.field->is_flag() && part.number == 0) return;
-    text += separator;
-    separator = ", ";
     if (part.masked != nullptr) {
-      text += part.masked->name;
+      named_bits |= part.masked->mask;
+    } else if (part.field->is_flag() && (part.number == 0 || (part.field->mask() & named_bits) != 0)) {
       return;
     }
-    const BitField& field = *part.field;
-    text += field.name;
-    if (field.is_flag()) return;
-    text += '=';
-    if (part.named != nullptr) {
-      text += part.named->name;
-    } else if (field.quantity) {
-      append_physical(text, *field.quantity, type_of(field), static_cast<std::uint64_t>(part.number), 64);
-    } else if (field.bits >= 8 && !field.is_signed) {
-      append_hex_number(text, static_cast<std::uint64_t>(part.number), (field.bits + 3U) / 4);
-    } else {
-      append_decimal(text, part.number);
-    }
+    text += separator;
+    separator = ", ";
+    append_part(text, part);
   });
 }
 

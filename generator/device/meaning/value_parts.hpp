@@ -54,8 +54,11 @@ void for_each_part(const Meaning& meaning, std::uint64_t raw, std::optional<std:
   if (one != nullptr) visit_fields(one->fields);
 }
 
-/// Appends the parts of a word, separated by `, `: `operation_enabled, remote, gear=3`. Flags that are not set are
-/// left out. Numbers of 8 and more bits are hexadecimal: `can_id=181h`.
+/// Appends a part: `operation_enabled`, `remote`, `gear=3`. Numbers of 8 and more bits are hexadecimal: `can_id=181h`.
+void append_part(std::string& text, const ValuePart& part);
+
+/// Appends the parts of a word, separated by `, `: `operation_enabled, remote, gear=3`. Flags that are not set, and
+/// those whose bits a masked value has, are left out.
 void append_parts(std::string& text, const Meaning& meaning, std::uint64_t raw,
                   std::optional<std::int64_t> other = std::nullopt);
 

@@ -1,11 +1,18 @@
-/// Texts of emergency error codes: each row of CiA 402-2 and CiA 401-1, written from the tables of the profiles.
-#include "decode/emergency_text.hpp"
+/// Texts of error codes: each row of CiA 402-2 and CiA 401-1, written from the tables of the profiles, and names that a
+/// device defines.
+#include "device/error_code_text.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <canopen/emcy/emcy_consumer.hpp>
 #include <cstdint>
 #include <string>
 #include <string_view>
+
+#include "support/device_from_text.hpp"
+#include "support/read_options.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc {
 namespace {
@@ -169,42 +176,97 @@ constexpr Code codes_of_io_modules[] = {
     {0x3220, "internal voltage too low"}, {0x3310, "output voltage too high"}, {0x3320, "output voltage too low"},
 };
 
-void expect_text(const Code& row, std::uint16_t profile) {
-  const std::string_view text = emergency_text(row.code, profile);
-  EXPECT_NE(text.find(row.words), std::string_view::npos) << std::hex << row.code << "h is " << text;
-  EXPECT_NE(text, emergency_text(row.code, 0)) << std::hex << row.code << "h is as precise as CiA 301";
+/// A device of a profile, with an error history and error codes of its axes.
+struct DeviceOfProfile {
+  explicit DeviceOfProfile(std::uint16_t profile, const std::string& meaning = "{}")
+      : options(R"({ "meaning": )" + meaning + " }"),
+        text(var("1000", "Device type", "7", "ro", fmt::format("DefaultValue=0x{:08X}\n", profile)) +
+                 "[1003]\nParameterName=Error history\nObjectType=8\nSubNumber=2\n"
+                 "[1003sub0]\nParameterName=Number\nDataType=5\nAccessType=rw\n"
+                 "[1003sub1]\nParameterName=Newest\nDataType=7\nAccessType=ro\n" +
+                 var("603F", "Error code", "6", "ro") + var("683F", "Error code 2", "6", "ro"),
+             options.options) {
+    EXPECT_TRUE(options.diagnostics.all().empty()) << meaning;
+  }
+
+  [[nodiscard]] std::string_view of(std::uint16_t code) const { return error_code_text(&text.device, code); }
+  [[nodiscard]] std::string value(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number) const {
+    const Entry& entry = text.entry(index, sub_index);
+    std::string result;
+    append_device_value(result, text.device, entry, bytes_of(number, bytes_for(entry.type->bits)));
+    return result;
+  }
+
+  ReadOptions options;
+  DeviceFromText text;
+};
+
+void expect_text(const Code& row, const DeviceOfProfile& device) {
+  EXPECT_NE(device.of(row.code).find(row.words), std::string_view::npos) << std::hex << row.code << device.of(row.code);
+  EXPECT_NE(device.of(row.code), error_code_text(nullptr, row.code))
+      << std::hex << row.code << "h is as precise as CiA 301";
 }
 
-TEST(EmergencyText, HasEachCodeOfADrive) {
-  for (const Code& row : codes_of_drives) expect_text(row, drives);
+TEST(ErrorCodeText, HasEachCodeOfADrive) {
+  const DeviceOfProfile drive{drives};
+  for (const Code& row : codes_of_drives) expect_text(row, drive);
 }
 
-TEST(EmergencyText, HasEachCodeOfAnIoModule) {
-  for (const Code& row : codes_of_io_modules) expect_text(row, io_modules);
+TEST(ErrorCodeText, HasEachCodeOfAnIoModule) {
+  const DeviceOfProfile module{io_modules};
+  for (const Code& row : codes_of_io_modules) expect_text(row, module);
 }
 
-TEST(EmergencyText, TakesTheClassOfCia301ForACodeThatTheProfileDoesNotHave) {
+TEST(ErrorCodeText, IsTheClassOfCia301ForACodeWithoutAName) {
   for (const std::uint16_t profile : {std::uint16_t{0}, io_modules, drives}) {
-    EXPECT_EQ(emergency_text(0x2F01, profile), emergency_text(0x2000, 0));
-    EXPECT_EQ(emergency_text(0x0000, profile), emergency_text(0x0000, 0));
-    EXPECT_EQ(emergency_text(0x8130, profile), emergency_text(0x8130, 0));
+    const DeviceOfProfile device{profile};
+    EXPECT_EQ(device.of(0x2F01), "current");
+    EXPECT_EQ(device.of(0x0000), "no error");
+    EXPECT_EQ(device.of(0x8130), error_code_text(nullptr, 0x8130));
+    EXPECT_EQ(device.of(0xA000), "unknown emergency error code");
   }
 }
 
-TEST(ErrorRegister, NamesEachBitOfCia301) {
-  constexpr std::string_view names[] = {"generic",       "current",        "voltage",        "temperature",
-                                        "communication", "device profile", "reserved bit 6", "manufacturer"};
-  for (unsigned bit = 0; bit < 8; ++bit) {
-    std::string text;
-    append_error_register(text, static_cast<std::uint8_t>(1U << bit));
-    EXPECT_EQ(text, names[bit]);
+TEST(ErrorCodeText, OfTheRuntimeAndOfTheProfileOfCia301AreTheSame) {
+  const DeviceOfProfile device{0};
+  for (const canopen::EmergencyCodeText& row : canopen::emergency_code_texts) {
+    EXPECT_EQ(device.of(row.code), row.text) << std::hex << row.code;
   }
-  std::string text;
-  append_error_register(text, 0);
-  EXPECT_EQ(text, "no error");
-  text.clear();
-  append_error_register(text, 0x81);
-  EXPECT_EQ(text, "generic, manufacturer");
+}
+
+TEST(ErrorCodeText, OfTheOptionsReplacesThatOfTheProfile) {
+  const DeviceOfProfile drive{drives, R"({"emcy": {"8611h": "axis is blocked", "FF01h": "door is open"}})"};
+  EXPECT_EQ(drive.of(0x8611), "axis is blocked");
+  EXPECT_EQ(drive.of(0xFF01), "door is open");
+  EXPECT_EQ(drive.of(0xFF02), "device specific");
+  EXPECT_EQ(drive.of(0x8612), "reference limit");
+}
+
+TEST(ErrorCodeText, IsAnErrorUnlessItIsAResetCodeWithoutAName) {
+  const DeviceOfProfile drive{drives, R"({"emcy": {"000Ah": "motor overcurrent", "0000h": "no alarm"}})"};
+  const Device& device = drive.text.device;
+  EXPECT_TRUE(is_error(&device, 0x000A));
+  EXPECT_FALSE(is_error(&device, 0x0000));
+  EXPECT_FALSE(is_error(&device, 0x000B));
+  EXPECT_TRUE(is_error(&device, 0x1000));
+  EXPECT_FALSE(is_error(nullptr, 0x000A));
+  EXPECT_TRUE(is_error(nullptr, 0x0100));
+}
+
+TEST(ErrorCodeText, IsShownForTheErrorHistoryAndTheErrorCodesOfAxes) {
+  const DeviceOfProfile drive{drives};
+  EXPECT_EQ(drive.value(0x1003, 1, 0x0000'8611), "00008611h following error");
+  EXPECT_EQ(drive.value(0x1003, 1, 0x0001'8611), "00018611h following error, additional_information=0001h");
+  EXPECT_EQ(drive.value(0x1003, 0, 1), "1");
+  EXPECT_EQ(drive.value(0x603F, 0, 0x8611), "8611h following error");
+  EXPECT_EQ(drive.value(0x683F, 0, 0x2F01), "2F01h current");
+}
+
+TEST(ErrorCodeText, IsNotShownFor603FhOfAnotherProfileOrWithNamesOfItsOwn) {
+  EXPECT_EQ(DeviceOfProfile{io_modules}.value(0x603F, 0, 0x8611), "34321 (8611h)");
+  const DeviceOfProfile named{drives,
+                              R"({"603Fh": {"bits": {"0..7": {"name": "alarm", "values": {"10": "overcurrent"}}}}})"};
+  EXPECT_EQ(named.value(0x603F, 0, 10), "000Ah alarm=overcurrent");
 }
 
 }  // namespace
