@@ -19,6 +19,7 @@ namespace {
 // In pixels.
 constexpr double picture_width = 1000, plot_left = 90, plot_right = 980;
 constexpr double title_height = 40, legend_row = 18, panel_height = 160, panel_gap = 24, time_axis_height = 50;
+constexpr double band_height = 26;
 constexpr unsigned max_time_ticks = 10, max_value_ticks = 5;
 
 /// Colours that people with impaired colour vision can distinguish (Okabe and Ito), for both backgrounds.
@@ -33,12 +34,12 @@ std::string style_text() {
   std::string style =
       "\nsvg { font: 12px sans-serif }\n.background { fill: #ffffff }\n"
       "text { fill: #222222 }\n.title { font-size: 16px }\n.frame { fill: none; stroke: #888888 }\n"
-      ".grid { stroke: #dddddd }\n.line { fill: none; stroke-width: 1.5; stroke-linecap: round; stroke-linejoin: round }\n";
+      ".grid { stroke: #dddddd }\n.state { fill-opacity: 0.35; stroke: none }\n.mixed { fill: #888888 }\n.line { fill: none; stroke-width: 1.5; stroke-linecap: round; stroke-linejoin: round }\n";
   std::string dark =
       ".background { fill: #181818 }\ntext { fill: #eeeeee }\n.frame { stroke: #999999 }\n.grid { stroke: #3a3a3a }\n";
   for (std::size_t i = 0; i < std::size(line_colors); ++i) {
-    style += fmt::format(".c{} {{ stroke: {} }}\n", i, line_colors[i].light);
-    dark += fmt::format(".c{} {{ stroke: {} }}\n", i, line_colors[i].dark);
+    style += fmt::format(".c{0} {{ stroke: {1} }}\n.s{0} {{ fill: {1} }}\n", i, line_colors[i].light);
+    dark += fmt::format(".c{0} {{ stroke: {1} }}\n.s{0} {{ fill: {1} }}\n", i, line_colors[i].dark);
   }
   return style + "@media (prefers-color-scheme: dark) {\n" + dark + "}\n";
 }
@@ -160,7 +161,9 @@ struct Panel {
   std::string name;
   std::vector<const PlotLine*> lines;
 
+  [[nodiscard]] bool is_band() const { return lines.front()->is_band; }
   [[nodiscard]] double height() const {
+    if (is_band()) return panel_gap + legend_row + band_height;
     return panel_gap + legend_row * static_cast<double>(lines.size()) + panel_height;
   }
 };
@@ -197,6 +200,61 @@ Scale value_scale(const Panel& panel, double top, AxisTicks& ticks) {
   }
   ticks = axis_ticks(min, max, max_value_ticks + 2, std::max(step, min_step));
   return {min, max, top + panel_height, top};
+}
+
+std::string state_name(const PlotLine& line, const StateRun& run) {
+  if (run.is_mixed) return "several states";
+  const auto found = line.state_names.find(run.state);
+  return found != line.state_names.end() ? found->second : fmt::format("{}", run.state);
+}
+
+/// A piece of a band, in pixels.
+struct BandPiece {
+  double left, right;
+  StateRun run;
+};
+
+/// A run that is narrower than half a pixel becomes one with its neighbours of that width.
+std::vector<BandPiece> pieces_of(const PlotLine& line, const TimeAxis& time) {
+  constexpr double narrow = 0.5;
+  const std::vector<StateRun>& runs = line.states.runs();
+  std::vector<BandPiece> pieces;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const bool is_last = i + 1 == runs.size();
+    const double left = time.x(runs[i].first_us), right = time.x(is_last ? runs[i].last_us : runs[i + 1].first_us);
+    const bool is_narrow = right - left < narrow && !is_last;
+    const bool follows_narrow =
+        !pieces.empty() && (pieces.back().run.is_mixed || pieces.back().right - pieces.back().left < narrow);
+    if (is_narrow && follows_narrow) {
+      pieces.back().right = right;
+      pieces.back().run.is_mixed = true;
+    } else {
+      pieces.push_back({left, right, runs[i]});
+    }
+  }
+  return pieces;
+}
+
+void append_band(pugi::xml_node svg, const PlotLine& line, const TimeAxis& time, double y) {
+  constexpr double character_width = 7, margin = 4;
+  pugi::xml_node group = append_element(svg, "g", "band");
+  append_text_at(group, plot_left, y + panel_gap + 4, "start", line.name);
+  const double top = y + panel_gap + legend_row;
+  std::map<std::int64_t, std::size_t> colors;
+  for (const BandPiece& piece : pieces_of(line, time)) {
+    const std::string name = state_name(line, piece.run);
+    const std::size_t color = colors.try_emplace(piece.run.state, colors.size() % std::size(line_colors)).first->second;
+    const std::string style_class = piece.run.is_mixed ? "state mixed" : fmt::format("state s{}", color);
+    const double width = std::max(piece.right - piece.left, 1.0);
+    pugi::xml_node state = append_element(group, "rect", style_class.c_str());
+    state.append_attribute("x").set_value(pixel_text(piece.left).c_str());
+    state.append_attribute("y").set_value(pixel_text(top).c_str());
+    state.append_attribute("width").set_value(pixel_text(width).c_str());
+    state.append_attribute("height").set_value(pixel_text(band_height).c_str());
+    state.append_child("title").text().set(printable(name).c_str());
+    if (static_cast<double>(name.size()) * character_width + 2 * margin > width) continue;
+    append_text_at(group, piece.left + margin, top + band_height / 2 + 4, "start", name);
+  }
 }
 
 void append_panel(pugi::xml_node svg, const Plot& plot, const Panel& panel, const TimeAxis& time, double y) {
@@ -247,6 +305,11 @@ std::string plot_svg(const Plot& plot) {
   svg.append_child("title").text().set(printable(plot.title).c_str());
   std::string description;
   for (const PlotLine& line : plot.lines) {
+    if (line.is_band) {
+      description +=
+          fmt::format("{}{}: {}", description.empty() ? "" : "; ", line.name, counted(line.states.count(), "value"));
+      continue;
+    }
     description += fmt::format("{}{}: {}, {} to {}{}{}", description.empty() ? "" : "; ", line.name,
                                counted(line.series.count(), "value"), line.series.min(), line.series.max(),
                                line.unit.empty() ? "" : " ", line.unit);
@@ -259,7 +322,11 @@ std::string plot_svg(const Plot& plot) {
   append_text_at(svg, plot_left, title_height - 12, "start", plot.title).append_attribute("class").set_value("title");
   double y = title_height;
   for (const Panel& panel : panels) {
-    append_panel(svg, plot, panel, time, y);
+    if (panel.is_band()) {
+      append_band(svg, *panel.lines.front(), time, y);
+    } else {
+      append_panel(svg, plot, panel, time, y);
+    }
     y += panel.height();
   }
   pugi::xml_node axis = append_element(svg, "g", "time-axis");

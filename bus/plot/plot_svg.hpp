@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "plot/state_series.hpp"
 #include "plot/value_series.hpp"
 
 namespace edsc {
@@ -16,7 +18,13 @@ struct PlotLine {
   std::string panel;   ///< lines with the same text share a value axis
   bool steps = false;  ///< the value remains until the next one; otherwise values are connected
   bool whole = false;  ///< only integers: ticks are at integers
-  ValueSeries series;  ///< not empty
+  ValueSeries series;  ///< not empty, except for a band
+
+  bool is_band = false;                             ///< a band of named states in place of a line
+  StateSeries states;                               ///< of a band, not empty
+  std::map<std::int64_t, std::string> state_names;  ///< of a band; other states have their number
+
+  [[nodiscard]] bool empty() const { return is_band ? states.empty() : series.empty(); }
 };
 
 struct Plot {

@@ -25,7 +25,7 @@ namespace {
 
 constexpr const char* examples = R"(Examples:
   edsc plot can0.log position_actual_value --node 5=drive.eds -o position.svg
-  edsc plot can0.log 6064h 606Ch 6041h --node 5=drive.eds -o drive.svg    a panel for each unit
+  edsc plot can0.log 6064h 606Ch 6041h --node 5=drive.eds -o drive.svg    panels by unit, a band of states
   edsc plot trip.asc 5/6064h 6/6064h --node 5=drive.eds --node 6=drive.eds -o axes.svg
   edsc plot capture.pcapng 6064h --node axis1.dcf --title "Axis 1" > axis1.svg)";
 
@@ -40,8 +40,34 @@ struct Wanted {
   std::uint8_t node_id = 0;
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
+  const MaskedGroup* group = nullptr;  ///< of a word: its states are the masked values of the group
   PlotLine line;
 };
+
+/// The state of a word that has no masked value of the group.
+constexpr std::int64_t no_masked_value = -1;
+
+/// The number of the masked value that the word has.
+std::int64_t state_of(const MaskedGroup& group, std::uint64_t word) {
+  const MaskedValue* const found = group.find(word);
+  return found != nullptr ? found - group.values.data() : no_masked_value;
+}
+
+/// Makes a line a band with the names of an enumeration.
+void name_states(PlotLine& line, const Enumeration& values) {
+  line.is_band = true;
+  line.panel = line.name;
+  for (const NamedValue& one : values.values) line.state_names.emplace(one.value, one.name);
+}
+
+/// Makes a line a band with the names of masked values, such as the states of a drive.
+void name_states(PlotLine& line, const MaskedGroup& group) {
+  line.is_band = true;
+  line.name += " " + group.name;
+  line.panel = line.name;
+  line.state_names.emplace(no_masked_value, "none");
+  for (const MaskedValue& one : group.values) line.state_names.emplace(state_of(group, one.value), one.name);
+}
 
 PlotLine line_of(std::uint8_t node_id, const NodeLabels& labels, const Object& object, const Entry& entry) {
   using canopen::DataClass;
@@ -72,6 +98,26 @@ bool is_plain(const Entry& entry) {
   return false;
 }
 
+/// A line; for a word with masked values, a band for each group of them.
+void add_lines(std::uint8_t node_id, const NodeLabels& labels, const Object& object, const Entry& entry,
+               std::vector<Wanted>& wanted) {
+  const Meaning* const meaning = meaning_of_integer(entry);
+  const Wanted one{node_id, object.index, entry.sub_index, nullptr, line_of(node_id, labels, object, entry)};
+  if (meaning == nullptr || meaning->quantity || (!meaning->values && meaning->masked.empty())) {
+    wanted.push_back(one);
+    return;
+  }
+  if (meaning->values) {
+    wanted.push_back(one);
+    name_states(wanted.back().line, *meaning->values);
+  }
+  for (const MaskedGroup& group : meaning->masked) {
+    wanted.push_back(one);
+    wanted.back().group = &group;
+    name_states(wanted.back().line, group);
+  }
+}
+
 /// `6064h`, of all nodes that have it, or `5/6064h`.
 void add_object(const std::string& text, const LogNodes& nodes, std::vector<Wanted>& wanted) {
   const std::size_t slash = text.find('/');
@@ -97,8 +143,7 @@ void add_object(const std::string& text, const LogNodes& nodes, std::vector<Want
       return one.node_id == id && one.index == found.object->index && one.sub_index == found.entry->sub_index;
     });
     if (known) fail(fmt::format("{}: the object of node {} is given twice", text, id));
-    wanted.push_back(
-        {id, found.object->index, found.entry->sub_index, line_of(id, nodes.labels, *found.object, *found.entry)});
+    add_lines(id, nodes.labels, *found.object, *found.entry, wanted);
   }
   if (wanted.size() == before) fail(problem);
 }
@@ -133,6 +178,13 @@ void take_values(const LogLine& line, const Message& message, std::vector<Wanted
   for (const MessageValue& value : message.values) {
     for (Wanted& one : wanted) {
       if (one.node_id != node_id || one.index != value.index || one.sub_index != value.sub_index) continue;
+      if (one.line.is_band) {
+        const auto raw = integer_of(value);
+        if (!raw) continue;
+        const auto state = one.group != nullptr ? state_of(*one.group, static_cast<std::uint64_t>(*raw)) : *raw;
+        one.line.states.add(line.microseconds, state);
+        continue;
+      }
       if (const auto number = finite_number_of(value)) one.line.series.add(line.microseconds, *number);
     }
   }
@@ -178,7 +230,7 @@ int plot(const Settings& settings) {
                *log.times.first_us() + log.times.now_us(),
                {}};
   for (Wanted& one : wanted) {
-    if (one.line.series.empty()) {
+    if (one.line.empty()) {
       print_visibly(stderr, "{}: {} has no values\n", settings.log_name(), one.line.name);
     } else {
       picture.lines.push_back(std::move(one.line));

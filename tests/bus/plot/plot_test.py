@@ -118,6 +118,43 @@ class Plot(unittest.TestCase):
         self.assert_points(picture, 1, picture.paths(1)[0], [(0, -6), (3, -6), (3, 0), (10, 0), (10, 4)])
         self.assert_points(picture, 2, picture.paths(2)[0], [(0, 2.5), (3, 2.5), (10, 2.5)])  # REAL32
 
+    def test_masked_values_are_bands_of_states(self) -> None:
+        """0627h operation_enabled from 0 to 6 s, 0008h fault to 8 s, 004Fh none, then 0040h switch_on_disabled."""
+        words = ((0.0, 0x0627), (3.0, 0x0227), (6.0, 0x0008), (8.0, 0x004F), (9.0, 0x0040), (10.0, 0x0040))
+        log = "".join(f"({time}) can0 186#{word.to_bytes(2, 'little').hex()}00000000\n" for time, word in words)
+        result = edsc("6041h", log=log)
+        self.assertEqual(result.returncode, FINE, result.stderr)
+        picture = Picture(result.stdout)
+        (band,) = picture.root.findall(f"{SVG}g[@class='band']")
+        self.assertEqual(band.find(f"{SVG}text").text, "node 6 axis-y Statusword 6041h:00 state")
+        states = [(rect.find(f"{SVG}title").text, float(rect.get("x")), float(rect.get("x")) + float(rect.get("width")))
+                  for rect in band.iter(f"{SVG}rect")]
+        self.assertEqual([name for name, *_ in states], ["operation_enabled", "fault", "none", "switch_on_disabled"])
+        for (_, left, right), (begin, end) in zip(states, ((0, 6), (6, 8), (8, 9), (9, 10)), strict=True):
+            self.assertAlmostEqual(left, picture.time.at(begin), delta=PIXEL)
+            self.assertAlmostEqual(right, picture.time.at(end), delta=PIXEL)
+        self.assertEqual(len({rect.get("class") for rect in band.iter(f"{SVG}rect")}), 4)
+        self.assertIn("operation_enabled", [text.text for text in band.iter(f"{SVG}text")])
+
+    def test_named_values_are_bands_of_two_nodes(self) -> None:
+        """The mode of two drives, 1 profile_position and 3 profile_velocity; 9 has no name in the manual."""
+        drive = SOURCE_DIR / "eds/ezd-1136.eds"
+        log = "(0.0) can0 181#0000000001\n(0.0) can0 182#0000000003\n(5.0) can0 181#0000000003\n(9.0) can0 181#0000000009\n"
+        picture = Picture(edsc("6061h", log=log, node=("--node", f"1={drive}", "--node", f"2={drive}")).stdout)
+        bands = [[title.text for title in band.iter(f"{SVG}title")] for band in picture.root.findall(f"{SVG}g[@class='band']")]
+        self.assertEqual(bands, [["profile_position", "profile_velocity", "9"], ["profile_velocity"]])
+
+    def test_physical_values(self) -> None:
+        """3011h:05 of 002 is in 0.01 A."""
+        drive = SOURCE_DIR / "eds/cpd.eds"
+        log = "".join(f"({time}.0) can0 602#4011300500000000\n({time}.5) can0 582#4B113005{raw.to_bytes(2, 'little').hex()}0000\n"
+                      for time, raw in ((1, 0), (5, 150)))
+        result = edsc("3011h:05", log=log, node=("--node", f"2={drive}"))
+        self.assertEqual(result.returncode, FINE, result.stderr)
+        picture = Picture(result.stdout)
+        self.assertTrue(picture.legend(0)[0].endswith(" in A"), picture.legend(0))
+        self.assert_points(picture, 0, picture.paths(0)[0], [(1.5, 0), (5.5, 1.5)])
+
     def test_sdo_values_count_when_the_transfer_has_ended(self) -> None:
         log = ("(1.0) can0 606#4064600000000000\n(1.5) can0 586#4364600010270000\n"  # 10,000 at 1.5 s
                "(2.0) can0 606#2364600020000000\n(2.5) can0 586#8064600000000106\n"  # aborted
