@@ -61,9 +61,9 @@ struct MonitoredValue {
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
   std::string name;
-  std::string text;  ///< with its unit
+  std::string text;  ///< with its unit and names
   std::string unit;
-  std::optional<double> number;  ///< of a BOOLEAN, an integer or a finite REAL
+  std::optional<double> number;  ///< of a BOOLEAN, an integer or a finite REAL; the physical value if it has a unit
 };
 
 struct MonitoredPdo {

@@ -5,14 +5,22 @@
 #include <utility>
 
 #include "audit/checks/sync_check.hpp"
+#include "device/error_code_text.hpp"
 
 namespace edsc::audit {
 namespace {
 
-constexpr std::uint16_t last_reset_code = 0x00FF, heartbeat_error = 0x8130;
+constexpr std::uint16_t heartbeat_error = 0x8130;
 constexpr std::uint8_t generic_error = 1;
 
 using Texts = std::pair<std::string, std::string>;
+
+/// `8611h following error`
+std::string code_text(const Device* device, std::uint16_t code) {
+  std::string text;
+  append_error_code(text, device, code);
+  return text;
+}
 
 }  // namespace
 
@@ -34,10 +42,12 @@ void EmergencyCheck::judge_emcy(const SeenMessage& seen, AuditState& audit) {
                    fmt::format("{:03X}h", seen.frame.id)};
     });
   }
-  const bool is_error = message.error_code > last_reset_code;
+  const Device* const device = state.model != nullptr ? &state.model->device() : nullptr;
+  const bool is_error = edsc::is_error(device, message.error_code);
   if (is_error && (message.error_register & generic_error) == 0) {
     audit.findings.add({"emcy-register", message.node_id}, seen.at, 0, [&] {
-      return Texts{"bit 0 is 1", fmt::format("{:02X}h with {:04X}h", message.error_register, message.error_code)};
+      return Texts{"bit 0 is 1",
+                   fmt::format("{:02X}h with {}", message.error_register, code_text(device, message.error_code))};
     });
   }
   const std::int64_t inhibit = state.settings.emcy_inhibit_us;
@@ -51,7 +61,7 @@ void EmergencyCheck::judge_emcy(const SeenMessage& seen, AuditState& audit) {
   node.error_register = message.error_register;
   if (is_error) {
     node.open = seen.at;
-    node.open_code = message.error_code;
+    node.open_code = code_text(device, message.error_code);
   } else if (message.error_register == 0) {
     node.open.reset();
   }
@@ -89,7 +99,7 @@ void EmergencyCheck::finish(AuditState& audit) const {
     const Node& node = nodes_[id];
     if (!node.open) continue;
     audit.findings.add({"emcy-not-reset", static_cast<std::uint8_t>(id)}, *node.open, 0, [&] {
-      return Texts{"EMCY 0000h", fmt::format("the last one is {:04X}h", node.open_code)};
+      return Texts{"EMCY 0000h", "the last one is " + node.open_code};
     });
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "audit/audit_state.hpp"
 
@@ -19,7 +20,7 @@ class EmergencyCheck {
     std::optional<std::int64_t> last_us;
     std::optional<std::uint8_t> error_register;  ///< in the last EMCY
     std::optional<Moment> open;                  ///< the last error, until it is reset
-    std::uint16_t open_code = 0;
+    std::string open_code;                       ///< with its text
   };
 
   void judge_emcy(const SeenMessage& seen, AuditState& audit);

@@ -199,6 +199,17 @@ class Behaviour(Audits):
                 findings = self.report(Broken(add(frame)))["findings"]
                 self.assertEqual([(one["rule"], one["node_id"], one["can_id"]) for one in findings], [("frame-length", node_id, can_id)])
 
+    def test_an_error_code_has_the_name_of_the_device_or_of_its_class(self) -> None:
+        """8110h is of CiA 301, until the options of the device name it; 000Ah is an error only of a device that names it."""
+        for names, code, texts in (({}, "1081", ["00h with 8110h CAN overrun, objects lost"]),
+                                   ({"8110h": "receive buffer full"}, "1081", ["00h with 8110h receive buffer full"]),
+                                   ({"000Ah": "motor overcurrent"}, "0A00", ["00h with 000Ah motor overcurrent"]), ({}, "0A00", [])):
+            with self.subTest(names=names, code=code):
+                (self.folder / "axis.options.json").write_text(json.dumps({"meaning": {"emcy": names}}))
+                case = Broken(lambda log, code=code: changed(log, 0x085, 1500, data=data(f"{code}000000000000")))
+                findings = self.report(case)["findings"]
+                self.assertEqual([one["seen"] for one in findings if one["rule"] == "emcy-register"], texts)
+
     def test_an_unknown_state(self) -> None:
         findings = self.report(Broken(add(Frame(1240, 0x705, b"\x06"))))["findings"]
         self.assertEqual([(one["rule"], one["seen"]) for one in findings], [("nmt-state", "unknown state 6")])

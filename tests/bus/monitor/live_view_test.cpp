@@ -200,7 +200,13 @@ TEST(MonitorState, TellsAPdoWhenItsOctetsChange) {
 TEST(MonitorState, TellsAPdoWhenItsMappingChanges) {
   MonitorState state;
   Message message = tpdo("A = 0");
-  message.values.push_back({0x2000, 0, "A", nullptr, {}, 0, 8, {}, 4, 5});
+  MessageValue value;
+  value.index = 0x2000;
+  value.name = "A";
+  value.bits = 8;
+  value.text_begin = 4;
+  value.text_end = 5;
+  message.values.push_back(value);
   EXPECT_TRUE(state.add(pdo_frame(1, 0), message, 0));
   EXPECT_FALSE(state.add(pdo_frame(1, 0), message, 1));
   message.values.front().index = 0x2001;
@@ -209,6 +215,27 @@ TEST(MonitorState, TellsAPdoWhenItsMappingChanges) {
   message.text = "A = x";
   EXPECT_FALSE(state.add(pdo_frame(1, 0), message, 3));
   EXPECT_EQ(state.pdos().begin()->second.values.front().text, "x");
+}
+
+TEST(MonitorState, HasThePhysicalValueOfAQuantity) {
+  Quantity quantity;
+  quantity.symbol = "degC";
+  quantity.scale = *Rational::of(1, 10);
+  MonitorState state;
+  Message message = tpdo("T = 21.5 degC");
+  MessageValue value;
+  value.type = canopen::find_data_type(static_cast<std::uint32_t>(canopen::DataType::integer16));
+  value.quantity = &quantity;
+  value.number = 215;
+  value.bits = 16;
+  value.text_begin = 4;
+  value.text_end = message.text.size();
+  message.values.push_back(value);
+  state.add(pdo_frame(2, 0), message, 0);
+  const MonitoredValue& shown = state.pdos().begin()->second.values.front();
+  EXPECT_EQ(shown.text, "21.5 degC");
+  EXPECT_EQ(shown.unit, "degC");
+  EXPECT_EQ(shown.number, 21.5);
 }
 
 TEST(MonitorView, ShowsNodesPdosAndLoad) {

@@ -63,6 +63,13 @@ class Send(LiveTest):
                     stdout="6040h:00 Controlword = 0F 00\n60FFh:00 Target velocity = FE FF FF FF\n")
         self.assertEqual(self.network.frames("205"), ["205 0F 00 FE FF FF FF"])
 
+    def test_values_by_name_and_unit(self) -> None:
+        self.expect(self.edsc("send", "pdo", NODE, 1, "target_velocity=100 inc/s", "controlword=enable_operation, halt"), FINE)
+        self.assertEqual(self.network.frames("205"), ["205 0F 01 64 00 00 00"])
+        result = self.edsc("send", "pdo", NODE, 1, "target_velocity=1", "controlword=enable_operations")
+        self.assertEqual(result.returncode, WRONG_USAGE)
+        self.assertIn('"enable_operations" is not a field or value; did you mean "enable_operation"?', result.stderr)
+
     def test_a_tpdo_in_place_of_the_node(self) -> None:
         self.expect(self.edsc("send", "pdo", NODE, 1, "statusword=0x27", "6064h=-1", "--tpdo"), FINE)
         self.assertEqual(self.network.frames("185")[-1], "185 27 00 FF FF FF FF")
