@@ -166,6 +166,8 @@ void NodeModel::lay_out(std::size_t at) {
     if (mapped.bits != 0) layout.fields.push_back(field(mapped));
   }
   layout.bits = total_bits(layout.fields);
+  layout.has_selectors =
+      std::ranges::any_of(layout.fields, [](const PdoField& field) { return field.selects.has_value(); });
   pdos_[at] = std::move(layout);
 }
 

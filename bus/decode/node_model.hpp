@@ -36,6 +36,7 @@ struct PdoLayout {
   canopen::CobId cob_id;
   bool multiplexed = false;
   unsigned bits = 0;
+  bool has_selectors = false;  ///< fields of objects depend on a value in it
   std::vector<PdoField> fields;
 };
 

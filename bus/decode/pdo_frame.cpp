@@ -22,7 +22,7 @@ std::uint64_t number_in(const PdoField& field, std::uint64_t word) {
 /// `other`: the value of the object on which fields depend.
 void append_field(std::string& text, const PdoField& field, std::uint64_t word, std::optional<std::int64_t> other,
                   Message& message) {
-  MessageValue value;
+  MessageValue& value = message.values.emplace_back();
   value.index = field.index;
   value.sub_index = field.sub_index;
   value.name = field.name;
@@ -37,7 +37,11 @@ void append_field(std::string& text, const PdoField& field, std::uint64_t word, 
     value.quantity = field.format.quantity();
     value.other = other;
     value.word = field.format.word(value.number, other);
-    field.format.append(text, value.number, other);
+    if (value.word != nullptr) {
+      text += value.word->text;
+    } else {
+      field.format.append(text, value.number, other);
+    }
   } else if (field.type == nullptr) {
     append_hex_number(text, value.number, (field.bits + 3U) / 4U);
   } else if (field.type->kind == canopen::DataClass::string) {
@@ -46,7 +50,6 @@ void append_field(std::string& text, const PdoField& field, std::uint64_t word, 
     append_number(text, *field.type, value.number, field.bits);
   }
   value.text_end = text.size();
-  message.values.push_back(value);
 }
 
 }  // namespace
@@ -55,8 +58,10 @@ void append_pdo(const Frame& frame, const PdoLayout& pdo, NodeModel& node, Messa
   const std::uint64_t word = number_of(data_of(frame));
   const unsigned bits = frame.size * 8U;
   const std::size_t bytes = bytes_for(pdo.bits);
-  for (const PdoField& field : pdo.fields) {
-    if (field.selects && field.end() <= bits) node.select(*field.selects, number_in(field, word));
+  if (pdo.has_selectors) {
+    for (const PdoField& field : pdo.fields) {
+      if (field.selects && field.end() <= bits) node.select(*field.selects, number_in(field, word));
+    }
   }
   const char* separator = "";
   for (const PdoField& field : pdo.fields) {

@@ -93,15 +93,29 @@ void ValueFormat::append_quantity(std::string& text, std::uint64_t number) const
   append_physical(text, *quantity_, type, number, type.bits);
 }
 
+bool ValueFormat::append_named(std::string& text, std::uint64_t number) const {
+  if (values_ == nullptr) return false;
+  const DataTypeRow& type = *entry_->type;
+  const bool is_signed = type.kind == DataClass::signed_integer;
+  const std::int64_t value = is_signed ? sign_extended(number, type.bits) : static_cast<std::int64_t>(number);
+  const NamedValue* const named = values_->find(value);
+  if (named == nullptr) return false;
+  append_decimal(text, named->value);
+  text += ' ';
+  text += named->name;
+  return true;
+}
+
 WordText* ValueFormat::word(std::uint64_t number, std::optional<std::int64_t> other) const {
   if (!words_) return nullptr;
   constexpr std::uint64_t spread = 0x9E37'79B9'7F4A'7C15;  // 2^64 divided by the golden ratio
-  WordText& kept = (*words_)[(number * spread >> 61) % max_words];
+  WordText& kept = (*words_)[(number * spread >> 59) % max_words];
   if (kept.is_of(number, other)) return &kept;
   kept.number = number;
   kept.other = other;
   kept.text.clear();
   kept.json.clear();
+  if (append_named(kept.text, number)) return &kept;
   append_hex_number(kept.text, number, (entry_->type->bits + 3U) / 4);
   kept.text += ' ';
   const std::size_t before = kept.text.size();
@@ -115,20 +129,11 @@ void ValueFormat::append(std::string& text, std::uint64_t number, std::optional<
   if (error_code_ != ErrorCodePlace::none) {
     return append_error_value(text, *device_, *entry_, static_cast<std::uint32_t>(number));
   }
-  if (values_ != nullptr) {
-    const std::int64_t value =
-        type.kind == DataClass::signed_integer ? sign_extended(number, type.bits) : static_cast<std::int64_t>(number);
-    if (const NamedValue* const named = values_->find(value)) {
-      append_decimal(text, named->value);
-      text += ' ';
-      text += named->name;
-      return;
-    }
-  }
   if (const WordText* const kept = word(number, other)) {
     text += kept->text;
     return;
   }
+  if (append_named(text, number)) return;
   if (quantity_ != nullptr) return append_quantity(text, number);
   if (is_hexadecimal_) return append_hex_number(text, number, 8);
   append_number(text, type, number, type.bits);

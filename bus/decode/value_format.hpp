@@ -59,6 +59,7 @@ class ValueFormat {
   [[nodiscard]] const Quantity* quantity() const { return quantity_; }
 
  private:
+  [[nodiscard]] bool append_named(std::string& text, std::uint64_t number) const;
   void append_quantity(std::string& text, std::uint64_t number) const;
 
   const Device* device_ = nullptr;
@@ -70,7 +71,7 @@ class ValueFormat {
   bool is_hexadecimal_ = false;
   ErrorCodePlace error_code_ = ErrorCodePlace::none;
   DecimalScale scale_;
-  static constexpr std::size_t max_words = 8;
+  static constexpr std::size_t max_words = 32;
   std::shared_ptr<std::array<WordText, max_words>> words_;
 };
 
