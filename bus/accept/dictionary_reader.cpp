@@ -81,7 +81,7 @@ void DictionaryReader::read_object(Readings& readings, const Object& object) {
   for (const Entry& entry : object.entries) {
     if (lost()) return;
     Reading reading;
-    reading.entry = live_entry(object, entry);
+    reading.entry = live_entry(sheet_, object, entry);
     if ((conform::flags_of(sheet_, reading.entry) & conform::refuse_read_flag) != 0) {
       reading.why_not = "ObjFlags exclude it from reads";
     } else {

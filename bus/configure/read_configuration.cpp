@@ -105,7 +105,7 @@ std::vector<LiveEntry> configuration_entries(const Device& device) {
       const bool flagged = ((entry.obj_flags | object.obj_flags) & no_read) != 0;
       if (flagged || !canopen::readable(entry.access) || !canopen::writable(entry.access)) continue;
       if (entry.type == nullptr || entry.type->kind == canopen::DataClass::domain) continue;
-      LiveEntry live = live_entry(object, entry);
+      LiveEntry live = live_entry(device, object, entry);
       if (!is_left_out(live)) entries.push_back(std::move(live));
     }
   }

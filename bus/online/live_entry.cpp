@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "device/entry_text.hpp"
+#include "device/error_code_text.hpp"
+#include "device/meaning/value_parts.hpp"
 #include "eds/ini.hpp"
 #include "text/counted.hpp"
 #include "text/utf8.hpp"
@@ -64,6 +66,45 @@ Json json_value(const canopen::DataTypeRow* type, std::span<const std::uint8_t> 
   return nullptr;
 }
 
+Json json_of(const Rational& number) {
+  return number.is_integer() ? Json(number.numerator()) : Json(number.to_double());
+}
+
+/// The number in a field as a name, a physical value, a flag or a number.
+Json field_value(const ValuePart& part) {
+  if (part.masked != nullptr) return part.masked->name;
+  if (part.named != nullptr) return part.named->name;
+  const BitField& field = *part.field;
+  if (field.is_flag()) return part.number != 0;
+  const auto physical = field.quantity
+                            ? physical_value(*field.quantity, type_of(field), static_cast<std::uint64_t>(part.number))
+                            : std::nullopt;
+  return physical ? json_of(*physical) : Json(part.number);
+}
+
+/// The physical value, the name of the value and the fields, where the entry has them.
+void add_meaning(Json& json, const Entry& entry, std::span<const std::uint8_t> bytes) {
+  if (!entry.meaning || entry.type->bits == 0 || bytes.size() != bytes_for(entry.type->bits)) return;
+  const std::uint64_t bits = number_of(bytes);
+  if (const Quantity* const quantity = quantity_of(entry)) {
+    const auto physical = physical_value(*quantity, *entry.type, bits);
+    if (physical) json["physical"] = json_of(*physical);
+    if (!quantity->symbol.empty()) json["unit"] = quantity->symbol;
+  }
+  const Meaning* const meaning = meaning_of_integer(entry);
+  if (meaning == nullptr) return;
+  const bool is_signed = entry.type->kind == DataClass::signed_integer;
+  const auto number = is_signed ? sign_extended(bits, entry.type->bits) : static_cast<std::int64_t>(bits);
+  if (const NamedValue* const named = meaning->values ? meaning->values->find(number) : nullptr) {
+    json["value_name"] = named->name;
+  }
+  if (!meaning->has_fields()) return;
+  Json fields = Json::object();
+  for_each_part(*meaning, bits, std::nullopt,
+                [&](const ValuePart& part) { fields[std::string{part.name()}] = field_value(part); });
+  json["fields"] = std::move(fields);
+}
+
 constexpr std::string_view result_names[] = {"done", "refused", "no_answer", "broken"};  ///< by SdoEnd
 
 /// The size of a number, and of a string whose DEFTYPE states its length.
@@ -75,16 +116,16 @@ std::optional<std::size_t> size_of_type(const LiveEntry& entry) {
 
 }  // namespace
 
-LiveEntry live_entry(const Object& object, const Entry& entry) {
+LiveEntry live_entry(const Device& device, const Object& object, const Entry& entry) {
   std::string name = object.name;
   if (object.has_sub_indices()) name += ", " + entry.name;
-  return {entry.index, entry.sub_index, &entry, entry.type, std::move(name)};
+  return {entry.index, entry.sub_index, &entry, entry.type, std::move(name), &device};
 }
 
 LiveEntry live_entry(const Device* device, std::uint16_t index, std::uint8_t sub_index) {
   const Object* const object = device == nullptr ? nullptr : device->find(index);
   const Entry* const entry = object == nullptr ? nullptr : object->find(sub_index);
-  if (entry != nullptr) return live_entry(*object, *entry);
+  if (entry != nullptr) return live_entry(*device, *object, *entry);
   LiveEntry address;
   address.index = index;
   address.sub_index = sub_index;
@@ -122,7 +163,10 @@ std::string value_of(const LiveEntry& entry, std::span<const std::uint8_t> bytes
   if (entry.type->kind == DataClass::domain) {
     return fmt::format("{} ({})", value_text(*entry.type, bytes), counted(bytes.size(), "byte"));
   }
-  return entry.entry != nullptr ? value_text(*entry.entry, bytes) : value_text(*entry.type, bytes);
+  if (entry.entry == nullptr) return value_text(*entry.type, bytes);
+  std::string text;
+  append_device_value(text, *entry.device, *entry.entry, bytes);
+  return text;
 }
 
 Json as_json(const LiveEntry& entry, const SdoOutcome& outcome, std::span<const std::uint8_t> bytes) {
@@ -133,6 +177,7 @@ Json as_json(const LiveEntry& entry, const SdoOutcome& outcome, std::span<const 
   if (outcome.done()) {
     json["bytes"] = hex_bytes(bytes);
     json["value"] = json_value(entry.type, bytes);
+    if (entry.entry != nullptr) add_meaning(json, *entry.entry, bytes);
     json["text"] = value_of(entry, bytes);
   } else {
     json["abort_code"] = canopen::code_in_frame(outcome.code);

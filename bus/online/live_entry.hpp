@@ -21,9 +21,10 @@ struct LiveEntry {
   const Entry* entry = nullptr;                ///< null without EDS
   const canopen::DataTypeRow* type = nullptr;  ///< null: raw bytes
   std::string name;                            ///< `Identity object, Vendor-ID`; empty without EDS
+  const Device* device = nullptr;              ///< null without EDS
 };
 
-[[nodiscard]] LiveEntry live_entry(const Object& object, const Entry& entry);
+[[nodiscard]] LiveEntry live_entry(const Device& device, const Object& object, const Entry& entry);
 /// The entry of a device. Without a device, or if it does not have the entry: index and sub-index only.
 [[nodiscard]] LiveEntry live_entry(const Device* device, std::uint16_t index, std::uint8_t sub_index);
 
@@ -41,7 +42,8 @@ void set_type(LiveEntry& entry, const canopen::DataTypeRow& type);
 /// `6064h:00 Position actual value`
 [[nodiscard]] std::string title(const LiveEntry& entry);
 
-/// `123456 inc`; of a DOMAIN the first bytes and the length, without a type all bytes.
+/// `123456 inc`, `3 profile_velocity`, `8611h following error`; of a DOMAIN the first bytes and the length, without a
+/// type all bytes.
 [[nodiscard]] std::string value_of(const LiveEntry& entry, std::span<const std::uint8_t> bytes);
 
 /// The result of reading or writing an entry (docs/schema/read.schema.json).

@@ -57,7 +57,7 @@ std::vector<Chosen> all_entries(const Device& device) {
       const bool flagged = ((entry.obj_flags | object.obj_flags) & no_read) != 0;
       if (!canopen::readable(entry.access) || flagged) continue;
       if (entry.type != nullptr && entry.type->kind == canopen::DataClass::domain) continue;
-      entries.push_back({live_entry(object, entry), true});
+      entries.push_back({live_entry(device, object, entry), true});
     }
   }
   return entries;

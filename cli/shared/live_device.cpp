@@ -58,10 +58,10 @@ std::vector<LiveEntry> name_entries(const LoadedDevice* loaded, const std::strin
   if (loaded == nullptr) return {by_address(text)};
   const FoundEntry found = find_entry(loaded->named(), text);
   if (!found.ok()) fail(found.problem);
-  if (found.entry != nullptr) return {live_entry(*found.object, *found.entry)};
+  if (found.entry != nullptr) return {live_entry(*loaded->device, *found.object, *found.entry)};
   std::vector<LiveEntry> entries;
   for (const Entry& entry : found.object->entries) {
-    if (canopen::readable(entry.access)) entries.push_back(live_entry(*found.object, entry));
+    if (canopen::readable(entry.access)) entries.push_back(live_entry(*loaded->device, *found.object, entry));
   }
   if (entries.empty()) {
     fail(fmt::format("{} \"{}\" has no entry that can be read", index_label(found.object->index), found.object->name));
@@ -73,7 +73,7 @@ LiveEntry name_entry(const LoadedDevice* loaded, const std::string& text) {
   if (loaded == nullptr) return by_address(text);
   const FoundEntry found = find_one_entry(loaded->named(), text);
   if (!found.ok()) fail(found.problem);
-  return live_entry(*found.object, *found.entry);
+  return live_entry(*loaded->device, *found.object, *found.entry);
 }
 
 void check_node(SdoAccess& node, const Device& device, const std::string& path, std::string_view hint) {

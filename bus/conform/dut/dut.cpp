@@ -134,7 +134,7 @@ std::optional<std::uint64_t> Dut::default_of(std::uint16_t index, std::uint8_t s
 std::vector<LiveEntry> Dut::entries() const {
   std::vector<LiveEntry> all;
   for (const Object& object : sheet_.objects) {
-    for (const Entry& found : object.entries) all.push_back(live_entry(object, found));
+    for (const Entry& found : object.entries) all.push_back(live_entry(sheet_, object, found));
   }
   return all;
 }

@@ -37,7 +37,7 @@ void FoundValues::remember(std::uint16_t index, std::uint8_t sub_index) {
     const Object* const object = sheet_.find(parameter);
     if (object == nullptr) continue;
     for (const Entry& found : object->entries) {
-      if (canopen::writable(found.access)) remember_entry(live_entry(*object, found));
+      if (canopen::writable(found.access)) remember_entry(live_entry(sheet_, *object, found));
     }
   }
 }

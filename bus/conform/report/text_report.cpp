@@ -75,7 +75,7 @@ std::string TextReport::application_objects() const {
   };
   for (const Object& object : sheet_.objects) {
     const auto is_written = [&](const Entry& entry) {
-      return is_application_parameter(sheet_, live_entry(object, entry));
+      return is_application_parameter(sheet_, live_entry(sheet_, object, entry));
     };
     if (std::ranges::none_of(object.entries, is_written)) continue;
     const std::string text = fmt::format("{:04X}h {}", object.index, object.name);

@@ -110,6 +110,12 @@ class PartNames {
   const Meaning& meaning_;
 };
 
+/// Whether the hexadecimal digits of the word show the number of a field, such as the CAN-ID of a COB-ID.
+bool is_seen_in_digits(const ValuePart& part) {
+  const BitField& field = *part.field;
+  return field.bits >= 8 && field.first_bit % 4 == 0 && part.named == nullptr && !field.quantity && !field.is_signed;
+}
+
 }  // namespace
 
 const canopen::DataTypeRow& type_of(const BitField& field) {
@@ -143,7 +149,8 @@ void append_parts(std::string& text, const Meaning& meaning, std::uint64_t raw, 
   for_each_part(meaning, raw, other, [&](const ValuePart& part) {
     if (part.masked != nullptr) {
       named_bits |= part.masked->mask;
-    } else if (part.field->is_flag() && (part.number == 0 || (part.field->mask() & named_bits) != 0)) {
+    } else if (part.field->is_flag() ? part.number == 0 || (part.field->mask() & named_bits) != 0
+                                     : is_seen_in_digits(part)) {
       return;
     }
     text += separator;

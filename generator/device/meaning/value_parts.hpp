@@ -57,8 +57,8 @@ void for_each_part(const Meaning& meaning, std::uint64_t raw, std::optional<std:
 /// Appends a part: `operation_enabled`, `remote`, `gear=3`. Numbers of 8 and more bits are hexadecimal: `can_id=181h`.
 void append_part(std::string& text, const ValuePart& part);
 
-/// Appends the parts of a word, separated by `, `: `operation_enabled, remote, gear=3`. Flags that are not set, and
-/// those whose bits a masked value has, are left out.
+/// Appends the parts of a word, separated by `, `: `operation_enabled, remote, gear=3`. Left out are flags that are
+/// not set or whose bits a masked value has, and numbers that the hexadecimal digits of the word show.
 void append_parts(std::string& text, const Meaning& meaning, std::uint64_t raw,
                   std::optional<std::int64_t> other = std::nullopt);
 

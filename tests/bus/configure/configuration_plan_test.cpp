@@ -103,7 +103,7 @@ TEST(ConfigurationPlan, WritesNodeIdAndBitRateAtLast) {
                               var("2002", "Gain", "5", "rw")};
   std::vector<ConfigurationValue> values;
   for (const Object& object : device.device.objects) {
-    if (object.index >= 0x2000) values.push_back({live_entry(object, object.entries.front()), {1}, {}});
+    if (object.index >= 0x2000) values.push_back({live_entry(device.device, object, object.entries.front()), {1}, {}});
   }
   const auto steps = plan_configuration(values, &device.device);
   ASSERT_EQ(steps.size(), 3U);
