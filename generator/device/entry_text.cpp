@@ -177,6 +177,7 @@ ParsedValue parse_unchecked(const Entry& entry, std::string_view text) {
     return result;
   }
   result = parse_value_text(type, text);
+  if (!result.ok() && physical) take(raw_number(*quantity, type, *physical));
   const Meaning* const meaning = meaning_of_integer(entry);
   const bool has_names = meaning != nullptr && (meaning->values || meaning->has_fields());
   if (has_names && !is_digit(text.empty() ? '0' : text.front())) {

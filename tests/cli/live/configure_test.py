@@ -52,7 +52,7 @@ node 5: 2 of 25 values differ; 2 of 2 values written, 2 verified, LEFT left out,
 2004h:00 Speed = 1200 rpm
 1017h:00 Producer heartbeat time = 250 ms
 1020h:01 Verify configuration, Configuration date = 00003C0Ch
-1020h:02 Verify configuration, Configuration time = 031C8240h
+1020h:02 Verify configuration, Configuration time = 52200000 ms
 """)
         self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
                     f"node 5: 0 of 25 values differ, {self.left_out} left out\n")
@@ -270,7 +270,7 @@ axis.dcf:{speed}:16: error: 2004h:00 Speed = 4000 rpm: refused by the device: 06
 axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
 """)
         self.expect(self.edsc("read", 5, "1800h:01", "--eds", "device.eds"), FINE,
-                    "1800h:01 TPDO communication parameter 1, COB-ID used by TPDO = 80000185h\n")
+                    "1800h:01 TPDO communication parameter 1, COB-ID used by TPDO = 80000185h not_valid\n")
 
     def test_another_device(self) -> None:
         path = self.only(x2004="1200")

@@ -156,7 +156,7 @@ class Silence(LiveTest):
         self.network.device(lambda frame: answers.get(frame) or default(frame))
         self.expect(self.edsc("read", 5, "1003h", "2010h", "--eds", "history.eds"), FINE, """\
 1003h:00 Pre-defined error field, Number of errors = 1
-1003h:01 Pre-defined error field, Error 1 = 00002310h
+1003h:01 Pre-defined error field, Error 1 = 00002310h continuous over-current
 2010h:00 Log, Number = 2
 2010h:01 Log, Row 1 = 1
 2010h:02 Log, Row 2: no value

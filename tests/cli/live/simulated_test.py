@@ -151,7 +151,7 @@ class Commands(unittest.TestCase):
 
     def test_read(self) -> None:
         self.expect(self.edsc("read", "simulated:devices@5", 5, "1000h", "speed", "--eds", SHEET), FINE,
-                    "1000h:00 Device type = 00020192h\n2004h:00 Speed = 1000 rpm\n")
+                    "1000h:00 Device type = 00020192h device_profile_number=drives_and_motion_control, servo_drive\n2004h:00 Speed = 1000 rpm\n")
 
     def test_write_with_an_application(self) -> None:
         self.expect(self.edsc("write", "simulated:devices@5,motor", 5, "60FFh", 3001, "--eds", SHEET), FAILED, "",

@@ -23,36 +23,45 @@ class Write(LiveTest):
         self.expect(self.edsc("read", 5, "label", "speed", "--eds", "device.eds"), FINE,
                     '2002h:00 Label = "left axis"\n2004h:00 Speed = 1500 rpm\n')
 
-    def test_the_unit_of_a_scaled_entry_is_refused(self) -> None:
-        """One step of 2004h is 0.1 rpm, one of 60FFh is 100 inc/s: no command reads or prints a raw value in the unit."""
+    def test_a_value_in_the_unit_of_a_scaled_entry_is_converted(self) -> None:
+        """One step of 2004h is 0.1 rpm, one of 60FFh is 100 inc/s, in each command that takes or shows a value."""
         text = (self.folder / "device.eds").read_text()
         scaled = text.replace("DefaultValue=1000\nPDOMapping=0\nUnit=rpm", "DefaultValue=1000\nPDOMapping=0\nUnit=rpm\nFactor=0.1")
         scaled = scaled.replace("Unit=inc/s", "Unit=inc/s\nFactor=100")
         self.assertEqual(scaled.count("Factor="), 2)
         (self.folder / "device.eds").write_text(scaled)
-        why = ('"{}" has a unit, but {} is in steps of {} (Factor of the EDS); give the number of steps, without a unit\n')
-        self.expect(self.edsc("write", 5, "speed", "150 rpm", "--eds", "device.eds", "--verify"), WRONG_USAGE,
-                    stderr="edsc: " + why.format("150 rpm", '2004h:00 "Speed"', "0.1 rpm"))
-        self.expect(self.edsc("send", "pdo", "5=device.eds", 1, "60FFh=2 inc/s", "6040h=0"), WRONG_USAGE,
-                    stderr="edsc: 60FFh:00 Target velocity: " + why.format("2 inc/s", '60FFh:00 "Target velocity"', "100 inc/s"))
-        self.expect(self.edsc("write", 5, "speed", "1500", "--eds", "device.eds", "--verify"), FINE,
-                    "2004h:00 Speed = 1500 (05DCh), verified\n")
-        self.expect(self.edsc("read", 5, "speed", "--eds", "device.eds"), FINE, "2004h:00 Speed = 1500 (05DCh)\n")
+        for text, raw in (("150 rpm", 1500), ("2.5 rev/s", 1500), ("1500", 1500), ("-0.1 rpm", None)):
+            with self.subTest(text):
+                done = self.edsc("write", 5, "speed", "--eds", "device.eds", "--verify", "--timeout", PATIENCE_MS, "--", text)
+                if raw is None:
+                    self.expect(done, WRONG_USAGE, stderr='edsc: -0.1 rpm is outside the range of UNSIGNED16: 2004h:00 "Speed"\n')
+                else:
+                    self.expect(done, FINE, "2004h:00 Speed = 150 rpm, verified\n")
+        self.expect(self.edsc("write", 5, "speed", "150 rpm", "--eds", "device.eds", "--force"), FINE, "2004h:00 Speed = 150 rpm\n")
+        self.expect(self.edsc("write", 5, "speed", "150.05 rpm", "--eds", "device.eds"), WRONG_USAGE,
+                    stderr='edsc: 150.05 rpm is between 150 rpm and 150.1 rpm: 2004h:00 "Speed"\n')
+        self.expect(self.edsc("write", 5, "speed", "5 V", "--eds", "device.eds"), WRONG_USAGE,
+                    stderr='edsc: V cannot be converted to rpm: 2004h:00 "Speed"\n')
+        self.expect(self.edsc("send", "pdo", "5=device.eds", 1, "60FFh=250 inc/s", "6040h=0"), WRONG_USAGE,
+                    stderr="edsc: 60FFh:00 Target velocity: 250 inc/s is between 200 inc/s and 300 inc/s: "
+                           '60FFh:00 "Target velocity"\n')
+        self.expect(self.edsc("read", 5, "speed", "--eds", "device.eds"), FINE, "2004h:00 Speed = 150 rpm\n")
         read = self.expect_json(self.edsc("read", 5, "speed", "--eds", "device.eds", "--format", "json"), "read.schema.json")
-        self.assertNotIn("rpm", json.dumps(read))
-        self.assertEqual(self.network.frames("605", "205"), ["605 2B 04 20 00 DC 05 00 00"] + 3 * ["605 40 04 20 00 00 00 00 00"])
+        entry = read["entries"][0]
+        self.assertEqual((entry["value"], entry["physical"], entry["unit"], entry["text"]), (1500, 150, "rpm", "150 rpm"))
+        written = [frame for frame in self.network.frames("605") if frame.startswith("605 2B")]
+        self.assertEqual(written, 4 * ["605 2B 04 20 00 DC 05 00 00"])
         (self.folder / "bus.log").write_text("(1.0) can0 205#0F00FEFFFFFF\n(2.0) can0 605#2B042000E8030000\n")
-        for form, values in (("text", ("Target velocity = -2", "Speed = 1000 (03E8h)")),
-                             ("json", ("Target velocity = -2", "Speed = 1000 (03E8h)")),
-                             ("csv", ("Target velocity,-2,", "Speed,1000,"))):
+        for form, values in (("text", ("Target velocity = -200 inc/s", "Speed = 100 rpm")),
+                             ("json", ("Target velocity = -200 inc/s", "Speed = 100 rpm")),
+                             ("csv", ("Target velocity,-2,-200,inc/s,", "Speed,1000,100,rpm,"))):
             with self.subTest(form):
                 shown = self.without_bus("decode", "--format", form, "--node", "5=device.eds", "bus.log").stdout
                 for value in values:
                     self.assertIn(value, shown)
-                self.assertNotRegex(shown, "rpm|inc/s")
         plot = self.without_bus("plot", "bus.log", "60FFh", "--node", "5=device.eds").stdout
         self.assertIn("Target velocity", plot)
-        self.assertNotIn("inc/s", plot)
+        self.assertIn("inc/s", plot)
         (self.folder / "set.dcf").write_text(scaled.replace("DefaultValue=1000\n", "DefaultValue=1000\nParameterValue=5 rpm\n"))
         self.assertNotEqual(self.without_bus("check", "set.dcf").returncode, FINE)
 
