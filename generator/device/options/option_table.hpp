@@ -57,7 +57,7 @@ inline constexpr std::string_view all_bits = "\"0xFFFFFFFF\"";
 
 inline constexpr OptionGroup cpp{"", "C++"};
 inline constexpr OptionGroup eds{"", "EDS"};
-inline constexpr OptionGroup meaning{"", "meaning"};
+inline constexpr OptionGroup meaning{"", "Values"};
 inline constexpr OptionGroup check{"", "check"};
 inline constexpr OptionGroup pdo{"pdo", "PDO"};
 inline constexpr OptionGroup sync{"sync", "SYNC"};
@@ -82,7 +82,7 @@ inline constexpr OptionRow rows[] = {
      "1021h holds the EDS: `true` as text, `\"compressed\"` as a gzip file, [see below](#the-eds-stored-in-the-device)",
      "false", "false: the DOMAIN that the application binds"},
     {meaning, "meaning", "", structured,
-     "units, scales, names of values and bits, by object or entry, and names of error codes, [see below](#meaning)"},
+     "units, scales, names of values and bits, by object or entry, and names of error codes, [see below](#meaning-of-values)"},
     {check, "silence", "", structured,
      "ids of rules whose warnings and notes are not reported; errors are silenced for `edsc check` only"},
     {check, "allow", "", structured,
