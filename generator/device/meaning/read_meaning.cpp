@@ -380,8 +380,8 @@ class MeaningReader {
     if (same == rows.end()) return;
     error(value, path,
           fmt::format("{} occurs twice, in different spellings", static_cast<std::int64_t>((*same).*number)));
-    const auto rest = std::ranges::unique(rows, {}, number);
-    rows.erase(rest.begin(), rest.end());
+    const auto is_same = [&](const Row& a, const Row& b) { return a.*number == b.*number; };
+    rows.erase(std::unique(rows.begin(), rows.end(), is_same), rows.end());
   }
 
   template <class Row>
