@@ -122,7 +122,7 @@ class CommandLine(unittest.TestCase):
         said = result.stdout + result.stderr
         self.assertEqual(result.returncode, exit_code, said[:2000])
         for word in words:
-            self.assertIn(word, said[:20000])
+            self.assertTrue(word in said, f"{word} not in {said[:20000]}")
 
 
 class BadInput(CommandLine):
