@@ -6,6 +6,7 @@
 #include <canopen/can/cob_id.hpp>
 
 #include "backend/json/information_view.hpp"
+#include "backend/json/meaning_view.hpp"
 #include "backend/json/replaced_default.hpp"
 #include "system/path.hpp"
 #include "text/source_file.hpp"
@@ -65,6 +66,7 @@ ordered_json entry_view(const Entry& entry, const Identifiers& names) {
   add_text("unit", entry.unit, view);
   add_text("factor", entry.factor, view);
   add_text("description", entry.description, view);
+  if (entry.meaning) view["meaning"] = meaning_view(*entry.meaning, *entry.type);
   view["line"] = entry.position.line;
   return view;
 }
@@ -193,6 +195,7 @@ ordered_json device_view(const Device& device, const Identifiers& names) {
   ordered_json pdos = ordered_json::array();
   for (const Pdo& pdo : device.pdos) pdos.push_back(pdo_view(pdo));
   view["pdos"] = std::move(pdos);
+  view["error_codes"] = error_codes_view(device.error_codes);
   return view;
 }
 
