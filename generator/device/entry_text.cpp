@@ -107,13 +107,23 @@ std::optional<ParsedValue> number_with_names(const Entry& entry, std::string_vie
   return number;
 }
 
-/// Why a closed enumeration does not have the number; empty if it does.
+/// Why a closed enumeration, of the entry or of a field, does not have the number; empty if each has it.
 std::string closed_problem(const Entry& entry, std::uint64_t bits, std::string_view text) {
   const Meaning* const meaning = meaning_of_integer(entry);
-  if (meaning == nullptr || !meaning->values || !meaning->values->closed) return "";
-  if (meaning->values->find(integer_of(*entry.type, bits)) != nullptr) return "";
-  return fmt::format("{} is not a value of {} \"{}\"{}", text, entry_label(entry.index, entry.sub_index), entry.name,
-                     names_hint(*meaning->values, text));
+  if (meaning == nullptr) return "";
+  const auto is_rejected = [](const std::optional<Enumeration>& values, std::int64_t number) {
+    return values && values->closed && values->find(number) == nullptr;
+  };
+  const std::string label = fmt::format("{} \"{}\"", entry_label(entry.index, entry.sub_index), entry.name);
+  if (is_rejected(meaning->values, integer_of(*entry.type, bits))) {
+    return fmt::format("{} is not a value of {}{}", text, label, names_hint(*meaning->values, text));
+  }
+  for (const BitField& field : meaning->fields) {
+    if (!is_rejected(field.values, field.of(bits))) continue;
+    return fmt::format("{}={} is not a value of {}{}", field.name, field.of(bits), label,
+                       names_hint(*field.values, ""));
+  }
+  return "";
 }
 
 }  // namespace
@@ -169,15 +179,11 @@ ParsedValue parse_unchecked(const Entry& entry, std::string_view text) {
       result.problem = fmt::format("{}: {} \"{}\"", raw.problem, entry_label(entry.index, entry.sub_index), entry.name);
     }
   };
+  result = parse_value_text(type, text);  // 10h is 16, 10 h are hours
   const Quantity* const quantity = quantity_of(entry);
-  const auto physical = quantity != nullptr ? split_physical(text) : std::nullopt;
-  if (physical && (physical->unit == quantity->symbol || canopen::find_unit(physical->unit) != nullptr)) {
-    take(raw_number(*quantity, type, *physical));
-    if (!result.ok()) result.bytes.clear();
-    return result;
+  if (!result.ok() && quantity != nullptr) {
+    if (const auto physical = split_physical(text)) take(raw_number(*quantity, type, *physical));
   }
-  result = parse_value_text(type, text);
-  if (!result.ok() && physical) take(raw_number(*quantity, type, *physical));
   const Meaning* const meaning = meaning_of_integer(entry);
   const bool has_names = meaning != nullptr && (meaning->values || meaning->has_fields());
   if (has_names && !is_digit(text.empty() ? '0' : text.front())) {

@@ -34,8 +34,8 @@ void append_value(std::string& text, const Entry& entry, std::span<const std::ui
 
 /// Reads what `value_text` writes. A number with a unit is a physical value, also in another unit of the dimension; a
 /// number without a unit is the raw number; a name is a named value, and names separated by commas are the masked
-/// values and fields of a word (`parse_parts`). Checks the limits of the entry, and that a value of a closed
-/// enumeration is named.
+/// values and fields of a word (`parse_parts`). Checks the limits of the entry, and that closed enumerations, of the
+/// entry or of its fields, have the number.
 [[nodiscard]] ParsedValue parse_value_text(const Entry& entry, std::string_view text);
 /// The same without these checks, to send a value that the device should reject.
 [[nodiscard]] ParsedValue parse_unchecked(const Entry& entry, std::string_view text);

@@ -102,7 +102,7 @@ struct StatedQuantity {
   }
   [[nodiscard]] bool any() const { return unit != nullptr || scale != nullptr || offset != nullptr; }
 
-  /// The quantity; what is not stated is that of `base`.
+  /// The quantity: `base` with the stated properties in place of its own.
   [[nodiscard]] Quantity over(const Quantity& base, MeaningSource source) const {
     Quantity result = base;
     result.source = source;
@@ -141,6 +141,7 @@ class Resolver {
       for (Entry& entry : object.entries) resolve(object, entry);
     }
     copy_same();
+    name_cases();
     report_unused();
     take_error_codes();
   }
@@ -307,6 +308,29 @@ class Resolver {
         entry.meaning = std::make_shared<const Meaning>(std::move(meaning));
       }
     }
+  }
+
+  /// A case without a name has that of the value of the other object.
+  void name_cases() {
+    std::map<std::shared_ptr<const Meaning>, std::shared_ptr<const Meaning>> renamed;
+    for (Object& object : device_.objects) {
+      for (Entry& entry : object.entries) {
+        if (!entry.meaning || !entry.meaning->depends_on) continue;
+        auto& result = renamed[entry.meaning];
+        if (!result) result = std::make_shared<const Meaning>(with_named_cases(*entry.meaning));
+        entry.meaning = result;
+      }
+    }
+  }
+
+  [[nodiscard]] Meaning with_named_cases(Meaning meaning) const {
+    const Entry* const other = device_.find(meaning.depends_on->first, meaning.depends_on->second);
+    if (other == nullptr || !other->meaning || !other->meaning->values) return meaning;
+    for (FieldCase& one : meaning.cases) {
+      const NamedValue* const named = other->meaning->values->find(one.values.front());
+      if (one.name.empty() && named != nullptr) one.name = named->name;
+    }
+    return meaning;
   }
 
   void report_unused() {

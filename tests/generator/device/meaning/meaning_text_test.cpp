@@ -19,7 +19,7 @@ namespace {
 
 using canopen::DataClass;
 
-/// Entries 2000h to 2003h with a meaning.
+/// Entries 2000h to 2004h with a meaning.
 class MeaningOfText : public testing::Test {
  protected:
   MeaningOfText()
@@ -29,10 +29,11 @@ class MeaningOfText : public testing::Test {
                      "8..11": {"name": "level", "signed": true}, "12..15": {"name": "oil", "unit": "%", "scale": 10}},
             "masked": {"state": {"ready": ["0x0C", "0x04"], "fault": ["0x0C", "0x08"]}}},
   "2003h": {"depends_on": "2001h", "cases": {"0": {"name": "idle", "bits": {"12": "set_up"}},
-                                             "3": {"name": "velocity", "bits": {"12": "at_speed", "13": "slip"}}},
-            "bits": {"3": "fault"}} } })"),
+                                             "3": {"bits": {"12": "at_speed", "13": "slip"}}},
+            "bits": {"3": "fault"}},
+  "2004h": {"bits": {"0..1": {"name": "gear", "values": {"1": "low", "2": "high"}, "closed": true}}} } })"),
         device(var("2000", "Delay", "6", "rw", "Unit=s\nFactor=0.001\nHighLimit=9000\n") + var("2001", "Mode", "2") +
-                   var("2002", "Status", "6") + var("2003", "Word", "6"),
+                   var("2002", "Status", "6") + var("2003", "Word", "6") + var("2004", "Gears", "5"),
                options.options) {
     EXPECT_TRUE(options.diagnostics.all().empty());
   }
@@ -63,6 +64,10 @@ TEST_F(MeaningOfText, ANumberWithAUnitIsThePhysicalValue) {
   EXPECT_EQ(raw(0x2000, "5 ms"), 5U);
   EXPECT_EQ(raw(0x2000, "0.1 min"), 6000U);
   EXPECT_EQ(raw(0x2000, "5"), 5U) << "without a unit, it is the raw number";
+  EXPECT_EQ(raw(0x2000, "10h"), 0x10U) << "hexadecimal, not hours";
+  EXPECT_EQ(raw(0x2000, "0x10"), 0x10U);
+  EXPECT_EQ(problem(0x2000, "10 h"), "10 h is outside the range of UNSIGNED16: 2000h:00 \"Delay\"");
+  EXPECT_EQ(problem(0x2000, "5 parsec"), "\"parsec\" is not a unit that edsc knows: 2000h:00 \"Delay\"");
   EXPECT_EQ(text(0x2000, 5000), "5 s");
   EXPECT_EQ(text(0x2000, 5), "0.005 s");
   EXPECT_EQ(limits_text(device.entry(0x2000)), "..9 s");
@@ -108,13 +113,21 @@ TEST_F(MeaningOfText, AWordIsItsNumberAndTheNamesOfItsBits) {
             "\"remot\" is not a field or value; did you mean \"remote\"?: 2002h:00 \"Status\"");
 }
 
+TEST_F(MeaningOfText, AClosedFieldRejectsOtherNumbers) {
+  EXPECT_EQ(raw(0x2004, "gear=high"), 2U);
+  EXPECT_EQ(raw(0x2004, "0xF1"), 0xF1U);
+  for (const char* const text : {"gear=3", "3"}) {
+    EXPECT_EQ(problem(0x2004, text), "gear=3 is not a value of 2004h:00 \"Gears\"; expected low, high");
+  }
+}
+
 TEST_F(MeaningOfText, FieldsOfACaseNeedTheOtherValue) {
   EXPECT_EQ(text(0x2003, 0x1008), "1008h fault");
   EXPECT_EQ(text(0x2003, 0x1008, 0), "1008h fault, set_up");
   EXPECT_EQ(text(0x2003, 0x1008, 3), "1008h fault, at_speed");
   EXPECT_EQ(text(0x2003, 0x1008, 7), "1008h fault");
   EXPECT_EQ(raw(0x2003, "fault, slip"), 0x2008U);
-  EXPECT_EQ(raw(0x2003, "velocity.at_speed"), 0x1000U);
+  EXPECT_EQ(raw(0x2003, "profile_velocity.at_speed"), 0x1000U);
   EXPECT_NE(problem(0x2003, "idle.at_speed"), "");
 }
 
