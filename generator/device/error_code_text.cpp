@@ -27,7 +27,7 @@ bool is_known(std::uint16_t code) {
                              [code](const canopen::EmergencyCodeText& row) { return (code & row.mask) == row.code; });
 }
 
-/// Whether the index is that of 603Fh in one of the eight axes, which are 800h apart.
+/// Whether the index is 603Fh of one of the eight axes, which are 800h apart.
 bool is_error_code_of_axis(std::uint16_t index) {
   constexpr unsigned axis_objects = 0x800, after_last_axis = 0xA000;
   return index >= error_code_of_drive && index < after_last_axis && (index - error_code_of_drive) % axis_objects == 0;

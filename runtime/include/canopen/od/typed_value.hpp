@@ -156,7 +156,7 @@ struct Fields {
   constexpr void assign_(Number mask, bool on) {
     number_ = static_cast<Number>(on ? number_ | mask : number_ & static_cast<Number>(~mask));
   }
-  /// The mask is that of a field whose first bit is bit 0.
+  /// `mask`: the ones of the field, shifted to bit 0.
   [[nodiscard]] constexpr Number part_(unsigned shift, Number mask) const {
     return static_cast<Number>(static_cast<Number>(number_ >> shift) & mask);
   }

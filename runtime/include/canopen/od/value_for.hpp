@@ -215,7 +215,7 @@ class CheckedValue {
     if (constant_is_below_the_low_limit<ObjectType>[element_of(code, AbortCode::value_too_low)]) value_ = {};
     if (constant_is_not_an_accepted_value<ObjectType>[element_of(code, AbortCode::invalid_value)]) value_ = {};
   }
-  /// A variable, which has not been checked.
+  /// Rejects a variable, which may be outside the limits.
   template <value_for_detail::Variable ValueType>
   requires(ValueFor<ValueType, ObjectType>)
       // NOLINTNEXTLINE(google-explicit-constructor)
@@ -385,7 +385,7 @@ class CheckedValue<ObjectType> : public ConstantOf<ObjectType> {
   consteval CheckedValue(RawNumber<Number> constant) {
     this->value_ = ConstantOf<ObjectType>::accepted(constant);
   }
-  /// A variable, which has not been checked.
+  /// Rejects a variable, which may be outside the limits.
   template <value_for_detail::Variable ValueType>
   requires(std::same_as<ValueType, type>)
       // NOLINTNEXTLINE(google-explicit-constructor)
