@@ -2,4 +2,4 @@
 # read this list.
 set(EDSC_HEADERS dictionary.hpp pdo.hpp device.hpp description.hpp)
 # Headers of some devices only: NAME.hpp is written if the member NAME of the view is not null.
-set(EDSC_OPTIONAL_HEADERS stored_eds.hpp)
+set(EDSC_OPTIONAL_HEADERS meaning.hpp meaning_text.hpp stored_eds.hpp)

@@ -3,7 +3,7 @@
 #include <canopen/node.hpp>
 #include <canopen/sdo/remote_node.hpp>
 
-#include "runtime/typed/typed_drive.hpp"
+#include <typed_drive/device.hpp>
 #include "support/omitting.hpp"
 
 namespace od = typed_drive::od;

@@ -11,6 +11,7 @@ of the runtime and of all devices in one file, the other compilers those of each
 
 from __future__ import annotations
 
+import json
 import re
 import string
 import subprocess
@@ -63,11 +64,27 @@ def data_sheets(source_dir: Path, scratch: Path) -> list[Path]:
     return sorted((source_dir / "eds").glob("*.eds")) + sorted([*fixtures, names_eds(scratch)], key=lambda path: path.name)
 
 
-def generate(edsc: Path, sheets: list[Path], output: Path) -> list[Path]:
-    """Returns the folder of each device."""
+def typed_options(sheet: Path, scratch: Path) -> Path:
+    """The options of a device with the option typed_values."""
+    options = json.loads(sheet.with_suffix(".options.json").read_text(encoding="utf-8"))
+    path = scratch / f"typed_{sheet.stem}.options.json"
+    path.write_text(json.dumps({**options, "typed_values": True}), encoding="utf-8")
+    return path
+
+
+def generate(edsc: Path, sheets: list[Path], output: Path, scratch: Path) -> list[Path]:
+    """Returns the folder of each device; the reference devices have one more, with typed values."""
+    def run(sheet: Path, *extra: str | Path) -> None:
+        subprocess.run([edsc, "generate", sheet, "-o", output, "--color", "never", *extra], check=True, capture_output=True)
+
     for sheet in sheets:
-        subprocess.run([edsc, "generate", sheet, "-o", output, "--color", "never"], check=True, capture_output=True)
-    subprocess.run([edsc, "generate", sheets[-1], "-o", output, "--name", NAMED_LIKE_STD], check=True, capture_output=True)
+        run(sheet)
+        if sheet.parent.name == "eds":
+            name = f"typed_{sheet.stem.replace('-', '_')}"
+            run(sheet, "--name", name, "--options", typed_options(sheet, scratch))
+            if not (output / name / "meaning.hpp").is_file():
+                raise FileNotFoundError(f"{name} does not have meaning.hpp")
+    run(sheets[-1], "--name", NAMED_LIKE_STD)
     return sorted(path for path in output.iterdir() if path.is_dir())
 
 
@@ -150,7 +167,7 @@ def main() -> int:
     compilers = those_installed((GCC, CLANG, ARM_GCC))
     with tempfile.TemporaryDirectory() as temporary:
         scratch = Path(temporary)
-        devices = generate(edsc, data_sheets(source_dir, scratch), scratch / "generated")
+        devices = generate(edsc, data_sheets(source_dir, scratch), scratch / "generated", scratch)
         jobs = jobs_of_the_runtime(runtime, compilers, scratch)
         for compiler in compilers:
             if compiler == GCC:

@@ -77,21 +77,26 @@ ordered_json cpp_view(const NamedDevice& named, const Options& options, Diagnost
     return json_object("any", any_row, "rows", std::move(rows));
   };
   OptionsView view = options_view(device, options);
+  const TypedValues typed{named, options};
+  std::string closed_objects = typed.closed_objects(named);
   return json_object(
       "file", cpp_comment(file_name_of(device.source->name())), "namespace", space, "guard",
       upper_case("edsc_" + space), "product_name",
-      cpp_string(device.product_name.empty() ? space : device.product_name), "types", object_types_view(named, options),
-      "object_rows", object_rows_view(named), "memory", layout_view(lay_out(named, options, diagnostics)),
-      "zero_terminated_strings", options.zero_terminated_strings, "pdos", pdo_rows(named), "distinct_pdos",
-      table(distinct_pdos(device)), "cob_ids", table(cob_id_rows(device)), "rpdos",
-      served_pdos(device, PdoDirection::receive), "tpdos", served_pdos(device, PdoDirection::transmit), "options",
-      std::move(view.runtime), "any_options", !options.runtime.empty(), "event_conditions",
-      std::move(view.event_conditions), "any_event_condition", !options.no_event.empty(), "emergency_info",
-      std::move(view.emergency_info), "any_emergency_info", !options.emergency_info.empty(), "descriptions",
-      description_rows(device), "node_id", device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr),
-      "dummies", dummy_mask(device), "granularity", device.information.capabilities.granularity.value_or(1), "lss",
-      std::move(view.lss), "stored_eds", stored_eds_view(device, options), "storing", std::move(view.storing),
-      "any_storing", !options.storing.empty() || !options.stored_by.empty());
+      cpp_string(device.product_name.empty() ? space : device.product_name), "types",
+      object_types_view(named, typed, options), "typed_values", typed.any(), "meaning", typed.definitions(),
+      "meaning_text", typed.names_of_values(), "closed_objects",
+      closed_objects.empty() ? ordered_json(nullptr) : ordered_json(std::move(closed_objects)), "object_rows",
+      object_rows_view(named), "memory", layout_view(lay_out(named, options, diagnostics)), "zero_terminated_strings",
+      options.zero_terminated_strings, "pdos", pdo_rows(named), "distinct_pdos", table(distinct_pdos(device)),
+      "cob_ids", table(cob_id_rows(device)), "rpdos", served_pdos(device, PdoDirection::receive), "tpdos",
+      served_pdos(device, PdoDirection::transmit), "options", std::move(view.runtime), "any_options",
+      !options.runtime.empty(), "event_conditions", std::move(view.event_conditions), "any_event_condition",
+      !options.no_event.empty(), "emergency_info", std::move(view.emergency_info), "any_emergency_info",
+      !options.emergency_info.empty(), "descriptions", description_rows(device), "node_id",
+      device.node_id ? ordered_json(*device.node_id) : ordered_json(nullptr), "dummies", dummy_mask(device),
+      "granularity", device.information.capabilities.granularity.value_or(1), "lss", std::move(view.lss), "stored_eds",
+      stored_eds_view(device, options), "storing", std::move(view.storing), "any_storing",
+      !options.storing.empty() || !options.stored_by.empty());
 }
 
 }  // namespace edsc

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <utility>
 
 #include "backend/cpp/cpp_text.hpp"
 #include "text/ascii.hpp"
@@ -20,31 +21,33 @@ consteval std::array<std::string_view, N> sorted(const char* const (&words)[N]) 
   return list;
 }
 
-/// Names that are not available for objects: keywords, alternative tokens, usual macros in lower case, and the members
-/// of each generated object.
+/// Names that are not available in C++: keywords, alternative tokens, usual macros in lower case.
 // clang-format off
-constexpr const char* word_list[] = {
-    "alignas",       "alignof",     "and",          "and_eq",        "asm",          "assert",      "auto",
-    "bitand",        "bitor",       "bits",         "bool",          "break",        "canopen",     "case",
-    "catch",         "char",        "char16_t",     "char32_t",      "char8_t",      "class",       "co_await",
-    "co_return",     "co_yield",    "compl",        "concept",       "const",        "const_cast",  "consteval",
-    "constexpr",     "constinit",   "continue",     "decltype",      "default",      "default_value", "delete",
-    "do",            "double",      "dynamic_cast", "else",          "enum",         "errno",       "explicit",
-    "export",        "extern",      "false",        "final",         "float",        "for",         "friend",
-    "goto",          "high_limit",  "if",           "import",        "index",        "inline",      "int",
-    "linux",         "long",        "low_limit",    "major",         "mappable",     "minor",       "module",
-    "mutable",       "name",        "namespace",    "new",           "noexcept",     "not",         "not_eq",
-    "nullptr",       "od",          "offsetof",     "operator",      "or",           "or_eq",       "override",
-    "private",       "protected",   "public",       "register",      "reinterpret_cast", "requires", "return",
-    "setjmp",        "short",       "signed",       "sizeof",        "static",       "static_assert", "static_cast",
-    "std",           "stderr",      "stdin",        "stdout",        "struct",       "sub_index",   "switch",
-    "template",      "this",        "thread_local", "throw",         "true",         "try",         "type",
-    "typedef",       "typeid",      "typename",     "union",         "unix",         "unsigned",    "using",
-    "va_arg",        "virtual",     "void",         "volatile",      "wchar_t",      "while",       "xor",
-    "xor_eq",        "access",
+constexpr const char* keyword_list[] = {
+    "alignas", "alignof", "and", "and_eq", "asm", "assert", "auto", "bitand", "bitor", "bool", "break", "canopen",
+    "case", "catch", "char", "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield", "compl",
+    "concept", "const", "const_cast", "consteval", "constexpr", "constinit", "continue", "decltype", "default",
+    "delete", "do", "double", "dynamic_cast", "else", "enum", "errno", "explicit", "export", "extern", "false",
+    "final", "float", "for", "friend", "goto", "if", "import", "inline", "int", "linux", "long", "major", "minor",
+    "module", "mutable", "namespace", "new", "noexcept", "not", "not_eq", "nullptr", "offsetof", "operator", "or",
+    "or_eq", "override", "private", "protected", "public", "register", "reinterpret_cast", "requires", "return",
+    "setjmp", "short", "signed", "sizeof", "static", "static_assert", "static_cast", "std", "stderr", "stdin",
+    "stdout", "struct", "switch", "template", "this", "thread_local", "throw", "true", "try", "typedef", "typeid",
+    "typename", "union", "unix", "unsigned", "using", "va_arg", "virtual", "void", "volatile", "wchar_t", "while",
+    "xor", "xor_eq",
 };
 // clang-format on
-constexpr auto reserved_words = sorted(word_list);
+constexpr auto keywords = sorted(keyword_list);
+
+/// Further names that are not available for objects: the members of each generated object, and the namespaces around
+/// it.
+// clang-format off
+constexpr const char* member_list[] = {
+    "access", "bits", "default_value", "high_limit", "index", "is_value", "low_limit", "mappable", "meaning", "name",
+    "od", "sub_index", "type",
+};
+// clang-format on
+constexpr auto members = sorted(member_list);
 
 /// Further names that are not available for a namespace at global scope: functions of the C library, and the constants
 /// of canopen::entry in the generated tables.
@@ -69,7 +72,12 @@ constexpr auto reserved_namespaces = sorted(namespace_list);
 }  // namespace
 
 std::string without_reserved_word(std::string identifier) {
-  if (std::ranges::binary_search(reserved_words, identifier)) identifier += '_';
+  if (std::ranges::binary_search(members, identifier)) identifier += '_';
+  return without_keyword(std::move(identifier));
+}
+
+std::string without_keyword(std::string identifier) {
+  if (std::ranges::binary_search(keywords, identifier)) identifier += '_';
   return identifier;
 }
 

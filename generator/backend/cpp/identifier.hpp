@@ -13,6 +13,9 @@ namespace edsc {
 /// The same for a name that already is in snake_case.
 [[nodiscard]] std::string without_reserved_word(std::string identifier);
 
+/// The same for the name of a value or field, which may be that of a member of an object: `index`.
+[[nodiscard]] std::string without_keyword(std::string identifier);
+
 /// Whether the name is valid for an object: not empty, snake_case and not reserved.
 [[nodiscard]] bool is_identifier(std::string_view name);
 

@@ -9,6 +9,7 @@
 #include "backend/cpp/cpp_text.hpp"
 #include "backend/cpp/identifier.hpp"
 #include "backend/cpp/json_object.hpp"
+#include "backend/cpp/meaning_comment.hpp"
 #include "device/drive_modes.hpp"
 #include "device/uniform_array.hpp"
 #include "system/path.hpp"
@@ -45,8 +46,8 @@ std::string padded(std::string text, std::size_t column) {
 
 class ObjectTypes {
  public:
-  ObjectTypes(const NamedDevice& named, const Options& options)
-      : device_{named.device}, names_{named.names}, options_{options} {
+  ObjectTypes(const NamedDevice& named, const TypedValues& typed, const Options& options)
+      : device_{named.device}, names_{named.names}, typed_{typed}, options_{options} {
     file_ = cpp_comment(file_name_of(device_.source->name()));
   }
 
@@ -79,10 +80,43 @@ class ObjectTypes {
     const std::string label = fmt::format("{}:01..{:02X}", index_label(object.index), length);
     ordered_json count = entry_row(object.entries.front());
     count["array_identifier"] = names_.of(object);
-    return json_object(
-        "comment", comment(first, object.name, label), "identifier", names_.of(object), "name", cpp_string(object.name),
-        "base", fmt::format("canopen::Object<{}, SubIndex, {}>", index_of(first), attributes(first)), "constants",
-        constants(first), "length", length, "count", std::move(count), "elements", element_names(object));
+    const std::string identifier = names_.of(object);
+    const TypedValue* const typed = typed_.is_uniform(object) ? typed_.find(first) : nullptr;
+    return json_object("comment", comment(first, object.name, label), "meaning_lines",
+                       typed_.is_uniform(object) ? meaning_lines(device_, first) : ordered_json::array(), "identifier",
+                       identifier, "name", cpp_string(object.name), "base",
+                       fmt::format("canopen::Object<{}, SubIndex, {}>", index_of(first), attributes(first)), "typed",
+                       typed_row(typed, identifier), "constants",
+                       constants(first, typed, fmt::format("typename {}::type", identifier)), "length", length, "count",
+                       std::move(count), "typed_elements", typed_elements(object), "elements", element_names(object));
+  }
+
+  /// Elements that have another type than others: specializations of the template, whose values are raw numbers.
+  [[nodiscard]] ordered_json typed_elements(const Object& object) const {
+    ordered_json rows = ordered_json::array();
+    if (typed_.is_uniform(object)) return rows;
+    for (std::size_t i = 1; i < object.entries.size(); ++i) {
+      const Entry& entry = object.entries[i];
+      const TypedValue* const typed = typed_.find(entry);
+      if (typed == nullptr) continue;
+      rows.push_back(
+          json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)), "meaning_lines",
+                      meaning_lines(device_, entry), "array_identifier", names_.of(object), "number", entry.sub_index,
+                      "name", cpp_string(object.name), "base",
+                      fmt::format("canopen::Object<{}, {}, {}>", index_of(entry), entry.sub_index, attributes(entry)),
+                      "typed", typed_row(typed, names_.of(object)), "constants", constants(entry, typed, "type")));
+    }
+    return rows;
+  }
+
+  /// The type of values with a meaning; null for raw numbers.
+  [[nodiscard]] static ordered_json typed_row(const TypedValue* typed, std::string_view identifier) {
+    if (typed == nullptr) return nullptr;
+    ordered_json closed = nullptr;
+    if (typed->is_closed()) closed = json_object("enumerators", typed->enumerators);
+    // A member cannot have the name of its class.
+    const bool has_alias = typed->values != nullptr && identifier != "value";
+    return json_object("type", typed->type, "value", has_alias, "closed", std::move(closed));
   }
 
   /// Elements that have their own name, such as `gains_p` for `gains<1>`; null if there are none.
@@ -99,10 +133,14 @@ class ObjectTypes {
   }
 
   [[nodiscard]] ordered_json entry_row(const Entry& entry) const {
-    return json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)), "identifier",
-                       names_.of(entry), "name", cpp_string(entry.name), "base",
-                       fmt::format("canopen::TypedObject<{}>", attributes(entry)), "index", index_of(entry),
-                       "sub_index", fmt::format("0x{:02X}", entry.sub_index), "constants", constants(entry),
+    const TypedValue* const typed = typed_.find(entry);
+    std::string identifier = names_.of(entry);
+    ordered_json type = typed_row(typed, identifier);
+    return json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)),
+                       "meaning_lines", meaning_lines(device_, entry), "identifier", std::move(identifier), "name",
+                       cpp_string(entry.name), "base", fmt::format("canopen::TypedObject<{}>", attributes(entry)),
+                       "typed", std::move(type), "index", index_of(entry), "sub_index",
+                       fmt::format("0x{:02X}", entry.sub_index), "constants", constants(entry, typed, "type"),
                        "accepted_modes", modes(entry));
   }
 
@@ -116,11 +154,20 @@ class ObjectTypes {
     return json_object("ranges", "{" + ranges + "}");
   }
 
-  [[nodiscard]] static ordered_json constants(const Entry& entry) {
+  /// Limits. Those of a quantity are quantities; those of enumerations and words are raw numbers.
+  [[nodiscard]] static ordered_json constants(const Entry& entry, const TypedValue* typed, std::string_view type) {
     ordered_json rows = ordered_json::array();
     const auto add = [&](const char* name, const std::optional<Value>& value) {
       if (!value || value->plus_node_id) return;
-      rows.push_back(json_object("name", name, "value", cpp_literal(*value, *entry.type)));
+      std::string literal = cpp_literal(*value, *entry.type);
+      if (typed == nullptr) {
+        rows.push_back(json_object("type", type, "name", name, "value", " = " + literal));
+      } else if (typed->is_quantity) {
+        literal = fmt::format("{{canopen::raw({}{{{}}})}}", entry.type->cpp_type, literal);
+        rows.push_back(json_object("type", type, "name", name, "value", std::move(literal)));
+      } else {
+        rows.push_back(json_object("type", entry.type->cpp_type, "name", name, "value", " = " + literal));
+      }
     };
     add("low_limit", entry.low_limit);
     add("high_limit", entry.high_limit);
@@ -159,14 +206,15 @@ class ObjectTypes {
 
   const Device& device_;
   const CppNames& names_;
+  const TypedValues& typed_;
   const Options& options_;
   std::string file_;
 };
 
 }  // namespace
 
-ordered_json object_types_view(const NamedDevice& named, const Options& options) {
-  return ObjectTypes{named, options}.view();
+ordered_json object_types_view(const NamedDevice& named, const TypedValues& typed, const Options& options) {
+  return ObjectTypes{named, typed, options}.view();
 }
 
 ordered_json object_rows_view(const NamedDevice& named) {

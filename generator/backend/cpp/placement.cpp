@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "backend/cpp/typed_values.hpp"
 #include "device/drive_modes.hpp"
 #include "device/index_range.hpp"
 #include "device/stored_eds.hpp"
@@ -119,7 +120,12 @@ bool Placement::has_limits(const Object& object, const Entry& entry) const {
 
 bool Placement::is_limited(const Object& object, const Entry& entry) const {
   if (has_limits(object, entry)) return true;
-  return canopen::writable(entry.access) && !accepted_modes(device_, options_, entry).empty();
+  if (!canopen::writable(entry.access)) return false;
+  const auto is_closed = [&](const Entry& one) { return is_closed_enumeration(one, options_); };
+  // Elements of an ARRAY share one word.
+  const bool is_element = entry.sub_index != 0 && describes_uniform_array(object);
+  return !accepted_modes(device_, options_, entry).empty() ||
+         (is_element ? std::ranges::any_of(object.entries, is_closed) : is_closed(entry));
 }
 
 bool Placement::is_uniform_array(const Object& object) const {

@@ -33,7 +33,8 @@ class Placement {
   /// the range of the data type have none.
   [[nodiscard]] bool has_limits(const Object& object, const Entry& entry) const;
 
-  /// Whether a received value is checked: against limits, or against the modes of operation of a drive.
+  /// Whether a received value is checked: against limits, the modes of operation of a drive, or the values of a
+  /// closed enumeration.
   [[nodiscard]] bool is_limited(const Object& object, const Entry& entry) const;
 
   /// Elements of the same numeric type and access in the same memory, without gaps: they share one word.

@@ -5,13 +5,15 @@
 
 #include "backend/cpp/cpp_names.hpp"
 #include "backend/cpp/memory_layout.hpp"
+#include "backend/cpp/typed_values.hpp"
 #include "device/device.hpp"
 #include "device/options/options.hpp"
 
 namespace edsc {
 
 /// One row for each object: a VAR, an ARRAY of equal elements as a template, or a namespace of entries.
-[[nodiscard]] nlohmann::ordered_json object_types_view(const NamedDevice& named, const Options& options);
+[[nodiscard]] nlohmann::ordered_json object_types_view(const NamedDevice& named, const TypedValues& typed,
+                                                       const Options& options);
 
 /// The arguments of the list of these types, with the punctuation behind each.
 [[nodiscard]] nlohmann::ordered_json object_rows_view(const NamedDevice& named);

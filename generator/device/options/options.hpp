@@ -111,6 +111,8 @@ struct Options {
   std::vector<DeprecatedOption> deprecated;
   /// What values mean: units, names of values and bits, error codes.
   MeaningDescriptions meaning;
+  /// Values with a meaning have a type of their own in C++.
+  bool typed_values = false;
 
   [[nodiscard]] bool is_settable(std::uint16_t index, std::uint8_t sub_index) const {
     return std::ranges::binary_search(settable, EntryKey{index, sub_index});

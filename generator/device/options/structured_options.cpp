@@ -70,6 +70,7 @@ class StructuredOptions {
         {"", "connected_modules", &StructuredOptions::connected_modules},
         {"", "stored_eds", &StructuredOptions::stored_eds},
         {"", "meaning", &StructuredOptions::meaning},
+        {"", "typed_values", &StructuredOptions::typed_values},
         {"", "silence", &StructuredOptions::silence},
         {"", "allow", &StructuredOptions::allow},
         {"pdo", "static_mapping", &StructuredOptions::static_mapping},
@@ -319,10 +320,12 @@ class StructuredOptions {
     return number ? std::optional{static_cast<std::uint8_t>(*number)} : std::nullopt;
   }
 
-  void zero_terminated_strings(const json& value) {
+  void flag(const json& value, bool& option) {
     if (!value.is_boolean()) return error("expected true or false");
-    options_.zero_terminated_strings = value.get<bool>();
+    option = value.get<bool>();
   }
+  void zero_terminated_strings(const json& value) { flag(value, options_.zero_terminated_strings); }
+  void typed_values(const json& value) { flag(value, options_.typed_values); }
 
   /// One bit for each index of table 0 of CiA 305; none for a fixed bit rate.
   void lss_bit_rates(const json& value) {

@@ -5,16 +5,18 @@
 #include <ratio>
 #include <type_traits>
 
-#include "runtime/typed/meaning.hpp"
+#include <typed_drive/device.hpp>
+#include <typed_drive/meaning_text.hpp>
 
 namespace {
 
 using namespace canopen::literals;
 namespace unit = canopen::unit;
-using typed_drive::meaning::depth;
-using typed_drive::meaning::energy;
-using typed_drive::meaning::position;
-using typed_drive::meaning::temperature;
+namespace od = typed_drive::od;
+using depth = od::cooling_depth::type;
+using energy = od::total_energy::type;
+using position = od::target_position::type;
+using temperature = od::temperature::type;
 
 constexpr temperature celsius(int tenths) { return temperature{canopen::raw(static_cast<std::int16_t>(tenths))}; }
 
@@ -147,12 +149,40 @@ TEST(Fields, AreReadAndWrittenByName) {
   EXPECT_EQ(state.trim(), -2);
 }
 
+TEST(Fields, OfACaseAreReadFromACopyOrWrittenInTheWord) {
+  using typed_drive::meaning::controlword;
+  constexpr controlword constant{canopen::raw(std::uint16_t{0x0050})};
+  const auto fields = constant.profile_position();
+  EXPECT_TRUE(fields.new_set_point());
+  controlword word = constant;
+  auto reference = word.profile_position();
+  reference.relative(false);
+  EXPECT_FALSE(reference.relative());
+  EXPECT_EQ(word.raw(), 0x0010);
+  EXPECT_TRUE(controlword{constant}.profile_position().relative());
+}
+
 TEST(Fields, HaveMaskedValues) {
   using typed_drive::meaning::statusword;
   using state = statusword::state_value;
   EXPECT_TRUE(statusword{canopen::raw(std::uint16_t{0x0237})}.is(state::operation_enabled));
   EXPECT_FALSE(statusword{canopen::raw(std::uint16_t{0x0233})}.is(state::operation_enabled));
   EXPECT_TRUE(statusword{canopen::raw(std::uint16_t{0x1000})}.profile_position().set_point_acknowledge());
+  statusword word{canopen::raw(std::uint16_t{0xFFFF})};
+  word.state(state::fault);
+  EXPECT_EQ(word.raw(), 0xFFB8);
+  EXPECT_TRUE(word.is(state::fault));
+  word.state(state::operation_enabled);
+  EXPECT_EQ(word.raw(), 0xFFB7);
+  EXPECT_FALSE(word.is(state::fault));
+}
+
+TEST(Enumerations, AreSharedAndHaveTexts) {
+  static_assert(std::is_same_v<od::modes_of_operation::type, od::modes_of_operation_display::type>);
+  using state = typed_drive::meaning::statusword::state_value;
+  EXPECT_EQ(to_text(od::modes_of_operation::value::profile_velocity), "profile_velocity");
+  EXPECT_EQ(to_text(static_cast<od::heater_state::value>(3)), "");
+  EXPECT_EQ(typed_drive::meaning::to_text(state::switch_on_disabled), "switch_on_disabled");
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 #include <string>
 #include <tuple>
 
-#include "runtime/typed/typed_drive.hpp"
+#include <typed_drive/device.hpp>
 #include "support/bench.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "runtime/typed/typed_drive.hpp"
+#include <typed_drive/device.hpp>
 #include "support/bench.hpp"
 
 namespace {

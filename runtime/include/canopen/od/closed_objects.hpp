@@ -12,8 +12,8 @@
 
 namespace canopen {
 
-/// A device that has such objects: `ClosedObjects` is the list of them. An array is in it as `od::x<>`. Their limits
-/// are in the table of limits as well, so that RPDOs check their values.
+/// A device that has such objects: `ClosedObjects` is the list of them. An array is in it as `od::x<>`. Their words are
+/// marked as limited, so that RPDOs check their values.
 template <class Device>
 concept HasClosedObjects = requires {
   typename Device::ClosedObjects;
