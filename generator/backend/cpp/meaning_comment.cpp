@@ -11,6 +11,7 @@
 #include "backend/cpp/cpp_text.hpp"
 #include "backend/cpp/word_view.hpp"
 #include "device/meaning/physical.hpp"
+#include "text/ascii.hpp"
 
 namespace edsc {
 namespace {
@@ -112,10 +113,14 @@ ordered_json meaning_lines(const Device& device, const Entry& entry) {
   }
   if (!meaning.text.empty()) {
     std::string text = cpp_comment(meaning.text);
+    text.front() = to_upper(text.front());
     if (!text.ends_with('.')) text += '.';
     lines.push_back(std::move(text));
   }
-  if (!meaning.place.empty()) lines.push_back(fmt::format("See {}.", cpp_comment(meaning.place)));
+  if (!meaning.place.empty()) {
+    const bool is_of_device = meaning.source == MeaningSource::options;
+    lines.push_back(fmt::format("{} {}.", is_of_device ? "Manual:" : "See", cpp_comment(meaning.place)));
+  }
   return lines;
 }
 

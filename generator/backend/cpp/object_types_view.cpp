@@ -83,8 +83,8 @@ class ObjectTypes {
     const std::string identifier = names_.of(object);
     const TypedValue* const typed = typed_.is_uniform(object) ? typed_.find(first) : nullptr;
     return json_object("comment", comment(first, object.name, label), "meaning_lines",
-                       typed_.is_uniform(object) ? meaning_lines(device_, first) : ordered_json::array(), "identifier",
-                       identifier, "name", cpp_string(object.name), "base",
+                       typed_.is_uniform(object) ? lines_of(first) : ordered_json::array(), "identifier", identifier,
+                       "name", cpp_string(object.name), "base",
                        fmt::format("canopen::Object<{}, SubIndex, {}>", index_of(first), attributes(first)), "typed",
                        typed_row(typed, identifier), "constants",
                        constants(first, typed, fmt::format("typename {}::type", identifier)), "length", length, "count",
@@ -101,12 +101,17 @@ class ObjectTypes {
       if (typed == nullptr) continue;
       rows.push_back(
           json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)), "meaning_lines",
-                      meaning_lines(device_, entry), "array_identifier", names_.of(object), "number", entry.sub_index,
-                      "name", cpp_string(object.name), "base",
+                      lines_of(entry), "array_identifier", names_.of(object), "number", entry.sub_index, "name",
+                      cpp_string(object.name), "base",
                       fmt::format("canopen::Object<{}, {}, {}>", index_of(entry), entry.sub_index, attributes(entry)),
                       "typed", typed_row(typed, names_.of(object)), "constants", constants(entry, typed, "type")));
     }
     return rows;
+  }
+
+  /// What the values of an entry mean, as lines of its comment.
+  [[nodiscard]] ordered_json lines_of(const Entry& entry) const {
+    return options_.typed_values ? meaning_lines(device_, entry) : ordered_json::array();
   }
 
   /// The type of values with a meaning; null for raw numbers.
@@ -137,7 +142,7 @@ class ObjectTypes {
     std::string identifier = names_.of(entry);
     ordered_json type = typed_row(typed, identifier);
     return json_object("comment", comment(entry, entry.name, entry_label(entry.index, entry.sub_index)),
-                       "meaning_lines", meaning_lines(device_, entry), "identifier", std::move(identifier), "name",
+                       "meaning_lines", lines_of(entry), "identifier", std::move(identifier), "name",
                        cpp_string(entry.name), "base", fmt::format("canopen::TypedObject<{}>", attributes(entry)),
                        "typed", std::move(type), "index", index_of(entry), "sub_index",
                        fmt::format("0x{:02X}", entry.sub_index), "constants", constants(entry, typed, "type"),

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include <typed_drive/device.hpp>
+#include <untyped_drive/device.hpp>
 #include "support/bench.hpp"
 
 namespace {
