@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <canopen/can/cob_id.hpp>
-#include <charconv>
-#include <cmath>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -13,9 +11,8 @@
 #include <utility>
 
 #include "backend/dbc/dbc_name.hpp"
+#include "backend/dbc/dbc_signals.hpp"
 #include "device/pdo/pdo_defaults.hpp"
-#include "values/little_endian.hpp"
-#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {
@@ -25,52 +22,8 @@ constexpr std::uint32_t extended_message = 0x8000'0000;  ///< in the number of a
 
 /// The sections of the file after the messages, which are filled message by message.
 struct Sections {
-  std::string messages, comments, attributes, value_types;
+  std::string messages, comments, attributes, value_names, value_types;
 };
-
-struct Range {
-  std::string min = "0", max = "0";  ///< both 0: no limits
-};
-
-/// The factor of a vendor's key; 1 if it is missing or not a number.
-[[nodiscard]] double factor_of(const Entry& entry) {
-  double factor = 1;
-  const char* const end = entry.factor.data() + entry.factor.size();
-  const auto [rest, error] = std::from_chars(entry.factor.data(), end, factor);
-  return error == std::errc{} && rest == end && std::isfinite(factor) && factor != 0 ? factor : 1;
-}
-
-/// A raw value as the signal has it: times the factor.
-[[nodiscard]] std::string physical(std::uint64_t bits, const canopen::DataTypeRow& type, double factor) {
-  if (type.kind == canopen::DataClass::real) {
-    return factor == 1 ? real_text(bits, type) : fmt::format("{}", real_of(bits, type) * factor);
-  }
-  if (type.kind == canopen::DataClass::signed_integer) {
-    const auto number = static_cast<std::int64_t>(bits);
-    return factor == 1 ? fmt::format("{}", number) : fmt::format("{}", static_cast<double>(number) * factor);
-  }
-  return factor == 1 ? fmt::format("{}", bits) : fmt::format("{}", static_cast<double>(bits) * factor);
-}
-
-/// The limits of the EDS, else those of the type. A real number with one limit has none.
-[[nodiscard]] Range range_of(const Entry& entry, double factor) {
-  const canopen::DataTypeRow& type = *entry.type;
-  const bool is_real = type.kind == canopen::DataClass::real;
-  const bool is_signed = type.kind == canopen::DataClass::signed_integer;
-  if (is_real && !(entry.low_limit && entry.high_limit)) return {};
-  const std::uint64_t all = low_bits(type.bits);
-  const std::uint64_t lowest = is_signed ? ~(all >> 1) : 0;
-  const std::uint64_t highest = is_signed ? all >> 1 : all;
-  Range range{physical(entry.low_limit ? entry.low_limit->bits : lowest, type, factor),
-              physical(entry.high_limit ? entry.high_limit->bits : highest, type, factor)};
-  if (factor < 0) std::swap(range.min, range.max);
-  return range;
-}
-
-[[nodiscard]] bool is_number(const canopen::DataTypeRow& type) {
-  using enum canopen::DataClass;
-  return type.kind == boolean || type.kind == unsigned_integer || type.kind == signed_integer || type.kind == real;
-}
 
 /// The CAN-ID of a message, and whether it has 29 bits.
 using MessageId = std::pair<std::uint32_t, bool>;
@@ -202,7 +155,7 @@ class DbcWriter {
     }
     DbcNames signals;
     for (const PdoEntry& mapped : pdo.entries) {
-      if (mapped.object != nullptr) add_signal(id, one, mapped, signals);
+      if (mapped.object != nullptr) add_signals(id, one, mapped, signals);
     }
   }
 
@@ -221,27 +174,42 @@ class DbcWriter {
     return receivers.empty() ? nobody : receivers;
   }
 
-  void add_signal(std::uint32_t id, const NodePdo& message, const PdoEntry& mapped, DbcNames& names) {
+  void add_signals(std::uint32_t id, const NodePdo& message, const PdoEntry& mapped, DbcNames& names) {
+    for (const DbcSignal& signal : dbc_signals(*mapped.object, mapped.bits)) {
+      add_signal(id, message, mapped, signal, names);
+    }
+  }
+
+  void add_signal(std::uint32_t id, const NodePdo& message, const PdoEntry& mapped, const DbcSignal& signal,
+                  DbcNames& names) {
     const Entry& entry = *mapped.object;
-    const bool has_value = is_number(*entry.type);
-    const std::string long_name = message.node->names->full(entry);
+    const std::string long_name = message.node->names->full(entry) + signal.name;
     const std::string name = names.take(long_name);
-    const double factor = has_value ? factor_of(entry) : 1;
-    const Range range = has_value ? range_of(entry, factor) : Range{};
-    const bool is_signed = entry.type->kind == canopen::DataClass::signed_integer;
-    sections_.messages += fmt::format(" SG_ {} : {}|{}@1{} ({},0) [{}|{}] {} {}\n", name, mapped.offset, mapped.bits,
-                                      is_signed ? '-' : '+', factor, range.min, range.max, dbc_string(entry.unit),
-                                      receivers(message, mapped.offset, mapped.bits));
+    const unsigned start = mapped.offset + signal.first_bit;
+    sections_.messages += fmt::format(" SG_ {} : {}|{}@1{} ({},{}) [{}|{}] {} {}\n", name, start, signal.bits,
+                                      signal.is_signed ? '-' : '+', signal.factor, signal.offset, signal.min,
+                                      signal.max, dbc_string(signal.unit), receivers(message, start, signal.bits));
     std::string comment = fmt::format("{} {}", entry_label(entry.index, entry.sub_index), entry.parameter_name());
-    if (!has_value) comment += fmt::format(", {} as a number", entry.type->name);
-    if (!entry.description.empty()) comment += ": " + entry.description;
+    if (!signal.text.empty()) comment += ", " + signal.text;
+    if (!entry.description.empty() && signal.name.empty()) comment += ": " + entry.description;
     sections_.comments += fmt::format("CM_ SG_ {} {} {};\n", id, name, dbc_string(comment));
     if (name != long_name) {
       sections_.attributes += fmt::format("BA_ \"SystemSignalLongSymbol\" SG_ {} {} \"{}\";\n", id, name, long_name);
     }
+    if (signal.values != nullptr) add_value_names(id, name, signal);
     if (entry.type->kind == canopen::DataClass::real) {
       sections_.value_types += fmt::format("SIG_VALTYPE_ {} {} : {};\n", id, name, mapped.bits == 32 ? 1 : 2);
     }
+  }
+
+  void add_value_names(std::uint32_t id, const std::string& name, const DbcSignal& signal) {
+    sections_.value_names += fmt::format("VAL_ {} {}", id, name);
+    for (const NamedValue& one : signal.values->values) {
+      const std::string number =
+          signal.is_signed ? fmt::format("{}", one.value) : fmt::format("{}", static_cast<std::uint64_t>(one.value));
+      sections_.value_names += fmt::format(" {} \"{}\"", number, one.name);
+    }
+    sections_.value_names += " ;\n";
   }
 
   [[nodiscard]] std::string text() const {
@@ -263,8 +231,9 @@ BA_DEF_DEF_ "BusType" "CAN";
 BA_DEF_DEF_ "GenMsgCycleTime" 0;
 BA_DEF_DEF_ "SystemMessageLongSymbol" "";
 BA_DEF_DEF_ "SystemSignalLongSymbol" "";
-{}{})",
-                       node_list, sections_.messages, sections_.comments, sections_.attributes, sections_.value_types);
+{}{}{})",
+                       node_list, sections_.messages, sections_.comments, sections_.attributes, sections_.value_names,
+                       sections_.value_types);
   }
 
   static constexpr const char* nobody = "Vector__XXX";  ///< the name that the format gives to an unknown node

@@ -22,11 +22,12 @@ struct DbcNode {
 
 /// Returns a message for each default PDO that is enabled. `device` has a node-ID and the identifiers of its objects.
 ///
-/// Signals are little-endian, at the bits of the mapping; dummy entries are gaps. Limits, factor and unit are those of
-/// the EDS; a factor that is not a number is ignored. An entry that is neither a number nor a BOOLEAN is an unsigned
-/// number of the same bits. Names have up to 32 characters, as the format requires; longer ones are also in the
-/// attributes SystemMessageLongSymbol and SystemSignalLongSymbol. GenMsgCycleTime is the event timer of a TPDO with
-/// transmission type 254 or 255, in milliseconds.
+/// Signals are little-endian, at the bits of the mapping; dummy entries are gaps. Factor, offset, unit and names of
+/// values are those of the meaning; a word with fields has a signal for each field (dbc_signals.hpp). Limits are those
+/// of the EDS. An entry that is neither a number nor a BOOLEAN is an unsigned number of the same bits. Names have up to
+/// 32 characters, as the format requires; longer ones are also in the attributes SystemMessageLongSymbol and
+/// SystemSignalLongSymbol. GenMsgCycleTime is the event timer of a TPDO with transmission type 254 or 255, in
+/// milliseconds.
 ///
 /// MPDOs and PDOs with an invalid mapping are left out, and those whose CAN-ID another PDO of the device already has.
 [[nodiscard]] Dbc dbc_of(const Device& device, const Identifiers& names);

@@ -3,8 +3,8 @@
 
     dbc_read_back_test.py SOURCE_DIR EDSC WORK_DIR
 
-Expected are the PDOs of the EDS files, which configparser reads, and the names of objects that are words of C++. The parser is
-candied, which npm installs in WORK_DIR.
+Expected are the PDOs of the EDS files, which configparser reads, the signals of `edsc dump` (dbc_signals.py), and the names of
+objects that are words of C++. The parser is candied, which npm installs in WORK_DIR.
 Exit code 77: skipped.
 """
 
@@ -17,46 +17,38 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parents[1] / "masters"), str(HERE.parents[1] / "support")]
-from data_sheet import TYPES, DataSheet  # noqa: E402
+sys.path[:0] = [str(HERE), str(HERE.parents[1] / "masters"), str(HERE.parents[1] / "support")]
+import dbc_signals  # noqa: E402
+from data_sheet import DataSheet  # noqa: E402
+from dbc_signals import EXTENDED, INVALID, Signal  # noqa: E402
 from npm_packages import Skipped, install_npm_packages  # noqa: E402
 
 SKIPPED = 77
 NODE_ID = 5
-EXTENDED, INVALID = 1 << 29, 1 << 31
-DUMMIES = range(1, 0x20)
 
 # Names of objects from 2000h on, and of their signals.
 WORDS = {"Switch": "switch", "Float": "float", "Class": "class", "int": "int", "Speed": "speed", "SPEED": "speed_2005"}
 
 
-def signal_of(sheet: DataSheet, word: int, start: int) -> dict:
-    index, sub, bits = word >> 16, word >> 8 & 0xFF, word & 0xFF
-    entry = sheet.get(index, sub)
-    low, high = (0, 1) if TYPES[entry.type][0] == "BOOLEAN" else entry.range_of_type()
-    limits = (low if entry.low is None else entry.low, high if entry.high is None else entry.high)
-    low, high = (float(limit * entry.factor) for limit in limits)
-    return {"entry": f"{index:04X}h:{sub:02X}", "startBit": start, "length": bits, "signed": TYPES[entry.type][2],
-            "min": low, "max": high, "endian": "Intel", "factor": float(entry.factor), "offset": 0}
+def signal_view(signal: Signal) -> dict:
+    return {"entry": signal.entry, "startBit": signal.start, "length": signal.bits, "signed": signal.signed,
+            "endian": "Intel", "factor": float(signal.scale), "offset": float(signal.offset)}
 
 
-def messages_of(sheet: DataSheet) -> dict[int, dict]:
-    """The enabled PDOs of the EDS, by the number of the message."""
+def messages_of(sheet: DataSheet, dump: dict) -> dict[int, dict]:
+    """The enabled PDOs of the EDS, by the number of the message. Their signals are those of the meaning."""
     messages = {}
+    signals = {message.number: message.signals for message in dbc_signals.messages_of(dump)}
     for first, last, mapping in ((0x1400, 0x15FF, 0x200), (0x1800, 0x19FF, 0x200)):
         for index in range(first, last + 1):
             cob_id = sheet.default(index, 1, INVALID)
             if cob_id & INVALID:
                 continue
-            signals, start = [], 0
-            for sub in range(1, sheet.default(index + mapping, 0, 0) + 1):
-                word = sheet.default(index + mapping, sub)
-                if word >> 16 not in DUMMIES:
-                    signals.append(signal_of(sheet, word, start))
-                start += word & 0xFF
+            bits = sum(sheet.default(index + mapping, sub) & 0xFF for sub in range(1, sheet.default(index + mapping, 0, 0) + 1))
             number = cob_id & 0x1FFFFFFF | INVALID if cob_id & EXTENDED else cob_id & 0x7FF
             timer = sheet.default(index, 5, 0) if first == 0x1800 and sheet.default(index, 2) >= 254 else 0
-            messages.setdefault(number, {"dlc": (start + 7) // 8, "cycle": timer, "signals": signals})
+            messages.setdefault(number, {"dlc": (bits + 7) // 8, "cycle": timer,
+                                         "signals": [signal_view(signal) for signal in signals[number]]})
     return messages
 
 
@@ -85,7 +77,7 @@ def read_back(messages: list[dict]) -> dict[int, dict]:
     for message in messages:
         signals = []
         for signal in message["signals"].values():
-            keys = ("startBit", "length", "signed", "min", "max", "endian", "factor", "offset")
+            keys = ("startBit", "length", "signed", "endian", "factor", "offset")
             signals.append({"entry": signal["description"].split()[0], **{key: signal[key] for key in keys}})
         number = message["id"]
         cycle = message["attributes"].get("GenMsgCycleTime", {"value": 0})["value"]
@@ -117,7 +109,7 @@ def main() -> int:
             problems += 1
             print(f"names of signals:\n  expected {list(WORDS.values())}\n  got      {list(message['signals'])}")
         for (name, path), file in zip(sheets.items(), files):
-            expected, found = messages_of(DataSheet(path, NODE_ID)), read_back(json.loads(output)[file])
+            expected, found = messages_of(DataSheet(path, NODE_ID), dbc_signals.dump_of(edsc, path, NODE_ID)), read_back(json.loads(output)[file])
             count += len(expected)
             for number in sorted(expected.keys() | found.keys()):
                 if expected.get(number) != found.get(number):

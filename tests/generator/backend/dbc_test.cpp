@@ -6,6 +6,7 @@
 
 #include "backend/dbc/dbc_name.hpp"
 #include "support/device_from_text.hpp"
+#include "support/read_options.hpp"
 
 namespace edsc {
 namespace {
@@ -62,6 +63,56 @@ TEST(Dbc, HasATpdoWithTheTypesOfItsObjects) {
   EXPECT_TRUE(has_line(dbc, "CM_ SG_ 389 statusword \"6041h:00 Statusword\";"));
   EXPECT_TRUE(has_line(dbc, "BA_ \"GenMsgCycleTime\" BO_ 389 100;"));
   EXPECT_TRUE(dbc.notes.empty());
+}
+
+/// A device with these sections and a TPDO that maps these entries; `meaning` is the option.
+Dbc dbc_with_meaning(const std::string& sections, const std::vector<std::string>& mapped, const std::string& meaning) {
+  const ReadOptions options(R"({ "meaning": )" + meaning + " }");
+  EXPECT_TRUE(options.diagnostics.all().empty()) << meaning;
+  const DeviceFromText read{
+      sections + pdo("1800", "1A00", "$NODEID+0x180", mapped), options.options, {.name = "drive", .node_id = 5}};
+  return dbc_of(read.device, read.names.identifiers());
+}
+
+TEST(Dbc, HasScaleOffsetAndUnitOfAQuantity) {
+  const Dbc dbc = dbc_with_meaning(var("2000", "Temperature", "0x5", "ro", "PDOMapping=1\n"), {"0x20000008"},
+                                   R"({"2000h": {"unit": "degC", "scale": "1/2", "offset": -40}})");
+  EXPECT_TRUE(has_line(dbc, " SG_ temperature : 0|8@1+ (0.5,-40) [-40|87.5] \"\xB0\x43\" Vector__XXX")) << dbc.text;
+}
+
+TEST(Dbc, SwapsTheLimitsOfANegativeScale) {
+  const Dbc dbc = dbc_with_meaning(var("2000", "Level", "0x5", "ro", "PDOMapping=1\n"), {"0x20000008"},
+                                   R"({"2000h": {"unit": "mm", "scale": -1}})");
+  EXPECT_TRUE(has_line(dbc, " SG_ level : 0|8@1+ (-1,0) [-255|0] \"mm\" Vector__XXX")) << dbc.text;
+}
+
+TEST(Dbc, SpellsAUnitInAsciiThatTheCodePageDoesNotHave) {
+  const Dbc dbc = dbc_with_meaning(var("2000", "Resistance", "0x5", "ro", "PDOMapping=1\n"), {"0x20000008"},
+                                   R"({"2000h": {"unit": "ohm"}})");
+  EXPECT_TRUE(has_line(dbc, " SG_ resistance : 0|8@1+ (1,0) [0|255] \"ohm\" Vector__XXX")) << dbc.text;
+}
+
+TEST(Dbc, HasNamesOfValues) {
+  const Dbc dbc = dbc_with_meaning(var("2000", "Mode", "0x2", "ro", "PDOMapping=1\n"), {"0x20000008"},
+                                   R"({"2000h": {"values": {"-1": "homing", "1": "profile_position"}}})");
+  EXPECT_TRUE(has_line(dbc, "VAL_ 389 mode -1 \"homing\" 1 \"profile_position\" ;")) << dbc.text;
+}
+
+TEST(Dbc, HasASignalForEachFieldAndForBitsWithoutOne) {
+  const Dbc dbc = dbc_with_meaning(
+      var("2000", "First", "0x5", "ro", "PDOMapping=1\n") + var("2001", "Word", "0x6", "ro", "PDOMapping=1\n"),
+      {"0x20000008", "0x20010010"},
+      R"({"2001h": {"bits": {"0": {"name": "open", "text": "the door"}, "1..2": {"name": "zone", "values": {"3": "hall"}},
+          "4": null, "8..15": {"name": "heat", "unit": "K", "signed": true}}}})");
+  EXPECT_TRUE(has_line(dbc, " SG_ word_open : 8|1@1+ (1,0) [0|1] \"\" Vector__XXX")) << dbc.text;
+  EXPECT_TRUE(has_line(dbc, "CM_ SG_ 389 word_open \"2001h:00 Word, bit 0: the door\";"));
+  EXPECT_TRUE(has_line(dbc, " SG_ word_zone : 9|2@1+ (1,0) [0|3] \"\" Vector__XXX"));
+  EXPECT_TRUE(has_line(dbc, "VAL_ 389 word_zone 3 \"hall\" ;"));
+  EXPECT_TRUE(has_line(dbc, " SG_ word_bit_3 : 11|1@1+ (1,0) [0|1] \"\" Vector__XXX"));
+  EXPECT_TRUE(has_line(dbc, " SG_ word_bits_5_to_7 : 13|3@1+ (1,0) [0|7] \"\" Vector__XXX"));
+  EXPECT_TRUE(has_line(dbc, " SG_ word_heat : 16|8@1- (1,0) [-128|127] \"K\" Vector__XXX"));
+  EXPECT_EQ(dbc.text.find(" : 12|"), std::string::npos) << "a signal has the reserved bit";
+  EXPECT_EQ(dbc.text.find("SG_ word :"), std::string::npos);
 }
 
 TEST(Dbc, HasRealNumbersAndOtherTypesAsNumbers) {
