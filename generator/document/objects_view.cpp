@@ -11,7 +11,7 @@
 
 #include "backend/json/replaced_default.hpp"
 #include "compare/compare_parts.hpp"
-#include "device/scaled_unit.hpp"
+#include "device/meaning/raw_unit.hpp"
 #include "document/views.hpp"
 #include "text/counted.hpp"
 
@@ -74,7 +74,11 @@ std::string limits_text(const Entry& entry) {
   return fmt::format("{} .. {}", shown_value(entry.low_limit, *entry.type), shown_value(entry.high_limit, *entry.type));
 }
 
-std::string unit_text(const Entry& entry) { return is_scaled(entry) ? "\u00D7 " + physical_unit(entry) : entry.unit; }
+std::string unit_text(const Entry& entry) {
+  if (!entry.meaning || !entry.meaning->quantity) return {};
+  const Quantity& quantity = *entry.meaning->quantity;
+  return (quantity.is_raw() ? "" : "\u00D7 ") + raw_unit_text(quantity);
+}
 
 class ObjectRows {
  public:

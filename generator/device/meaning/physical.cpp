@@ -16,8 +16,6 @@ namespace {
 using canopen::DataClass;
 using canopen::DataTypeRow;
 
-Rational rational(const canopen::Fraction& fraction) { return *Rational::of(fraction.numerator, fraction.denominator); }
-
 bool is_integer(const DataTypeRow& type) {
   return type.kind == DataClass::unsigned_integer || type.kind == DataClass::signed_integer;
 }
@@ -92,6 +90,8 @@ RawNumber real_number(const Quantity& quantity, const DataTypeRow& type, const R
 }
 
 }  // namespace
+
+Rational rational(const canopen::Fraction& fraction) { return *Rational::of(fraction.numerator, fraction.denominator); }
 
 std::optional<Rational> physical_value(const Quantity& quantity, const DataTypeRow& type, std::uint64_t bits) {
   if (!is_integer(type)) return std::nullopt;

@@ -11,6 +11,9 @@
 
 namespace edsc {
 
+/// The factor or offset of a unit as a number to calculate with.
+[[nodiscard]] Rational rational(const canopen::Fraction& fraction);
+
 /// raw * scale + offset. Nothing for a type that is not an integer, or if the result does not fit into 64 bits.
 [[nodiscard]] std::optional<Rational> physical_value(const Quantity& quantity, const canopen::DataTypeRow& type,
                                                      std::uint64_t bits);

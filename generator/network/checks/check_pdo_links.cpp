@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "device/scaled_unit.hpp"
+#include "device/meaning/raw_unit.hpp"
 #include "network/checks/check_groups.hpp"
 #include "network/checks/merged_note.hpp"
 
@@ -14,6 +14,12 @@ namespace {
 
 std::string text(const PdoEntry& entry) {
   return entry.object != nullptr ? named(*entry.object) : entry_label(entry.index, entry.sub_index);
+}
+
+/// The quantity of an entry with a unit; null without one.
+const Quantity* quantity_of(const Entry& entry) {
+  const bool has_unit = entry.meaning && entry.meaning->quantity && !entry.meaning->quantity->symbol.empty();
+  return has_unit ? &*entry.meaning->quantity : nullptr;
 }
 
 /// A TPDO and an RPDO with one CAN-ID.
@@ -65,14 +71,14 @@ class PdoLink {
                                                named(sender_), named(from), from.type->name),
                                    {{same->place, named(sender_)}});
     }
-    const std::string sent_unit = physical_unit(from);
-    const std::string unit = physical_unit(to);
-    if (!from.unit.empty() && !to.unit.empty() && sent_unit != unit) {
-      context_.diagnostics.warning(
-          "network-pdo-unit", entry.place,
-          fmt::format("{} is in {}, but {} sends {} in {}", title(entry), unit, named(sender_), named(from), sent_unit),
-          {{same->place, named(sender_)}});
-    }
+    const Quantity* const sent_quantity = quantity_of(from);
+    const Quantity* const quantity = quantity_of(to);
+    if (sent_quantity == nullptr || quantity == nullptr || has_same_raw_numbers(*sent_quantity, *quantity)) return;
+    context_.diagnostics.warning(
+        "network-pdo-unit", entry.place,
+        fmt::format("{} is in {}, but {} sends {} in {}", title(entry), raw_unit_text(*quantity), named(sender_),
+                    named(from), raw_unit_text(*sent_quantity)),
+        {{same->place, named(sender_)}});
   }
 
   const NetworkContext& context_;

@@ -14,7 +14,7 @@
 #include "backend/cpp/identifier.hpp"
 #include "backend/cpp/views.hpp"
 #include "backend/render.hpp"
-#include "device/scaled_unit.hpp"
+#include "device/meaning/raw_unit.hpp"
 #include "format/dcf/concise_dcf.hpp"
 #include "network/cob_id_use.hpp"
 #include "network/communication_objects.hpp"
@@ -212,7 +212,9 @@ class PlantHeader {
 
   [[nodiscard]] ordered_json signal_row(const NetworkNode& node, const PdoLink& link, const LinkedValue& value,
                                         const PdoEntry& entry, const std::string& name) const {
-    const std::string unit = entry.object->unit.empty() ? "" : " in " + physical_unit(*entry.object);
+    const Meaning* const meaning = entry.object->meaning.get();
+    const bool has_unit = meaning != nullptr && meaning->quantity && !meaning->quantity->symbol.empty();
+    const std::string unit = has_unit ? " in " + raw_unit_text(*meaning->quantity) : "";
     const bool is_limited = entry.object->low_limit || entry.object->high_limit;
     return {{"name", name},
             {"type", fmt::format("::{}::signals::{}::{}", name_, identifier(node), name)},
