@@ -83,7 +83,8 @@ Json field_value(const ValuePart& part) {
 }
 
 /// The physical value, the name of the value and the fields, where the entry has them.
-void add_meaning(Json& json, const Entry& entry, std::span<const std::uint8_t> bytes) {
+void add_meaning(Json& json, const LiveEntry& live, std::span<const std::uint8_t> bytes) {
+  const Entry& entry = *live.entry;
   if (!entry.meaning || entry.type->bits == 0 || bytes.size() != bytes_for(entry.type->bits)) return;
   const std::uint64_t bits = number_of(bytes);
   if (const Quantity* const quantity = quantity_of(entry)) {
@@ -93,14 +94,13 @@ void add_meaning(Json& json, const Entry& entry, std::span<const std::uint8_t> b
   }
   const Meaning* const meaning = meaning_of_integer(entry);
   if (meaning == nullptr) return;
-  const bool is_signed = entry.type->kind == DataClass::signed_integer;
-  const auto number = is_signed ? sign_extended(bits, entry.type->bits) : static_cast<std::int64_t>(bits);
-  if (const NamedValue* const named = meaning->values ? meaning->values->find(number) : nullptr) {
+  const auto number = integer_of(live, bytes);
+  if (const NamedValue* const named = number && meaning->values ? meaning->values->find(*number) : nullptr) {
     json["value_name"] = named->name;
   }
   if (!meaning->has_fields()) return;
   Json fields = Json::object();
-  for_each_part(*meaning, bits, std::nullopt,
+  for_each_part(*meaning, bits, live.other,
                 [&](const ValuePart& part) { fields[std::string{part.name()}] = field_value(part); });
   json["fields"] = std::move(fields);
 }
@@ -132,6 +132,12 @@ LiveEntry live_entry(const Device* device, std::uint16_t index, std::uint8_t sub
   return address;
 }
 
+std::optional<LiveEntry> selector_of(const LiveEntry& entry) {
+  const Meaning* const meaning = entry.entry != nullptr ? entry.entry->meaning.get() : nullptr;
+  if (meaning == nullptr || !meaning->depends_on) return std::nullopt;
+  return live_entry(entry.device, meaning->depends_on->first, meaning->depends_on->second);
+}
+
 void set_type(LiveEntry& entry, const canopen::DataTypeRow& type) {
   entry.type = &type;
   entry.entry = nullptr;
@@ -146,6 +152,15 @@ SdoOutcome upload(SdoAccess& node, const LiveEntry& entry, SdoTransfer transfer,
     while (!outcome.bytes.empty() && outcome.bytes.back() == 0) outcome.bytes.pop_back();
   }
   return outcome;
+}
+
+std::optional<std::int64_t> integer_of(const LiveEntry& entry, std::span<const std::uint8_t> bytes) {
+  const canopen::DataTypeRow* const type = entry.type;
+  if (type == nullptr || type->bits == 0 || bytes.size() != bytes_for(type->bits)) return std::nullopt;
+  const std::uint64_t number = number_of(bytes);
+  if (type->kind == DataClass::signed_integer) return sign_extended(number, type->bits);
+  if (type->kind == DataClass::unsigned_integer) return static_cast<std::int64_t>(number);
+  return std::nullopt;
 }
 
 bool reads_back(const SdoOutcome& outcome, std::span<const std::uint8_t> bytes) {
@@ -165,7 +180,7 @@ std::string value_of(const LiveEntry& entry, std::span<const std::uint8_t> bytes
   }
   if (entry.entry == nullptr) return value_text(*entry.type, bytes);
   std::string text;
-  append_device_value(text, *entry.device, *entry.entry, bytes);
+  append_device_value(text, *entry.device, *entry.entry, bytes, entry.other);
   return text;
 }
 
@@ -177,7 +192,7 @@ Json as_json(const LiveEntry& entry, const SdoOutcome& outcome, std::span<const 
   if (outcome.done()) {
     json["bytes"] = hex_bytes(bytes);
     json["value"] = json_value(entry.type, bytes);
-    if (entry.entry != nullptr) add_meaning(json, *entry.entry, bytes);
+    if (entry.entry != nullptr) add_meaning(json, entry, bytes);
     json["text"] = value_of(entry, bytes);
   } else {
     json["abort_code"] = canopen::code_in_frame(outcome.code);

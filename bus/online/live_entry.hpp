@@ -4,6 +4,7 @@
 #include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,11 +23,14 @@ struct LiveEntry {
   const canopen::DataTypeRow* type = nullptr;  ///< null: raw bytes
   std::string name;                            ///< `Identity object, Vendor-ID`; empty without EDS
   const Device* device = nullptr;              ///< null without EDS
+  std::optional<std::int64_t> other = {};      ///< value of the object on which fields depend; nothing if unknown
 };
 
 [[nodiscard]] LiveEntry live_entry(const Device& device, const Object& object, const Entry& entry);
 /// The entry of a device. Without a device, or if it does not have the entry: index and sub-index only.
 [[nodiscard]] LiveEntry live_entry(const Device* device, std::uint16_t index, std::uint8_t sub_index);
+/// The entry on which the fields of this one depend: 6061h for those of 6041h. Nothing if they depend on none.
+[[nodiscard]] std::optional<LiveEntry> selector_of(const LiveEntry& entry);
 
 /// A data type that replaces that of the EDS, whose access, limits and unit are then ignored.
 void set_type(LiveEntry& entry, const canopen::DataTypeRow& type);
@@ -35,6 +39,9 @@ void set_type(LiveEntry& entry, const canopen::DataTypeRow& type);
 /// trailing 00h.
 [[nodiscard]] SdoOutcome upload(SdoAccess& node, const LiveEntry& entry, SdoTransfer transfer = SdoTransfer::segmented,
                                 const SdoProgress& progress = {});
+
+/// The number in the bytes of an integer; nothing for other types.
+[[nodiscard]] std::optional<std::int64_t> integer_of(const LiveEntry& entry, std::span<const std::uint8_t> bytes);
 
 /// Whether these bytes were read back. If the response did not state the size, further bytes are ignored.
 [[nodiscard]] bool reads_back(const SdoOutcome& outcome, std::span<const std::uint8_t> bytes);

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "commands/commands.hpp"
 #include "monitor/progress_line.hpp"
@@ -122,6 +125,30 @@ SdoOutcome read_entry(SdoAccess& node, const LiveEntry& entry, const Settings& s
   return outcome;
 }
 
+/// Values of the objects on which the fields of others depend, such as the mode of operation in 6061h. Each is read
+/// once.
+class Selectors {
+ public:
+  Selectors(SdoAccess& node, const Settings& settings) : node_{node}, settings_{settings} {}
+
+  /// The value for an entry that was read; nothing if its fields depend on none, or the device does not return it.
+  std::optional<std::int64_t> value_for(const LiveEntry& entry) {
+    const std::optional<LiveEntry> selector = selector_of(entry);
+    if (!selector) return std::nullopt;
+    const auto [found, is_new] = values_.try_emplace({selector->index, selector->sub_index});
+    if (is_new) {
+      const SdoOutcome outcome = read_entry(node_, *selector, settings_);
+      if (outcome.done()) found->second = integer_of(*selector, outcome.bytes);
+    }
+    return found->second;
+  }
+
+ private:
+  SdoAccess& node_;
+  const Settings& settings_;
+  std::map<std::pair<std::uint16_t, std::uint8_t>, std::optional<std::int64_t>> values_;
+};
+
 void print_line(const LiveEntry& entry, const SdoOutcome& outcome, bool raw) {
   if (outcome.done()) {
     print_visibly(stdout, "{} = {}\n", title(entry), raw ? hex_bytes(outcome.bytes) : value_of(entry, outcome.bytes));
@@ -144,12 +171,15 @@ int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chose
   unsigned silent = 0;
   bool heard = false;
   EntryCount count;
+  Selectors selectors{node, settings};
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const LiveEntry& entry = entries[i].entry;
+    LiveEntry entry = entries[i].entry;
     if (has_no_entry(entries[i], count)) continue;
     const SdoOutcome outcome = read_entry(node, entry, settings);
     if (!settings.file.empty()) return save(settings, entry, outcome);
     count.take(entry, outcome);
+    const bool shows_fields = !settings.raw || settings.format == "json";
+    if (outcome.done() && shows_fields) entry.other = selectors.value_for(entry);
     const bool excused = may_be_refused(entries[i], count, outcome);
     if (settings.format == "json") {
       json["entries"].push_back(as_json(entry, outcome, outcome.bytes));

@@ -6,7 +6,10 @@
 
 from __future__ import annotations
 
-from live import FAILED, FINE, WRONG_USAGE, LiveTest, run
+import json
+import shutil
+
+from live import FAILED, FINE, SHEET, WRONG_USAGE, LiveTest, run
 
 
 class Read(LiveTest):
@@ -31,6 +34,24 @@ class Read(LiveTest):
         self.expect(self.edsc("read", 5, "1018h:01", "--type", "u32"), FINE, "1018h:01 = 11259375 (00ABCDEFh)\n")
         self.expect(self.edsc("read", 5, "speed"), WRONG_USAGE,
                     stderr='edsc: "speed" is not an address such as 1018h:01; names require an EDS (--eds)\n')
+
+    def test_fields_of_a_mode(self) -> None:
+        """Bit 4 of 6040h is named by the value of 2007h, which is -12; the command reads 2007h once."""
+        shutil.copy(SHEET, self.folder / "modes.eds")
+        cases = {"-12": {"name": "winter", "bits": {"4": "heat", "8": "halt"}}, "0": {"bits": {"4": "cool"}}}
+        word = {"bits": {"0": "lamp"}, "depends_on": "2007h", "cases": cases}
+        (self.folder / "modes.options.json").write_text(json.dumps({"meaning": {"6040h": word, "6041h": word}}))
+        self.assertEqual(self.edsc("write", 5, "6040h", "1100h", "--eds", "modes.eds").returncode, FINE)
+        self.assertEqual(self.edsc("write", 5, "6040h", "lamp, heat", "--eds", "modes.eds").returncode, FINE)
+        self.expect(self.edsc("read", 5, "6040h", "6041h", "--eds", "modes.eds"), FINE, """\
+6040h:00 Controlword = 0011h disable_voltage, lamp, heat
+6041h:00 Statusword = 0250h switch_on_disabled, heat
+""")
+        self.expect(self.edsc("read", 5, "6040h", "--eds", "modes.eds", "--raw"), FINE, "6040h:00 Controlword = 11 00\n")
+        read = self.expect_json(self.edsc("read", 5, "6040h", "--eds", "modes.eds", "--format", "json"), "read.schema.json")
+        self.assertEqual(read["entries"][0]["fields"], {"command": "disable_voltage", "lamp": True, "heat": True, "halt": False})
+        requests = [frame[4:12] for frame in self.network.frames("605") if frame.startswith("605 40")]
+        self.assertEqual(requests, ["40 40 60", "40 07 20", "40 41 60", "40 40 60", "40 40 60", "40 07 20"])
 
     def test_what_the_device_refuses(self) -> None:
         self.expect(self.edsc("read", 5, "2FFFh", "6064h"), FAILED, "6064h:00 = 40 E2 01 00\n",
