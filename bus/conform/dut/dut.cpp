@@ -29,7 +29,7 @@ constexpr std::uint8_t verified[] = {1, 2};
 constexpr std::uint64_t watched_heartbeat_ms = 100;
 
 /// The SDO timeout of transfers that have no verdict, such as those that restore values.
-constexpr unsigned patient_ms = 3000;
+constexpr unsigned restore_timeout_ms = 3000;
 
 /// The time that a device may need to follow an NMT command. CiA 301 does not specify a limit.
 constexpr Duration to_follow = milliseconds{50};
@@ -554,7 +554,7 @@ std::optional<Unmet> Dut::unmet_condition(const CaseRow& row) {
 }
 
 bool Dut::responds() {
-  sdo_.set_timeout(std::max(settings_.sdo.timeout_ms, patient_ms));
+  sdo_.set_timeout(std::max(settings_.sdo.timeout_ms, restore_timeout_ms));
   const SdoOutcome outcome = sdo_.upload(device_type, 0);
   sdo_.set_timeout(settings_.sdo.timeout_ms);
   return outcome.end != SdoEnd::no_answer;
@@ -622,7 +622,7 @@ std::vector<std::string> Dut::find_state() {
 
 std::vector<std::string> Dut::put_back() {
   const Uninterrupted uninterrupted;
-  sdo_.set_timeout(std::max(settings_.sdo.timeout_ms, patient_ms));
+  sdo_.set_timeout(std::max(settings_.sdo.timeout_ms, restore_timeout_ms));
   if (transfer_open_) end_transfer();
   if (state_changed_) enter(canopen::NmtState::pre_operational);
   std::vector<std::string> left = found_values_.put_back(allowed(Permission::application));

@@ -128,6 +128,18 @@ TEST(CompareDictionary, FindsNothingInTheDeviceOfTheEds) {
   EXPECT_EQ(compare_identity(result.comparison.in_eds, result.comparison.in_device), IdentityMatch::same);
 }
 
+/// One step of 6501h is 0.001 um.
+TEST(CompareDictionary, ValuesHaveTheUnitOfTheirEntry) {
+  const std::string step = var("6501", "Measuring step", u32, "const", value("200000") + "Unit=um\nFactor=0.001\n");
+  const Compared result = run(base_eds() + step, [](DictionaryPort& device) {
+    device.values[{0x6501, 0}] = {0xA0, 0x86, 0x01, 0};
+  });
+  ASSERT_EQ(result.comparison.differences.size(), 1U);
+  EXPECT_EQ(result.comparison.differences.front().in_eds, "200 um");
+  EXPECT_EQ(result.comparison.differences.front().in_device, "100 um");
+  EXPECT_EQ(entry_of(result.comparison, 0x6501, 0).default_value, "200 um");
+}
+
 // ---- missing objects ----
 
 TEST(CompareDictionary, AMandatoryObjectIsMissingInTheDevice) {

@@ -49,6 +49,19 @@ TEST(ConformJson, EscapesHostileBytes) {
   EXPECT_TRUE(nlohmann::json::accept(text));
 }
 
+TEST(ConformJson, HasTheNamesOfTheTablesInItsSchema) {
+  std::ifstream file{EDSC_SOURCE_DIR "/docs/schema/conform.schema.json"};
+  const auto definitions = nlohmann::json::parse(file)["$defs"];
+  const auto names_of = [](const auto& rows) {
+    std::vector<std::string> names;
+    for (const auto& row : rows) names.emplace_back(row.name);
+    return names;
+  };
+  EXPECT_EQ(definitions["condition"]["enum"], nlohmann::json(names_of(conditions)));
+  EXPECT_EQ(definitions["level"]["enum"], nlohmann::json(names_of(levels)));
+  EXPECT_EQ(definitions["case"]["properties"]["verdict"]["enum"], nlohmann::json(names_of(verdicts)));
+}
+
 // ---- JUnit ----
 
 struct Junit {
@@ -151,19 +164,6 @@ TEST(ConformHtml, ShortensLongListsOfFrames) {
 }
 
 // ---- log ----
-
-TEST(ConformJson, HasTheNamesOfTheTablesInItsSchema) {
-  std::ifstream file{EDSC_SOURCE_DIR "/docs/schema/conform.schema.json"};
-  const auto definitions = nlohmann::json::parse(file)["$defs"];
-  const auto names_of = [](const auto& rows) {
-    std::vector<std::string> names;
-    for (const auto& row : rows) names.emplace_back(row.name);
-    return names;
-  };
-  EXPECT_EQ(definitions["condition"]["enum"], nlohmann::json(names_of(conditions)));
-  EXPECT_EQ(definitions["level"]["enum"], nlohmann::json(names_of(levels)));
-  EXPECT_EQ(definitions["case"]["properties"]["verdict"]["enum"], nlohmann::json(names_of(verdicts)));
-}
 
 TEST(ConformLog, IsReadByTheDecoder) {
   RunReport run = every_verdict();

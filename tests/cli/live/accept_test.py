@@ -34,7 +34,7 @@ from document_commands import run_document  # noqa: E402
 from planted_slave import GOOD, PLANTED, SILENT, eds_of  # noqa: E402
 
 ADDRESS = "socketcand:127.0.0.1:29536/vcan0"  # in the document
-PATIENCE_MS = 60_000  # for an answer that must be received, even on a busy machine
+TIMEOUT_MS = 60_000  # for an answer that must be received, even on a busy machine
 SILENCE_MS = 3_000  # where an answer is not received
 SCHEMAS = SOURCE_DIR / "docs/schema"
 
@@ -96,7 +96,7 @@ class Accept(unittest.TestCase):
         slave = self.start(sys.executable, SLAVE, self.address, 5, *kind)
         self.assertEqual(slave.stdout.readline(), "started\n")
 
-    def accept(self, *options: object, timeout_ms: int = PATIENCE_MS) -> subprocess.CompletedProcess[str]:
+    def accept(self, *options: object, timeout_ms: int = TIMEOUT_MS) -> subprocess.CompletedProcess[str]:
         return subprocess.run([EDSC, "accept", self.address, "5", "planted.eds", "--timeout", str(timeout_ms), *map(str, options)],
                               cwd=self.folder, capture_output=True, text=True, timeout=1200)
 
@@ -209,7 +209,7 @@ class Accept(unittest.TestCase):
 
     def test_an_interruption_ends_with_130_and_a_report(self) -> None:
         self.start_slave()
-        process = subprocess.Popen([EDSC, "accept", self.address, "5", "planted.eds", "--timeout", str(PATIENCE_MS), "--json",
+        process = subprocess.Popen([EDSC, "accept", self.address, "5", "planted.eds", "--timeout", str(TIMEOUT_MS), "--json",
                                     "report.json"], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         time.sleep(2)  # it waits for the response of 2008h
         process.send_signal(signal.SIGINT)
@@ -241,7 +241,7 @@ class Accept(unittest.TestCase):
         self.suites()
 
     def run_line(self, line: str) -> subprocess.CompletedProcess[str]:
-        command = re.sub(rf"(edsc accept {ADDRESS} \S+ \S+)", rf"\1 --timeout {PATIENCE_MS}", line).replace(ADDRESS, self.address)
+        command = re.sub(rf"(edsc accept {ADDRESS} \S+ \S+)", rf"\1 --timeout {TIMEOUT_MS}", line).replace(ADDRESS, self.address)
         environment = {**os.environ, "PATH": f"{EDSC.parent}{os.pathsep}{os.environ['PATH']}"}
         return subprocess.run(["bash", "-c", command], cwd=self.folder, env=environment, capture_output=True, text=True)
 

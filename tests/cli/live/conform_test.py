@@ -30,7 +30,7 @@ sys.path.insert(0, str(SOURCE_DIR / "tests/support"))
 from document_commands import run_document  # noqa: E402
 
 ADDRESS = "socketcand:127.0.0.1:29536/vcan0"  # in the document
-PATIENCE = "--timeout 60000"  # for an answer that must be received, even on a busy machine
+TIMEOUT = "--timeout 60000"  # for an answer that must be received, even on a busy machine
 
 
 class Conform(unittest.TestCase):
@@ -59,7 +59,7 @@ class Conform(unittest.TestCase):
         return process
 
     def run_line(self, line: str) -> subprocess.CompletedProcess[str]:
-        command = re.sub(rf"(edsc conform {ADDRESS} \S+ \S+)", rf"\1 {PATIENCE}", line).replace(ADDRESS, self.address)
+        command = re.sub(rf"(edsc conform {ADDRESS} \S+ \S+)", rf"\1 {TIMEOUT}", line).replace(ADDRESS, self.address)
         environment = {**os.environ, "PATH": f"{EDSC.parent}{os.pathsep}{os.environ['PATH']}"}
         return subprocess.run(["bash", "-c", command], cwd=self.folder, env=environment, capture_output=True, text=True)
 
@@ -117,6 +117,19 @@ class Conform(unittest.TestCase):
         again = self.run_line(command)
         self.assertEqual(again.returncode, 1)
         self.assertIn("8.4    failed", again.stdout)
+
+    def test_values_have_their_unit(self) -> None:
+        """The measuring step of the device is 100000, in steps of 0.001 µm; the EDS states twice of it."""
+        sheet = self.folder / "eds/rk5c.eds"
+        text = sheet.read_text(encoding="utf-8")
+        begin = text.index("[6501]")
+        section = text[begin:text.index("[", begin + 1)]
+        wrong = section.replace("=100000", "=200000").replace("AccessType=ro", "AccessType=const")
+        sheet.write_text(text.replace(section, wrong), encoding="utf-8")
+        result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --only 4.8 --json report.json")
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("6501h:00 Measuring step: 100 um instead of 200 um", result.stdout)
+        self.assertIn("100 um instead of 200 um", (self.folder / "report.json").read_text(encoding="utf-8"))
 
     def test_a_case_that_does_not_exist_is_wrong_usage(self) -> None:
         result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --only 33.*")
