@@ -6,7 +6,7 @@
 
 #include "conform/cases/shared/entry_values.hpp"
 #include "device/index_range.hpp"
-#include "lint/standard_objects.hpp"
+#include "device/objects/standard_objects.hpp"
 #include "values/little_endian.hpp"
 
 namespace edsc::accept {

@@ -68,10 +68,11 @@ class DataSheetReader {
       diagnostics_.warning(
           "unknown-section", position,
           fmt::format("unknown section {}; it is left out{}", quote(section.name), similar_section(section.name)));
-    } else if (name.has_short_index) {
+    } else if (!name.remark.empty()) {
       diagnostics_.warning(
           "section-name", position,
-          fmt::format("an index has four digits; reading {} as {:04X}h", quote(section.name), name.index));
+          fmt::format("{}; reading {} as [{}]", name.remark, quote(section.name), spell_section_name(name)), {},
+          std::string{name.remark});
     }
   }
 

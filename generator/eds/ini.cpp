@@ -11,12 +11,12 @@
 namespace edsc {
 namespace {
 
-/// Characters that do not occur in a text: control characters except tab, line ends and the Ctrl-Z at the end of a DOS
-/// text.
+/// Characters that do not occur in a text: control characters except tab, line ends, and what ends a text: Ctrl-Z, NUL.
 bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' && c != '\r'; }
 
 std::string_view without_end_of_text_mark(std::string_view text) {
-  const std::size_t last = text.find_last_not_of(" \t\r\n\x1A");
+  constexpr std::string_view marks{" \t\r\n\x1A\0", 6};
+  const std::size_t last = text.find_last_not_of(marks);
   return text.substr(0, last == std::string_view::npos ? 0 : last + 1);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <string>
 #include <system_error>
 
 #include "eds/data_sheet.hpp"
@@ -38,6 +39,20 @@ std::optional<std::uint64_t> parse_unsigned(std::string_view text) {
     return std::nullopt;
   }
   return number;
+}
+
+std::optional<std::uint64_t> parse_h_suffix(std::string_view text) {
+  if (text.size() < 2 || !is_digit(text.front()) || to_lower(text.back()) != 'h') return std::nullopt;
+  std::string digits{"0x"};
+  for (const char c : text.substr(0, text.size() - 1)) {
+    if (!is_blank(c)) digits += c;
+  }
+  return parse_unsigned(digits);
+}
+
+std::string_view without_quotes(std::string_view text) {
+  const bool is_quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
+  return is_quoted ? trim(text.substr(1, text.size() - 2)) : text;
 }
 
 std::optional<std::uint64_t> parse_decimal(std::string_view text) {

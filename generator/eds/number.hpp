@@ -14,7 +14,13 @@ struct Field;
 /// nothing if any other text remains, or if the number exceeds 64 bits.
 [[nodiscard]] std::optional<std::uint64_t> parse_unsigned(std::string_view text);
 
-/// The same without octal numbers: a version 08 is eight, 010 is ten.
+/// `80h`, `0000 0080h`: the notation of manuals and CiA documents.
+[[nodiscard]] std::optional<std::uint64_t> parse_h_suffix(std::string_view text);
+
+/// The text between quotation marks; the same text without them.
+[[nodiscard]] std::string_view without_quotes(std::string_view text);
+
+/// `parse_unsigned` without octal numbers: a version 08 is eight, 010 is ten.
 [[nodiscard]] std::optional<std::uint64_t> parse_decimal(std::string_view text);
 
 /// Reads a decimal number with a fraction or exponent, also with `+`. Returns nothing if any other text remains.

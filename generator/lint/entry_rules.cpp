@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "device/objects/standard_objects.hpp"
 #include "device/pdo/pdo_defaults.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 #include "lint/rule_groups.hpp"
-#include "lint/standard_objects.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc {

@@ -4,8 +4,8 @@
 #include <unordered_map>
 
 #include "backend/cpp/identifier.hpp"
+#include "device/objects/standard_objects.hpp"
 #include "lint/rule_groups.hpp"
-#include "lint/standard_objects.hpp"
 #include "text/ascii.hpp"
 
 namespace edsc {

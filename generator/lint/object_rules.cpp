@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "device/drive_modes.hpp"
+#include "device/objects/standard_objects.hpp"
 #include "lint/rule_groups.hpp"
-#include "lint/standard_objects.hpp"
 #include "values/read_value.hpp"
 
 namespace edsc {

@@ -2,8 +2,8 @@
 
 #include <string_view>
 
+#include "device/objects/standard_objects.hpp"
 #include "lint/rule_groups.hpp"
-#include "lint/standard_objects.hpp"
 
 namespace edsc {
 namespace {

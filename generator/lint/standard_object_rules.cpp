@@ -1,22 +1,9 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
+#include "device/objects/standard_objects.hpp"
 #include "lint/rule_groups.hpp"
-#include "lint/standard_objects.hpp"
 
 namespace edsc {
-
-const StandardObject* find_standard_object(std::uint16_t index) {
-  const auto at = std::ranges::lower_bound(standard::objects, index, {}, &StandardObject::last);
-  return at != std::end(standard::objects) && at->first <= index ? &*at : nullptr;
-}
-
-const StandardEntry* find_standard_entry(const StandardObject& object, std::uint8_t sub_index) {
-  const auto at = std::ranges::find_if(
-      object.entries, [&](const StandardEntry& entry) { return sub_index >= entry.first && sub_index <= entry.last; });
-  return at == object.entries.end() ? nullptr : &*at;
-}
 
 namespace {
 
@@ -43,10 +30,11 @@ void check_entry(const RuleContext& context, const Entry& entry, const StandardO
     return;
   }
   if (entry.type->type != row->type) {
-    context.report("standard-data-type", context.place_of(entry, &EntryDescription::data_type),
-                   fmt::format("{} is {}; CiA 301 requires {} (clause {})", named(entry), entry.type->name,
-                               type_name(row->type), standard.clause),
-                   {}, fmt::format("{} {}", standard.first, entry.type->name));
+    // Only a value that is reported: that of a service has the type of CiA 301, whatever the EDS states.
+    context.diagnostics.warning("standard-data-type", context.place_of(entry, &EntryDescription::data_type),
+                                fmt::format("{} is {}; CiA 301 requires {} (clause {})", named(entry), entry.type->name,
+                                            type_name(row->type), standard.clause),
+                                {}, fmt::format("{} {}", standard.first, entry.type->name));
   }
   if (!row->access.has(entry.access)) {
     context.report("standard-access", entry.access_position,

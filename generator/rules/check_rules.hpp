@@ -86,7 +86,7 @@ inline constexpr Rule check[] = {
     Rule{"reserved-index", warning, "an object at C000h..FFFFh", "CiA 301, 7.4.1"},
     // The objects of the communication profile.
     Rule{"standard-object-type", note, "wrong object code for an object of CiA 301", "CiA 301, 7.5.2"},
-    Rule{"standard-data-type", warning, "wrong data type for an object of CiA 301", "CiA 301, 7.5.2"},
+    Rule{"standard-data-type", error, "wrong data type for an object of CiA 301", "CiA 301, 7.5.2", warning},
     Rule{"standard-access", warning, "an access type that CiA 301 does not allow for the object", "CiA 301, 7.5.2"},
     Rule{"standard-sub-index", warning, "a sub-index that CiA 301 does not define for the object", "CiA 301, 7.5.2"},
     Rule{"standard-sub-index-missing", warning, "missing sub-index that CiA 301 requires for the object",

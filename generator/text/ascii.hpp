@@ -19,8 +19,9 @@ namespace edsc {
 [[nodiscard]] constexpr char to_lower(char c) { return is_upper(c) ? static_cast<char>(c + ('a' - 'A')) : c; }
 [[nodiscard]] constexpr char to_upper(char c) { return is_lower(c) ? static_cast<char>(c - ('a' - 'A')) : c; }
 
-/// Space and tab, and Ctrl-Z, with which DOS programs end a text; it is rejected anywhere else.
-[[nodiscard]] constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\x1A'; }
+/// Space and tab; Ctrl-Z, with which DOS programs end a text, and NUL, with which some tools fill the last block: both
+/// are rejected anywhere else.
+[[nodiscard]] constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\x1A' || c == '\0'; }
 
 [[nodiscard]] constexpr std::string_view trim_left(std::string_view text) {
   std::size_t blanks = 0;

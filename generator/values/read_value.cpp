@@ -29,16 +29,6 @@ std::string_view without_real_suffix(std::string_view digits) {
   return is_digit(before) || before == '.' ? digits.substr(0, digits.size() - 1) : digits;
 }
 
-/// `80h`, `0000 0080h`: the notation of manuals and CiA documents.
-std::optional<std::uint64_t> parse_h_suffix(std::string_view text) {
-  if (text.size() < 2 || !is_digit(text.front()) || to_lower(text.back()) != 'h') return std::nullopt;
-  std::string digits{"0x"};
-  for (const char c : text.substr(0, text.size() - 1)) {
-    if (!is_blank(c)) digits += c;
-  }
-  return parse_unsigned(digits);
-}
-
 /// Parses the value of one field.
 class ValueReader {
  public:
@@ -59,7 +49,10 @@ class ValueReader {
       case DataClass::real:
       case DataClass::time: break;
     }
-    const std::string_view text = strip_inline_comment(field_.text);
+    const std::string_view written = strip_inline_comment(field_.text);
+    const std::string_view text = without_quotes(written);
+    if (text.size() != written.size())
+      warning("number-spelling", "a number must be written without quotation marks", "quotes");
     if (text.find('$') != std::string_view::npos) return formula(text);
     if (type_.kind == DataClass::real) return real(text);
     if (type_.kind == DataClass::boolean) return boolean(text);
@@ -89,6 +82,7 @@ class ValueReader {
   /// `$NODEID`, `$NODEID+0x180`, `0x180 + $NodeID`: CiA 306-1, 4.6.2.3.
   std::optional<Value> formula(std::string_view text) {
     if (type_.kind != DataClass::unsigned_integer && type_.kind != DataClass::signed_integer) return not_a_number();
+    if (std::ranges::count(text, '+') > 1) return sum(text);
     const auto [variable, constant] = split_formula(text);
     const auto parsed = constant ? parse_unsigned(without_c_suffix(*constant)) : std::optional<std::uint64_t>{0};
     if (!is_node_id(variable) || !parsed) {
@@ -96,6 +90,33 @@ class ValueReader {
       return std::nullopt;
     }
     return formula(*parsed, constant && is_hexadecimal(*constant));
+  }
+
+  /// `0x180 + $NODEID + 0x40000000`: CiA 306 allows one constant.
+  std::optional<Value> sum(std::string_view text) {
+    std::uint64_t constant = 0;
+    unsigned variables = 0;
+    for (std::string_view rest = text; !rest.empty();) {
+      const std::size_t plus = rest.find('+');
+      const std::string_view term = trim(rest.substr(0, plus));
+      rest = plus == std::string_view::npos ? std::string_view{} : rest.substr(plus + 1);
+      const auto number = parse_unsigned(without_c_suffix(term));
+      if (number && *number <= mask() - std::min(mask(), constant)) {
+        constant += *number;
+      } else if (!number && is_node_id(term)) {
+        ++variables;
+      } else {
+        variables = 0;
+        break;
+      }
+    }
+    if (variables != 1 || text.ends_with('+')) {
+      error("node-id-formula", fmt::format("{} is not a valid $NODEID formula", quote(text)));
+      return std::nullopt;
+    }
+    warning("node-id-formula",
+            fmt::format("reading {} as $NODEID+0x{:X}: a formula has one constant", quote(text), constant));
+    return formula(constant, true);
   }
 
   /// The constant may be the two's complement of a negative number, as a value without $NODEID.

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <string>
 
 #include "device/meaning/resolve_meaning.hpp"
 #include "device/objects/object_type_name.hpp"
+#include "device/objects/standard_objects.hpp"
 #include "device/resolve_information.hpp"
 #include "device/types/type_name.hpp"
 #include "diagnostics/quote.hpp"
@@ -42,11 +45,32 @@ std::string number_of_type(std::string_view name) {
                          : fmt::format(": {} is 0x{:04X}", type->name, static_cast<unsigned>(type->type));
 }
 
+/// The data type with this name in CiA 301; null for other words, which may be another type in each tool.
+const DataTypeRow* standard_type_named(std::string_view name) {
+  const auto* const found = std::ranges::find_if(
+      canopen::data_types, [&](const DataTypeRow& row) { return equal_ignoring_case(row.name, name); });
+  return found == std::end(canopen::data_types) ? nullptr : found;
+}
+
 /// Whether an entry of unknown type becomes a DOMAIN, bytes that are not interpreted. Entries of the communication
 /// profile and sub-index 0 need their type and are left out.
 bool may_be_opaque(const EntryPlace& place) {
   constexpr std::uint16_t first_application_index = 0x2000;
   return place.index >= first_application_index && !(place.in_object_with_sub_indices && place.sub_index == 0);
+}
+
+struct AccessLetter {
+  std::string_view letter;
+  Access access;
+};
+
+/// The letters of some tools.
+constexpr AccessLetter access_letters[] = {{"r", Access::ro}, {"w", Access::wo}};
+
+/// The description of an entry in CiA 301; null for others, and for sub-index 0 of an ARRAY or RECORD.
+const StandardEntry* standard_entry(const EntryPlace& place) {
+  if (place.in_object_with_sub_indices && place.sub_index == 0) return nullptr;
+  return find_standard_entry(place.index, place.sub_index);
 }
 
 bool has_limits(const DataTypeRow& type) {
@@ -63,7 +87,8 @@ std::optional<Entry> EntryResolver::resolve(const EntryDescription& description,
   if (!found) return std::nullopt;
   const bool is_opaque = found->row == nullptr;
   if (is_opaque && !may_be_opaque(place)) return std::nullopt;
-  const ValueType type = is_opaque ? types_.find(static_cast<std::uint64_t>(DataType::domain)) : *found;
+  const ValueType type = is_opaque ? types_.find(static_cast<std::uint64_t>(DataType::domain))
+                                   : type_of_service(description, place, *found).value_or(*found);
   std::optional<Entry> result{std::in_place};
   Entry& entry = *result;
   entry.index = place.index;
@@ -74,7 +99,7 @@ std::optional<Entry> EntryResolver::resolve(const EntryDescription& description,
   entry.mapping_position = description.pdo_mapping.present ? description.pdo_mapping.position : description.position;
   entry.type = type.row;
   entry.octets = type.octets;
-  entry.access = access(description);
+  entry.access = access(description, place);
   entry.pdo_mapping = pdo_mapping(description);
   entry.obj_flags = obj_flags(description);
   entry.denotation = description.denotation.text;
@@ -117,6 +142,13 @@ std::optional<ValueType> EntryResolver::data_type(const EntryDescription& descri
   const std::string_view text = strip_inline_comment(field.text);
   if (!field.present || text.empty()) return missing_data_type(description, place);
   const auto code = parse_unsigned(text);
+  if (const DataTypeRow* const named = code ? nullptr : standard_type_named(text)) {
+    diagnostics_.warning("data-type", field.position,
+                         fmt::format("DataType must be a number; that of {} is 0x{:04X}", named->name,
+                                     static_cast<unsigned>(named->type)),
+                         {}, std::string{named->name});
+    return types_.find(static_cast<std::uint64_t>(named->type));
+  }
   if (!code) {
     diagnostics_.error("data-type", field.position,
                        fmt::format("DataType {} is not a number{}", quote(text), number_of_type(text)));
@@ -172,19 +204,50 @@ std::optional<ValueType> EntryResolver::missing_data_type(const EntryDescription
   return ValueType{};
 }
 
-Access EntryResolver::access(const EntryDescription& description) {
+std::optional<ValueType> EntryResolver::type_of_service(const EntryDescription& description, const EntryPlace& place,
+                                                        const ValueType& found) {
+  const StandardObject* const object = find_standard_object(place.index);
+  const bool has_its_form = object != nullptr && place.in_object_with_sub_indices == (object->type != ObjectType::var);
+  const StandardEntry* const entry = has_its_form ? standard_entry(place) : nullptr;
+  if (entry == nullptr || entry->is_only_reported || found.row->type == entry->type) return std::nullopt;
+  const ValueType needed = types_.find(static_cast<std::uint64_t>(entry->type));
+  diagnostics_.error(
+      "standard-data-type", description.data_type.position,
+      fmt::format("{} is {}; the service of the device needs the {} of CiA 301 (clause {})",
+                  entry_label(place.index, place.sub_index), found.row->name, needed.row->name, object->clause),
+      {}, fmt::format("{} {}", object->first, found.row->name));
+  return needed;
+}
+
+/// CiA 306-1, 4.6.2. A writable entry that is read-only in the device misleads more than the opposite.
+Access EntryResolver::access(const EntryDescription& description, const EntryPlace& place) {
   const Field& field = description.access_type;
   const std::string_view text = strip_inline_comment(field.text);
   for (const canopen::AccessRow& row : canopen::access_rows) {
     if (equal_ignoring_case(text, row.name)) return row.access;
   }
+  const StandardEntry* const standard = standard_entry(place);
   if (!field.present || text.empty()) {
-    diagnostics_.warning("access-type", description.position, "missing AccessType; assuming rw", {}, "missing");
-  } else {
-    diagnostics_.error("access-type", field.position,
-                       fmt::format("AccessType {} is not ro, wo, rw, rwr, rww or const", quote(text)));
+    const Access assumed = standard != nullptr ? standard->access.assumed() : Access::rw;
+    const std::string_view name = canopen::row_of(assumed).name;
+    diagnostics_.warning("access-type", description.position, fmt::format("missing AccessType; assuming {}", name), {},
+                         fmt::format("missing {}", name));
+    return assumed;
   }
-  return Access::rw;
+  if (const auto* const letter = std::ranges::find_if(
+          access_letters, [&](const AccessLetter& row) { return equal_ignoring_case(text, row.letter); });
+      letter != std::end(access_letters)) {
+    diagnostics_.warning(
+        "access-type", field.position,
+        fmt::format("reading the AccessType {} as {}", quote(text), canopen::row_of(letter->access).name), {},
+        std::string{letter->letter});
+    return letter->access;
+  }
+  const Access assumed = standard != nullptr ? standard->access.assumed() : Access::ro;
+  diagnostics_.error("access-type", field.position,
+                     fmt::format("AccessType {} is not ro, wo, rw, rwr, rww or const; assuming {}", quote(text),
+                                 canopen::row_of(assumed).name));
+  return assumed;
 }
 
 bool EntryResolver::pdo_mapping(const EntryDescription& description) {

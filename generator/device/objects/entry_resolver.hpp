@@ -34,7 +34,10 @@ class EntryResolver {
   /// Returns nothing for an entry that is left out; no row for an unknown type.
   std::optional<ValueType> data_type(const EntryDescription& description, const EntryPlace& place);
   std::optional<ValueType> missing_data_type(const EntryDescription& description, const EntryPlace& place);
-  canopen::Access access(const EntryDescription& description);
+  /// The type that the service of a communication parameter needs; nothing if the entry may have its type.
+  std::optional<ValueType> type_of_service(const EntryDescription& description, const EntryPlace& place,
+                                           const ValueType& found);
+  canopen::Access access(const EntryDescription& description, const EntryPlace& place);
   bool pdo_mapping(const EntryDescription& description);
   void resolve_default(const EntryDescription& description, Entry& entry);
   void resolve_limits(const EntryDescription& description, const ValueType& type, Entry& entry);

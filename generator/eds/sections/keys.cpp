@@ -58,6 +58,17 @@ std::string spell_numbered_key(const SectionKey& row, std::uint32_t number) {
   return std::string{row.name};
 }
 
+void remove_quotes(ValueKind kind, Field& field, Diagnostics& diagnostics) {
+  if (kind == ValueKind::text || kind == ValueKind::typed) return;  // the reader of the value knows its type
+  const std::string_view text = without_quotes(trim(field.text));
+  if (text.size() == trim(field.text).size()) return;
+  diagnostics.warning("number-spelling", field.position,
+                      fmt::format("{} must be written without quotation marks",
+                                  kind == ValueKind::access ? "an access type" : "a number"),
+                      {}, "quotes");
+  field.text = text;
+}
+
 void report_unknown_key(const SourceFile& source, const IniSection& section, const IniEntry& entry,
                         std::span<const std::string_view> known, Diagnostics& diagnostics) {
   const bool is_listed = !diagnostics.counts_only("unknown-key", Severity::warning, &source);

@@ -117,6 +117,20 @@ void append_names(std::vector<std::string_view>& names, const KeyRow<Struct> (&t
   }
 }
 
+/// How the value of a key is written; text for a key that is not in the table.
+inline ValueKind kind_of_key(std::string_view /*name*/, std::string_view /*key*/) { return ValueKind::text; }
+
+template <typename Struct, std::size_t n>
+ValueKind kind_of_key(const KeyRow<Struct> (&table)[n], std::string_view key) {
+  for (const KeyRow<Struct>& row : table) {
+    if (match_key(row.key, key)) return row.key.value;
+  }
+  return ValueKind::text;
+}
+
+/// Removes the quotation marks of a number or an access type.
+void remove_quotes(ValueKind kind, Field& field, Diagnostics& diagnostics);
+
 /// Stores each value in the field that `find` returns for its key, or null. `known` are names and tables of the keys
 /// that it finds.
 template <typename Find, typename... Known>
@@ -132,6 +146,9 @@ void read_keys(const SourceFile& source, const IniSection& section, Diagnostics&
       report_duplicate_key(source, entry, field->position, diagnostics);
     } else {
       *field = make_field(source, entry);
+      if (entry.value.starts_with('"')) {
+        ((remove_quotes(kind_of_key(known, entry.key), *field, diagnostics)), ...);
+      }
     }
   }
 }

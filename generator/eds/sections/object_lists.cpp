@@ -37,7 +37,13 @@ class ObjectListReader {
 
   void read(const IniSection& section, ObjectListKind list) {
     for (const NumberedField& entry : read_numbered_section(source_, section, supported_objects, diagnostics_)) {
-      const std::optional<std::uint64_t> index = number_of(entry.field);
+      const std::string_view text = strip_inline_comment(entry.field.text);
+      std::optional<std::uint64_t> index = parse_unsigned(text);
+      if (!index && (index = parse_h_suffix(text))) {
+        diagnostics_.warning("number-spelling", entry.field.position,
+                             fmt::format("a hexadecimal number must be written with 0x, not as {}", quote(text)), {},
+                             "list");
+      }
       if (index && *index >= 0x0001 && *index <= 0xFFFF) {
         add({list, static_cast<std::uint16_t>(*index), entry.field.position});
       } else {

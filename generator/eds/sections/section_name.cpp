@@ -62,7 +62,9 @@ std::optional<SectionKind> find_title(NameForm form, std::string_view name) {
 }
 
 SectionName with_index(SectionKind kind, std::string_view digits, std::uint16_t index) {
-  return {.kind = kind, .index = index, .has_short_index = digits.size() < index_digits};
+  return {.kind = kind,
+          .index = index,
+          .remark = digits.size() < index_digits ? "an index has four digits" : std::string_view{}};
 }
 
 SectionName malformed(std::string_view remark) { return {.kind = SectionKind::malformed, .remark = remark}; }
@@ -78,8 +80,24 @@ SectionName read_sub_object(std::string_view index_text, std::uint16_t index, st
   return result;
 }
 
+/// `1018_1`, `1018.1`, `1018 sub1`: another separator than `sub`.
+bool has_other_separator(std::string_view name) {
+  if (name.size() <= index_digits || !parse_hex(name.substr(0, index_digits), index_digits)) return false;
+  std::string_view rest = name.substr(index_digits);
+  if (std::string_view{"_-.:, "}.find(rest.front()) == std::string_view::npos) return false;
+  rest = trim(rest.substr(1));
+  if (starts_with_ignoring_case(rest, sub)) rest.remove_prefix(sub.size());
+  return parse_hex(rest, sub_index_digits).has_value();
+}
+
 /// Names that begin with an index.
 std::optional<SectionName> read_object(std::string_view name) {
+  if (is_hexadecimal(name)) {
+    std::optional<SectionName> object = read_object(name.substr(2));
+    if (object && object->kind != SectionKind::malformed) object->remark = "an index is written without 0x";
+    return object;
+  }
+  if (has_other_separator(name)) return malformed("only sub is between index and sub-index, as in 1018sub1");
   if (const std::optional<std::uint16_t> index = parse_hex(name, index_digits)) {
     return with_index(SectionKind::object, name, *index);
   }

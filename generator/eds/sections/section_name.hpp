@@ -15,10 +15,9 @@ struct SectionName {
   SectionKind kind = SectionKind::unknown;
   std::uint16_t index = 0;
   std::uint8_t sub_index = 0;
-  bool has_short_index = false;             ///< an index of fewer than four digits
   std::uint16_t number = 0;                 ///< of a tool or module
   SectionKind part = SectionKind::unknown;  ///< of `module_fixed_object`: the kind of its object section
-  std::string_view remark{};                ///< for `malformed`: the fault
+  std::string_view remark{};                ///< for `malformed`: the fault; otherwise how CiA 306 differs, or empty
 };
 
 struct NamedSection {

@@ -83,6 +83,26 @@ TEST(Resolve, ReadsEveryAccessTypeInAnyLetterCase) {
 TEST(Resolve, RejectsAnUnknownAccessType) {
   const DeviceFromText text(var("2000", "Value", "5", "sometimes"));
   EXPECT_EQ(findings(text.diagnostics, "access-type"), (std::vector{error_at(5, 12, "access-type")}));
+  EXPECT_EQ(text.entry(0x2000).access, Access::ro);
+}
+
+/// CiA 301, 7.5.2: 1000h is ro, 1017h rw, 1024h wo.
+TEST(Resolve, AssumesTheAccessTypeOfCia301) {
+  const DeviceFromText text(var("1000", "Device type", "7", "unknown") + var("1017", "Heartbeat", "6", "unknown") +
+                            var("1024", "OS command mode", "5", "unknown") +
+                            "[1001]\nParameterName=Error register\nDataType=5\n");
+  EXPECT_EQ(text.entry(0x1000).access, Access::ro);
+  EXPECT_EQ(text.entry(0x1001).access, Access::ro);
+  EXPECT_EQ(text.entry(0x1017).access, Access::rw);
+  EXPECT_EQ(text.entry(0x1024).access, Access::wo);
+}
+
+TEST(Resolve, ReadsTheLettersOfAnAccessTypeWithAWarning) {
+  const DeviceFromText text(var("2000", "Value", "5", "R") + var("2001", "Command", "5", "w"));
+  EXPECT_EQ(text.entry(0x2000).access, Access::ro);
+  EXPECT_EQ(text.entry(0x2001).access, Access::wo);
+  EXPECT_EQ(findings(text.diagnostics, "access-type"),
+            (std::vector{warning_at(5, 12, "access-type"), warning_at(10, 12, "access-type")}));
 }
 
 TEST(Resolve, TakesAMissingPdoMappingForNone) {

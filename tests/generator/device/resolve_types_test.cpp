@@ -45,9 +45,39 @@ TEST(Resolve, MakesADomainOfAnObjectWithoutDataType) {
   EXPECT_EQ(findings(text.diagnostics, "data-type"), (std::vector{error_at(1, 2, "data-type")}));
 }
 
+/// Only the names of CiA 301: `word` and `int` are other types in other tools.
 TEST(Resolve, WantsANumberForDataType) {
-  const DeviceFromText text(var("2000", "Value", "UNSIGNED8"));
-  EXPECT_EQ(findings(text.diagnostics, "data-type"), (std::vector{error_at(4, 10, "data-type")}));
+  const DeviceFromText named(var("2000", "Value", "Unsigned16"));
+  EXPECT_EQ(named.entry(0x2000).type->type, DataType::unsigned16);
+  EXPECT_EQ(findings(named.diagnostics, "data-type"), (std::vector{warning_at(4, 10, "data-type")}));
+  const DeviceFromText word(var("2000", "Value", "word"));
+  EXPECT_EQ(findings(word.diagnostics, "data-type"), (std::vector{error_at(4, 10, "data-type")}));
+}
+
+/// CiA 301, 7.5.2. Entries that a service uses need the type of the standard; others may have their own.
+TEST(Resolve, TakesTheTypeThatAServiceNeeds) {
+  struct Row {
+    std::string_view index, type;
+    DataType needed;
+  };
+  constexpr Row rows[] = {
+      {"1005", "0x1B", DataType::unsigned32}, {"1006", "0x1B", DataType::unsigned32},
+      {"100D", "0x1B", DataType::unsigned8},  {"1014", "0x1B", DataType::unsigned32},
+      {"1015", "0x1B", DataType::unsigned16}, {"1017", "0x1B", DataType::unsigned16},
+      {"1017", "0x8", DataType::unsigned16},  {"1017", "0x9", DataType::unsigned16},
+      {"1019", "0x7", DataType::unsigned8},
+  };
+  for (const Row& row : rows) {
+    const DeviceFromText text(var(row.index, "Value", row.type));
+    EXPECT_EQ(text.device.objects.front().entries.front().type->type, row.needed) << row.index;
+    EXPECT_EQ(findings(text.diagnostics, "standard-data-type"), (std::vector{error_at(4, 10, "standard-data-type")}));
+  }
+  const DeviceFromText version(var("100A", "Software version", "0x6", "ro"));
+  EXPECT_EQ(version.entry(0x100A).type->type, DataType::unsigned16);
+  const DeviceFromText pdo(group("1800", "TPDO", "0x9", 3) + var("1800sub0", "Count", "5", "ro") +
+                           var("1800sub1", "COB-ID", "0x6") + var("1800sub4", "Reserved", "0x7"));
+  EXPECT_EQ(pdo.entry(0x1800, 1).type->type, DataType::unsigned32);
+  EXPECT_EQ(pdo.entry(0x1800, 4).type->type, DataType::unsigned32) << "as the EDS states it";
 }
 
 TEST(Resolve, LeavesAnEntryOfAComplexTypeOutWithAWarning) {

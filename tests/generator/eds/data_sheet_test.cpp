@@ -225,8 +225,8 @@ TEST(DataSheet, WarnsOfUnknownKeysInEverySection) {
 }
 
 TEST(DataSheet, WarnsOfUnknownSections) {
-  for (const std::string name : {"", "PreDefines", "Toolbox", "ModuleInfo", "0x1000", "1005 sub0", "1005Names",
-                                 "MModuleInfo", "M1", "M1Fixed", "M1Other", "Tool", "Tool1a"}) {
+  for (const std::string name : {"", "PreDefines", "Toolbox", "ModuleInfo", "1005Names", "MModuleInfo", "M1", "M1Fixed",
+                                 "M1Other", "Tool", "Tool1a"}) {
     const ReadSheet read(one_object + "[" + name + "]\nAnything=1\n");
     EXPECT_EQ(findings(read.diagnostics), (Findings{warning_at(7, 2, "unknown-section")})) << name;
   }
@@ -234,10 +234,41 @@ TEST(DataSheet, WarnsOfUnknownSections) {
 
 TEST(DataSheet, WarnsOfAShortIndex) {
   const ReadSheet read(one_object + "[40]\n[40sub1]\n");
-  EXPECT_EQ(findings(read.diagnostics, "section-name"),
-            (Findings{warning_at(7, 2, "section-name"), warning_at(8, 2, "section-name")}));
+  EXPECT_EQ(findings(read.diagnostics, "section-name"), (Findings{warning_at(7, 2, "section-name")}));
+  EXPECT_EQ(read.diagnostics.all().at(0).places, 2U);
   EXPECT_EQ(read.sheet.objects.at(0).index, 0x40);
   EXPECT_EQ(read.sheet.objects.at(0).sub_objects.size(), 1U);
+}
+
+TEST(DataSheet, ReadsAnIndexWithAPrefix) {
+  const ReadSheet read(one_object + "[0x2000]\nParameterName=a\n[0X2001sub1]\nParameterName=b\n");
+  EXPECT_EQ(findings(read.diagnostics, "section-name"), (Findings{warning_at(7, 2, "section-name")}));
+  ASSERT_EQ(read.sheet.objects.size(), 3U);
+  EXPECT_EQ(read.sheet.objects.at(1).parameter_name.text, "a");
+  EXPECT_EQ(read.sheet.objects.at(2).sub_objects.at(0).parameter_name.text, "b");
+}
+
+TEST(DataSheet, ReadsNumbersAndAccessTypesInQuotationMarks) {
+  const ReadSheet read("[2000]\nParameterName=\"a\"\nDataType=\"0x0005\"\nAccessType=\"ro\"\nPDOMapping=\"1\"\n");
+  EXPECT_EQ(findings(read.diagnostics, "number-spelling"), (Findings{warning_at(3, 10, "number-spelling")}));
+  EXPECT_EQ(read.diagnostics.all().at(0).places, 3U);
+  const ObjectDescription& object = read.sheet.objects.at(0);
+  EXPECT_EQ(object.parameter_name.text, "\"a\"") << "part of the text";
+  EXPECT_EQ(object.data_type.text, "0x0005");
+  EXPECT_EQ(object.access_type.text, "ro");
+  EXPECT_EQ(object.pdo_mapping.text, "1");
+}
+
+TEST(DataSheet, ReadsAnIndexOfAListInTheNotationOfManuals) {
+  const ReadSheet read(one_object + "[ManufacturerObjects]\nSupportedObjects=1\n1=2000h\n");
+  EXPECT_EQ(findings(read.diagnostics, "number-spelling"), (Findings{warning_at(9, 3, "number-spelling")}));
+  EXPECT_EQ(read.sheet.listed.back().index, 0x2000);
+}
+
+TEST(DataSheet, IgnoresNulBytesAtTheEnd) {
+  EXPECT_EQ(findings(ReadSheet(one_object + std::string(3, '\0')).diagnostics), Findings{});
+  EXPECT_EQ(findings(ReadSheet(one_object + std::string(1, '\0') + "a=1\n").diagnostics),
+            (Findings{error_at(7, 1, "binary-file")}));
 }
 
 TEST(DataSheet, TakesASubIndexOfOneOrTwoDigits) {
@@ -247,8 +278,8 @@ TEST(DataSheet, TakesASubIndexOfOneOrTwoDigits) {
 }
 
 TEST(DataSheet, RefusesNamesThatAreNoIndexOrSubIndex) {
-  for (const std::string name :
-       {"10000", "10000sub1", "1005sub", "1005sub100", "1005sub001", "1005subG", "1005sub1x"}) {
+  for (const std::string name : {"10000", "10000sub1", "1005sub", "1005sub100", "1005sub001", "1005subG", "1005sub1x",
+                                 "1005_1", "1005.1", "1005 sub0", "1005-01", "0x10000"}) {
     const ReadSheet read(one_object + "[" + name + "]\n");
     EXPECT_EQ(findings(read.diagnostics), (Findings{error_at(7, 2, "section-name")})) << name;
   }

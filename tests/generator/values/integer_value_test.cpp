@@ -217,13 +217,27 @@ TEST(NodeIdFormula, WithAVendorsVariableIsReadWithAWarning) {
   }
 }
 
+TEST(NodeIdFormula, WithTwoConstantsIsReadWithAWarning) {
+  const Parsed parsed(DataType::unsigned32, "0x180 + $NODEID + 0x40000000");
+  EXPECT_EQ(parsed.bits(), 0x4000'0180U);
+  EXPECT_TRUE(parsed.value->plus_node_id);
+  EXPECT_EQ(findings(parsed.diagnostics), warning_of("node-id-formula"));
+  EXPECT_EQ(findings(Parsed(DataType::unsigned8, "0xFF+$NODEID+0xFF").diagnostics), error_of("node-id-formula"));
+}
+
 TEST(NodeIdFormula, ThatIsNoneIsAnError) {
-  for (const char* text : {"$NODEID+", "+$NODEID", "$NODEID-1", "$NODEID+abc", "$NODEID*2", "$NODEID+0x180+5", "$",
-                           "$OTHER+1", "2*$NODEID"}) {
+  for (const char* text : {"$NODEID+", "+$NODEID", "$NODEID-1", "$NODEID+abc", "$NODEID*2", "$NODEID+0x180+", "$",
+                           "$NODEID+1+$NODEID", "$NODEID+1+x", "1+2+3$", "$OTHER+1", "2*$NODEID"}) {
     const Parsed parsed(DataType::unsigned32, text);
     EXPECT_FALSE(parsed.value) << text;
     EXPECT_EQ(findings(parsed.diagnostics), error_of("node-id-formula")) << text;
   }
+}
+
+TEST(IntegerValue, InQuotationMarksIsReadWithAWarning) {
+  const Parsed parsed(DataType::unsigned16, "\"0x64\"");
+  EXPECT_EQ(parsed.bits(), 0x64U);
+  EXPECT_EQ(findings(parsed.diagnostics), warning_of("number-spelling"));
 }
 
 TEST(NodeIdFormula, ThatDoesNotFitIntoItsTypeIsAnError) {

@@ -21,6 +21,12 @@ class AccessSet {
     return (bits_ & (1U << static_cast<unsigned>(access))) != 0;
   }
 
+  /// The access type of an entry whose EDS states none that can be read.
+  [[nodiscard]] constexpr canopen::Access assumed() const {
+    using canopen::Access;
+    return has(Access::rw) ? Access::rw : has(Access::wo) ? Access::wo : Access::ro;
+  }
+
  private:
   unsigned bits_;
 };
@@ -43,7 +49,8 @@ struct StandardEntry {
   std::uint8_t last;
   canopen::DataType type;
   AccessSet access;
-  bool required = false;  ///< `first` is mandatory
+  bool required = false;          ///< `first` is mandatory
+  bool is_only_reported = false;  ///< no service of the device uses the value: it may have another type
 };
 
 struct StandardObject {
@@ -62,15 +69,19 @@ using enum canopen::DataType;
 using namespace access_sets;
 
 constexpr StandardEntry value(DataType type, AccessSet access) { return {0, 0, type, access}; }
+/// A value that no service of the device uses.
+constexpr StandardEntry only_reported(DataType type, AccessSet access) { return {0, 0, type, access, false, true}; }
 
 inline constexpr StandardEntry read_only_u32[] = {value(unsigned32, read_only)};
+inline constexpr StandardEntry status_u32[] = {only_reported(unsigned32, read_only)};
 inline constexpr StandardEntry read_only_u8[] = {value(unsigned8, read_only)};
-inline constexpr StandardEntry read_only_text[] = {value(visible_string, read_only)};
-inline constexpr StandardEntry read_only_domain[] = {value(domain, read_only)};
+inline constexpr StandardEntry read_only_text[] = {only_reported(visible_string, read_only)};
+inline constexpr StandardEntry read_only_domain[] = {only_reported(domain, read_only)};
 inline constexpr StandardEntry set_u8[] = {value(unsigned8, settable)};
 inline constexpr StandardEntry set_u16[] = {value(unsigned16, settable)};
 inline constexpr StandardEntry set_u32[] = {value(unsigned32, settable)};
-inline constexpr StandardEntry command_mode[] = {value(unsigned8, write_only)};
+inline constexpr StandardEntry clock_u32[] = {only_reported(unsigned32, settable)};
+inline constexpr StandardEntry command_mode[] = {only_reported(unsigned8, write_only)};
 inline constexpr StandardEntry error_field[] = {{0x01, 0xFE, unsigned32, read_only, true}};
 inline constexpr StandardEntry store[] = {{0x01, 0x7F, unsigned32, settable, true}};
 inline constexpr StandardEntry heartbeat_consumer[] = {{0x01, 0x7F, unsigned32, settable, true}};
@@ -78,7 +89,7 @@ inline constexpr StandardEntry identity[] = {{0x01, 0x01, unsigned32, read_only,
                                              {0x02, 0x04, unsigned32, read_only}};
 inline constexpr StandardEntry verify_configuration[] = {{0x01, 0x01, unsigned32, read_write, true},
                                                          {0x02, 0x02, unsigned32, read_write, true}};
-inline constexpr StandardEntry module_list[] = {{0x01, 0xFE, unsigned16, read_only, true}};
+inline constexpr StandardEntry module_list[] = {{0x01, 0xFE, unsigned16, read_only, true, true}};
 inline constexpr StandardEntry emergency_consumer[] = {{0x01, 0x7F, unsigned32, settable, true}};
 inline constexpr StandardEntry error_behavior[] = {{0x01, 0xFE, unsigned8, settable, true}};
 inline constexpr StandardEntry default_sdo[] = {{0x01, 0x01, unsigned32, read_only, true},
@@ -89,7 +100,7 @@ inline constexpr StandardEntry sdo[] = {{0x01, 0x01, unsigned32, settable, true}
                                         {0x03, 0x03, unsigned8, settable}};
 inline constexpr StandardEntry pdo_communication[] = {
     {0x01, 0x01, unsigned32, settable, true}, {0x02, 0x02, unsigned8, settable, true},
-    {0x03, 0x03, unsigned16, settable},       {0x04, 0x04, unsigned8, settable},
+    {0x03, 0x03, unsigned16, settable},       {0x04, 0x04, unsigned8, settable, false, true},
     {0x05, 0x05, unsigned16, settable},       {0x06, 0x06, unsigned8, settable},
 };
 inline constexpr StandardEntry pdo_mapping[] = {{0x01, 0x40, unsigned32, settable}};
@@ -102,7 +113,7 @@ inline constexpr auto record = ObjectType::record;
 inline constexpr StandardObject objects[] = {
     {0x1000, 0x1000, var, "device type", "7.5.2.1", read_only_u32},
     {0x1001, 0x1001, var, "error register", "7.5.2.2", read_only_u8},
-    {0x1002, 0x1002, var, "manufacturer status register", "7.5.2.3", read_only_u32},
+    {0x1002, 0x1002, var, "manufacturer status register", "7.5.2.3", status_u32},
     {0x1003, 0x1003, array, "pre-defined error field", "7.5.2.4", error_field},
     {0x1005, 0x1005, var, "COB-ID SYNC message", "7.5.2.5", set_u32},
     {0x1006, 0x1006, var, "communication cycle period", "7.5.2.6", set_u32},
@@ -115,7 +126,7 @@ inline constexpr StandardObject objects[] = {
     {0x1010, 0x1010, array, "store parameters", "7.5.2.13", store},
     {0x1011, 0x1011, array, "restore default parameters", "7.5.2.14", store},
     {0x1012, 0x1012, var, "COB-ID time stamp object", "7.5.2.15", set_u32},
-    {0x1013, 0x1013, var, "high resolution time stamp", "7.5.2.16", set_u32},
+    {0x1013, 0x1013, var, "high resolution time stamp", "7.5.2.16", clock_u32},
     {0x1014, 0x1014, var, "COB-ID EMCY", "7.5.2.17", set_u32},
     {0x1015, 0x1015, var, "inhibit time EMCY", "7.5.2.18", set_u16},
     {0x1016, 0x1016, array, "consumer heartbeat time", "7.5.2.19", heartbeat_consumer},
@@ -143,6 +154,8 @@ inline constexpr StandardObject objects[] = {
 [[nodiscard]] const StandardObject* find_standard_object(std::uint16_t index);
 /// The row of a sub-index; null if CiA 301 does not describe it.
 [[nodiscard]] const StandardEntry* find_standard_entry(const StandardObject& object, std::uint8_t sub_index);
+/// The same for an index; also null for sub-index 0 of an ARRAY or RECORD.
+[[nodiscard]] const StandardEntry* find_standard_entry(std::uint16_t index, std::uint8_t sub_index);
 
 /// Objects that each device has.
 inline constexpr std::uint16_t mandatory_objects[] = {0x1000, 0x1001, 0x1018};
