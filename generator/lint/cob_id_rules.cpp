@@ -153,20 +153,31 @@ void check_added_twice(const RuleContext& context, const CobIdUse& use, std::uin
       {}, "added twice");
 }
 
-/// In an EDS for any node-ID, 181h for TPDO 1 means 180h + node-ID.
+/// The EDS states a number where the pre-defined connection set adds the node-ID: 181h for TPDO 1 is that of node 1,
+/// 200h for RPDO 1 that of each node. In a DCF it may be intended.
 void check_node_id(const RuleContext& context, const CobIdUse& use) {
   if (!use.parameter->plus_node_id || use.cob_id.extended() || !use.valid()) return;
   if (use.entry->index == default_sdo) return;  // CiA 301 fixes it
   if (const auto added = added_node_id(context, use)) return check_added_twice(context, use, *added);
-  if (context.sheet.is_dcf || context.device.node_id) return;
+  if (context.sheet.is_dcf) return;
   const std::uint32_t can_id = use.cob_id.can_id();
   const std::uint32_t function_code = use.parameter->predefined_of(use.entry->index);
-  if (can_id <= function_code || can_id > function_code + last_node_id) return;
+  if (function_code == 0 || can_id < function_code || can_id > function_code + last_node_id) return;
   const std::uint32_t node_id = can_id - function_code;
-  context.report("cob-id-node-id", use.place(),
-                 fmt::format("{} is {:03X}h, the CAN-ID of node {} only; use $NODEID+0x{:X} for any node",
-                             named(*use.entry), can_id, node_id, function_code + (use.cob_id.value() & 0xE000'0000U)),
-                 {}, fmt::format("node {}", node_id));
+  const auto& given = context.device.node_id;
+  if (given && node_id == *given) return;
+  const std::string formula = fmt::format("use $NODEID+0x{:X}", function_code + (use.cob_id.value() & 0xE000'0000U));
+  if (node_id != 0) {
+    context.report("cob-id-node-id", use.place(),
+                   fmt::format("{} is {:03X}h, the CAN-ID of node {} {}; {} for any node", named(*use.entry), can_id,
+                               node_id, given ? fmt::format("and not of node {}", *given) : "only", formula),
+                   {}, fmt::format("node {}", node_id));
+  } else if (restriction_of(use, can_id) == nullptr) {
+    context.report(
+        "cob-id-node-id", use.place(),
+        fmt::format("{} is {:03X}h for each node; {} to add the node-ID", named(*use.entry), can_id, formula), {},
+        "each node");
+  }
 }
 
 /// The node-ID for which a formula gives this CAN-ID; 0 if there is none.

@@ -25,11 +25,16 @@ void check_constant(const RuleContext& context, const Entry& entry) {
                  fmt::format("{} is const and has no DefaultValue", named(entry)));
 }
 
-/// Values that differ from the file in a running device.
-bool is_live(const Entry& entry) {
+/// Values that differ from the file in a running device. The number of elements and the modes of operation that a drive
+/// supports (CiA 402-2: 6502h, of further axes 800h apart) are constants, even if they can be mapped.
+bool is_live(const Object& object, const Entry& entry) {
   constexpr EntryKey live[] = {{0x1002, 0}, {0x1018, 4}};
-  constexpr std::uint16_t first_application_index = 0x2000;
-  if (entry.index >= first_application_index && entry.access == Access::ro && entry.pdo_mapping) return true;
+  constexpr std::uint16_t first_application_index = 0x2000, first_profile_index = 0x6000, axis = 0x800, modes = 0x502;
+  if (entry.index >= first_application_index && entry.access == Access::ro && entry.pdo_mapping) {
+    const bool is_count = object.has_sub_indices() && entry.sub_index == 0;
+    const bool is_modes = entry.index >= first_profile_index && entry.index % axis == modes;
+    return !is_count && !is_modes;
+  }
   return std::ranges::find(live, EntryKey{entry.index, entry.sub_index}) != std::end(live);
 }
 
@@ -40,8 +45,8 @@ bool shows_a_setting(const RuleContext& context, const Entry& entry) {
 }
 
 /// Before the device measures or counts, such a value is 0.
-void check_live(const RuleContext& context, const Entry& entry) {
-  if (!entry.default_value || !entry.default_value->clause.empty() || !is_live(entry)) return;
+void check_live(const RuleContext& context, const Object& object, const Entry& entry) {
+  if (!entry.default_value || !entry.default_value->clause.empty() || !is_live(object, entry)) return;
   if (entry.default_value->bits == 0 && entry.default_value->bytes.empty()) return;
   if (shows_a_setting(context, entry)) return;
   context.report("live-default", entry.default_value->position,
@@ -105,7 +110,7 @@ void check_entries(const RuleContext& context) {
     check_array(context, object);
     for (const Entry& entry : object.entries) {
       check_constant(context, entry);
-      check_live(context, entry);
+      check_live(context, object, entry);
       check_mapping(context, entry);
       check_name_length(context, entry);
     }

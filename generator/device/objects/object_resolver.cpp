@@ -185,21 +185,17 @@ void ObjectResolver::check_sub_number(const ObjectDescription& description) {
                                    count == 1 ? "1 sub-object is" : fmt::format("{} sub-objects are", count), count));
 }
 
-/// Sub-indices are hexadecimal (CiA 306-1, 4.6.2). If a sub-index is missing, but its decimal number exists as a
-/// hexadecimal one, the author may have counted in decimal: 10h instead of Ah, 16h instead of 10h.
+/// Sub-indices are hexadecimal (CiA 306-1, 4.6.2). The author may have counted in decimal if 10h follows 9h and no
+/// sub-index of the object has a digit from A to F.
 void ObjectResolver::check_sub_indices(const ObjectDescription& description) {
-  struct Slip {
-    std::uint8_t before, meant, written;
+  const SubObjectDescription* const written = description.find(0x10);
+  const auto has_letter = [](const SubObjectDescription& one) {
+    return (one.sub_index & 0x0FU) > 9 || (one.sub_index >> 4U) > 9;
   };
-  constexpr Slip slips[] = {{0x09, 0x0A, 0x10}, {0x0F, 0x10, 0x16}};
-  for (const Slip& slip : slips) {
-    const SubObjectDescription* const written = description.find(slip.written);
-    if (written == nullptr || !description.find(slip.before) || description.find(slip.meant)) continue;
-    diagnostics_.warning(
-        "sub-index-base", written->position,
-        fmt::format("sub-indices are hexadecimal: this is {:X}h; did you mean {:X}h, which is missing?", slip.written,
-                    slip.meant));
-  }
+  if (written == nullptr || description.find(0x09) == nullptr) return;
+  if (std::ranges::any_of(description.sub_objects, has_letter)) return;
+  diagnostics_.warning("sub-index-base", written->position,
+                       "sub-indices are hexadecimal: this is 10h; did you mean Ah, which is missing?");
 }
 
 void ObjectResolver::supply_sub_index_0(const ObjectDescription& description, Object& object) {

@@ -35,25 +35,36 @@ void check_commissioned_node_ids(const NetworkContext& context) {
   }
 }
 
+void check_length(const NetworkContext& context, const Written<std::uint32_t>& bit_rate, std::uint32_t max_length) {
+  const WrittenNumber& length = context.network.description.length_m;
+  if (!length || length->value <= max_length) return;
+  context.diagnostics.warning("network-length", length->position,
+                              fmt::format("a bus of {} m is too long for {} kbit/s: the maximum is {} m", length->value,
+                                          bit_rate.value, max_length));
+}
+
 void check_bit_rate(const NetworkContext& context) {
   const WrittenNumber& bit_rate = context.network.description.bit_rate;
   if (!bit_rate) return;
+  const auto lists_it = [&](const NetworkNode& node) {
+    const std::vector<std::uint16_t>& supported = node.device().information.capabilities.baud_rates;
+    return std::ranges::find(supported, bit_rate->value) != supported.end();
+  };
   const auto rate = std::ranges::find(bit_rates, bit_rate->value);
   if (rate == bit_rates.end()) {
-    context.diagnostics.error("network-bit-rate", bit_rate->position,
-                              fmt::format("{} kbit/s is not a bit rate of CANopen", bit_rate->value));
-    return;
-  }
-  const WrittenNumber& length = context.network.description.length_m;
-  const std::uint32_t max_length = max_lengths[rate - bit_rates.begin()];
-  if (length && length->value > max_length) {
-    context.diagnostics.warning("network-length", length->position,
-                                fmt::format("a bus of {} m is too long for {} kbit/s: the maximum is {} m",
-                                            length->value, bit_rate->value, max_length));
+    std::string message = fmt::format("{} kbit/s is not a bit rate of CANopen", bit_rate->value);
+    if (std::ranges::none_of(context.network.nodes, lists_it)) {
+      context.diagnostics.error("network-bit-rate", bit_rate->position, std::move(message));
+      return;
+    }
+    context.diagnostics.warning("network-bit-rate", bit_rate->position,
+                                message + "; the maximum length of the bus is not checked");
+  } else {
+    check_length(context, *bit_rate, max_lengths[rate - bit_rates.begin()]);
   }
   for (const NetworkNode& node : context.network.nodes) {
     const std::vector<std::uint16_t>& supported = node.device().information.capabilities.baud_rates;
-    if (!supported.empty() && std::ranges::find(supported, bit_rate->value) == supported.end()) {
+    if (node.has_file() && !supported.empty() && !lists_it(node)) {
       context.diagnostics.error("network-bit-rate", node.position,
                                 fmt::format("node {} does not support {} kbit/s; its EDS has {}", node.name,
                                             bit_rate->value, fmt::join(supported, ", ")),

@@ -132,15 +132,30 @@ bool is_link(const CobIdUse& sender, const CobIdUse& receiver) {
          !receiver.transmits && sender.can_id == receiver.can_id && sender.extended == receiver.extended;
 }
 
+/// Whether a mapping of the EDS itself has a length that its Granularity excludes.
+bool contradicts_itself(const Device& device, std::uint64_t granularity) {
+  return std::ranges::any_of(device.pdos, [&](const Pdo& pdo) {
+    return std::ranges::any_of(pdo.entries, [&](const PdoEntry& entry) {
+      return entry.place.file == device.source && !entry.is_multiple_of(granularity);
+    });
+  });
+}
+
 /// Granularity: the lengths of entries that the device can map (CiA 306-1, 4.5).
 void check_granularity(const NetworkContext& context, const CobIdUse& use) {
   const auto granularity = use.node->device().information.capabilities.granularity;
   if (!granularity || *granularity == 0) return;
+  const bool is_doubtful = contradicts_itself(*use.node->loaded->device, *granularity);
   for (const PdoEntry& entry : use.pdo->entries) {
     if (entry.place.file != context.network.source.get() || entry.is_multiple_of(*granularity)) continue;
-    context.diagnostics.error("network-pdo-mapping", entry.place,
-                              fmt::format("node {}: {} maps {} with {} bits, but the Granularity of the device is {}",
-                                          use.node->name, use.what, text(entry), entry.bits, *granularity));
+    std::string message = fmt::format("node {}: {} maps {} with {} bits, but the Granularity of the device is {}",
+                                      use.node->name, use.what, text(entry), entry.bits, *granularity);
+    if (is_doubtful) {
+      context.diagnostics.warning("network-pdo-mapping", entry.place, message + ", which its own mappings contradict",
+                                  {}, use.node->name);
+    } else {
+      context.diagnostics.error("network-pdo-mapping", entry.place, std::move(message));
+    }
   }
 }
 

@@ -103,6 +103,26 @@ TEST(CobIdRules, FindANodeIdThatIsAddedTwice) {
   }
 }
 
+/// A number where CiA 301, 7.3.5 adds the node-ID, with and without a node-ID of the device.
+TEST(CobIdRules, FindACanIdOfAnotherNode) {
+  EXPECT_EQ(found_in_tpdo_1("0x181", "cob-id-node-id").size(), 1U);
+  EXPECT_EQ(found_in_tpdo_1("0x181", "cob-id-node-id", std::uint8_t{3}).size(), 1U);
+  EXPECT_TRUE(found_in_tpdo_1("0x183", "cob-id-node-id", std::uint8_t{3}).empty());
+  EXPECT_TRUE(found_in_tpdo_1("0x80000181", "cob-id-node-id", std::uint8_t{3}).empty()) << "not valid";
+  EXPECT_TRUE(found_in_tpdo_1("0x201", "cob-id-node-id", std::uint8_t{3}).empty()) << "of another service";
+}
+
+TEST(CobIdRules, FindACanIdThatIsTheSameForEachNode) {
+  for (const std::optional<std::uint8_t> node_id : {std::optional<std::uint8_t>{}, std::optional{std::uint8_t{3}}}) {
+    DeviceFromText text(sheet_with_cob_id("1400", 1, "0x200") + sheet_with_cob_id("1801", 1, "0x40000280"), {},
+                        {{}, node_id});
+    check_device(text.named(), text.sheet, text.options, text.diagnostics);
+    EXPECT_EQ(text.finding("cob-id-node-id").places, 2U);
+    EXPECT_EQ(text.finding("cob-id-node-id").message,
+              "1400h:01 \"COB-ID\" is 200h for each node; use $NODEID+0x200 to add the node-ID");
+  }
+}
+
 TEST(CobIdRules, RefuseToSendOnTheCanIdOfSync) {
   EXPECT_EQ(found_in_tpdo_1("0x80", "cob-id-twice").size(), 1U);
   EXPECT_EQ(found_in_tpdo_1("0x80", "cob-id-twice", std::nullopt, var("1005", "SYNC", "7", "rw", "DefaultValue=0x80\n"))

@@ -129,5 +129,17 @@ TEST(ObjectRules, DoNotCompareADefaultThatFollowsTheNodeId) {
   EXPECT_EQ(rules_of(checked.diagnostics), Rules{});
 }
 
+/// The number of elements does not change in a running device, nor do the modes that a drive supports.
+TEST(EntryRules, FindADefaultValueOfAMeasuredValueOnly) {
+  DeviceFromText text(group("6401", "Inputs", "0x8", 2) +
+                      var("6401sub0", "Count", "5", "ro", "DefaultValue=1\nPDOMapping=1\n") +
+                      var("6401sub1", "Input", "3", "ro", "DefaultValue=7\nPDOMapping=1\n") +
+                      var("6502", "Supported drive modes", "7", "ro", "DefaultValue=1\nPDOMapping=1\n") +
+                      var("6D02", "Supported drive modes", "7", "ro", "DefaultValue=1\nPDOMapping=1\n"));
+  check_entries({text.device, text.sheet, text.options, text.diagnostics});
+  EXPECT_EQ(findings(text.diagnostics, "live-default").size(), 1U);
+  EXPECT_NE(text.finding("live-default").message.find("6401h:01"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace edsc

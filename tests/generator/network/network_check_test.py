@@ -118,6 +118,13 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
     "one_sender_for_several_nodes": (network(signal("a", "2001h", "b.2003h", "c.2003h", "m")), []),
     "two_signals_set_one_entry": (network(signal("a", "2001h", "b.2003h"), signal("c", "2001h", "b.2003h")),
                                   [("warning", "network-signal")]),
+    "granularity_that_the_mappings_of_the_sheet_contradict": (
+        network(signal(*SPEED), signal("m", "b.2003h"), b={"node_id": 2, "eds": "coarse.eds", "heartbeat_ms": 100}),
+        [("warning", "network-pdo-mapping")]),
+    "bit_rate_that_no_sheet_has": ({**network(), "bit_rate": 100}, [("error", "network-bit-rate")]),
+    "bit_rate_of_a_sheet": (
+        {**network(**{one: {**NODE_A, "node_id": i, "eds": "rate_100.eds"} for i, one in enumerate("abc", 1)}), "bit_rate": 100},
+        [("warning", "network-bit-rate")]),
     "event_false": (network(signal(*SPEED, event=False)), [("error", "network-file")]),
     "heartbeat_by_set": (network(a={"node_id": 1, "eds": "node.eds", "set": {"1017h": 200}}), []),
     "longest_heartbeat": (network(a={"node_id": 1, "eds": "node.eds", "heartbeat_ms": 65535}),
@@ -245,7 +252,9 @@ def main() -> int:
         (folder / "valid.eds").write_text(sheet_with("1400sub1", "$NODEID+0x200"))
         (folder / "slow.eds").write_text(sheet_with("1800sub3", "200"))
         (folder / "wide.eds").write_text(wide_sheet())
-        (folder / "short.eds").write_text(re.sub(r"(\[1017\][^\[]*DataType=)0x0006", r"\g<1>0x0005", sheet_with("1017", "0")))
+        (folder / "short.eds").write_text(re.sub(r"(\[1017\][^\[]*DataType=0x0006\n)", r"\g<1>HighLimit=255\n", sheet_with("1017", "0")))
+        (folder / "coarse.eds").write_text(sheet_with("1017", "0").replace("Granularity=8", "Granularity=64"))
+        (folder / "rate_100.eds").write_text(sheet_with("1017", "0").replace("BaudRate_125=1", "BaudRate_100=1"))
         for name, (text, code, expected) in TEXTS.items():
             got_code, found = check(edsc, folder, name, text)
             places = [(one["severity"], one["rule"], one["line"], one["column"]) for one in found
