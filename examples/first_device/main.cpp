@@ -4,20 +4,25 @@
 
 #include "pump.hpp"
 
+using namespace canopen::literals;
+
 int main() {
   canopen::VirtualBus bus;
   auto& port = bus.attach();
   auto& master = bus.attach();
   master.on_frame = [](const canopen::Frame& frame, canopen::TimePoint) {
-    if (frame.id == 0x185) std::printf("pressure %u mbar\n", unsigned{pump::Tpdo1::get<0>(frame.data)});
+    if (frame.id == 0x185) {
+      const auto pressure = pump::Tpdo1::get<od::pressure>(frame);
+      std::printf("pressure %.3f bar\n", pressure.in<canopen::unit::bar>());
+    }
   };
 
   canopen::Node<PumpParts, canopen::VirtualBus::Endpoint> node{port, canopen::NodeId{5}};
   bus.connect(port, node);
 
   node.start(bus.now());
-  master.send({.id = 0x000, .size = 2, .data = {0x01, 0x05}});                              // NMT: start node 5
-  master.send({.id = 0x205, .size = pump::Rpdo1::size, .data = pump::Rpdo1::pack(1'680)});  // RPDO 1
+  master.send({.id = 0x000, .size = 2, .data = {0x01, 0x05}});                                  // NMT: start node 5
+  master.send({.id = 0x205, .size = pump::Rpdo1::size, .data = pump::Rpdo1::pack(1'680_rpm)});  // RPDO 1
   bus.settle();
-  return node.get(od::pressure{}) == 420 ? 0 : 1;
+  return node.get(od::pressure{}) == 0.42_bar ? 0 : 1;
 }

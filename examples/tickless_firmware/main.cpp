@@ -47,7 +47,7 @@ void on_alarm() { AlarmTimer::stop(); }
 void on_measuring_timer() {
   static std::uint16_t pressure = 0;
   MeasuringTimer::acknowledge();
-  measured.post<pump::od::pressure>(++pressure);
+  measured.post<pump::od::pressure>(canopen::raw(++pressure));
 }
 
 using Handler = void (*)();

@@ -27,9 +27,9 @@ constinit InterruptSerialBus bus;
 
 /// In place of an ADC.
 void start_measuring() { counters.starts = counters.starts + 1; }
-std::uint16_t measured() {
+od::pressure::type measured() {
   counters.calls = counters.calls + 1;
-  return static_cast<std::uint16_t>(100 + counters.calls);
+  return od::pressure::type{canopen::raw(static_cast<std::uint16_t>(100 + counters.calls))};
 }
 /// In place of a LED.
 void blink() { counters.seconds = counters.seconds + 1; }

@@ -31,7 +31,7 @@ class Tutorial(DocumentTest):
         outputs = list(printed.values())
         self.assertIn("100% tests passed", "".join(outputs))
         reads = [output for command, output in printed.items() if command.startswith("edsc read")]
-        self.assertEqual(reads, ["2001h:00 Pressure = 420 (01A4h)\n", "2001h:00 Pressure = 250 (00FAh)\n"])
+        self.assertEqual(reads, ["2001h:00 Pressure = 420 mbar\n", "2001h:00 Pressure = 250 mbar\n"])
 
 
 if __name__ == "__main__":

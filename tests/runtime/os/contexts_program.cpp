@@ -10,8 +10,9 @@
 #include <span>
 
 namespace od = pump::od;
+using namespace canopen::literals;
 
-std::uint16_t converted();
+std::uint16_t converted();  // in mbar
 canopen::TimePoint now();
 void node_task();
 void measuring_task();
@@ -48,12 +49,12 @@ canopen::Locked locked{sensor, mutex};
 
 }  // namespace
 
-extern "C" void ADC1_IRQHandler() { measured.post<od::pressure>(converted()); }
+extern "C" void ADC1_IRQHandler() { measured.post<od::pressure>(canopen::raw(converted())); }
 
 void node_task() {
   locked.on_time(now());
   static_cast<void>(stored);
 }
 void measuring_task() {
-  locked.set<od::pressure>(420);  // then wakes the task of the node
+  locked.set<od::pressure>(420_mbar);  // then wakes the task of the node
 }

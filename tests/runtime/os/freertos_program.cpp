@@ -5,13 +5,12 @@
 #include <canopen/os/node_task.hpp>
 #include <canopen/port/bxcan.hpp>
 #include <canopen/port/interrupt_port.hpp>
-#include <cstdint>
 
 #include "first_device/pump.hpp"
 
 void canopen_task(void*);
 void measuring_task(void*);
-std::uint16_t measured_pressure();
+od::pressure::type measured_pressure();
 extern "C" void CEC_CAN_IRQHandler();
 
 canopen::BxCan<> can{*reinterpret_cast<canopen::BxCanRegisters*>(0x4000'6400)};
