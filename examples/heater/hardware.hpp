@@ -1,12 +1,13 @@
 /// The inputs of the heater: in place of the registers of a board.
 #pragma once
 
-#include <cstdint>
+#include <heater/device.hpp>
+
+using namespace canopen::literals;
 
 struct Hardware {
   bool door_open = false;
-  std::int16_t sensor = 215;  ///< 0.1 °C
-  [[nodiscard]] std::int16_t temperature() const { return sensor; }
+  heater::od::temperature::type sensor = 21.5_degC;
 };
 
 inline Hardware hardware;

@@ -8,16 +8,18 @@
 #include "hardware.hpp"
 
 namespace od = heater::od;
+using namespace canopen::literals;
 
 struct Heater {
-  canopen::AbortCode write(od::setpoint, std::int16_t) {
+  canopen::AbortCode write(od::setpoint, od::setpoint::type) {
     return hardware.door_open ? canopen::AbortCode::device_state : canopen::ok;
   }
-  void written(od::setpoint, std::int16_t setpoint, auto& node) {
-    node.set(od::heating_power{}, static_cast<std::uint8_t>(setpoint / 10));
-    if (setpoint > 900) node.emergency(0x4200, canopen::ErrorRegister::temperature);
+  void written(od::setpoint, od::setpoint::type setpoint, auto& node) {
+    const auto percent = setpoint.count<canopen::unit::degree_celsius>();  // 1 % for each °C
+    node.set(od::heating_power{}, canopen::raw(static_cast<std::uint8_t>(percent)));
+    if (setpoint > 90_degC) node.emergency(0x4200, canopen::ErrorRegister::temperature);
   }
-  std::int16_t read(od::temperature) { return hardware.temperature(); }
+  od::temperature::type read(od::temperature) { return hardware.sensor; }
 };
 
 /// The composition of the device, for its program and its conformance test.

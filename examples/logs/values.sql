@@ -1,6 +1,6 @@
--- The number, range and mean of the values of each object.
-SELECT node, object, name, count(*) AS values, min(value::DOUBLE) AS min, max(value::DOUBLE) AS max,
-       round(avg(value::DOUBLE), 3) AS mean
+-- The number, range and mean of the values of each object, in its unit.
+SELECT node, object, name, unit, count(*) AS values, min(physical::DOUBLE) AS min, max(physical::DOUBLE) AS max,
+       round(avg(physical::DOUBLE), 3) AS mean
 FROM read_csv('heater.csv', header = true, all_varchar = true)
 WHERE object IS NOT NULL
 GROUP BY ALL

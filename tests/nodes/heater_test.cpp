@@ -44,9 +44,9 @@ TEST_F(HeaterTest, RefusesASetpointWhileTheDoorIsOpen) {
 }
 
 TEST_F(HeaterTest, ReadsTheSensorOnEachUpload) {
-  hardware.sensor = -5;
+  hardware.sensor = -0.5_degC;
   EXPECT_EQ(ask("605 40 02 20 00 00 00 00 00"), "585 4B 02 20 00 FB FF 00 00");
-  hardware.sensor = 300;
+  hardware.sensor = 30_degC;
   EXPECT_EQ(ask("605 40 02 20 00 00 00 00 00"), "585 4B 02 20 00 2C 01 00 00");
 }
 

@@ -25,7 +25,7 @@ from npm_packages import Skipped, install_npm_packages  # noqa: E402
 # of tick 3000 are 100,001, so that the last power is not among them.
 FRAMES = 100_000
 POWERS, HEARTBEATS, SETPOINTS = 98_992, 990, 17
-ALL_SETPOINTS = [200 + minute * 130 % 600 for minute in range(SETPOINTS)]
+ALL_SETPOINTS = [20 + minute * 13 % 60 for minute in range(SETPOINTS)]  # in °C
 
 
 def run(command: list[str], work: Path, environment: dict[str, str]) -> str:
@@ -37,7 +37,8 @@ def main() -> int:
     source, edsc, base = (Path(argument).resolve() for argument in sys.argv[1:4])
     work = base / "logs"
     (base / "heater").mkdir(parents=True, exist_ok=True)
-    shutil.copy(source / "examples/heater/heater.eds", base / "heater")
+    for name in ("heater.eds", "heater.options.json"):
+        shutil.copy(source / "examples/heater" / name, base / "heater")
     try:
         install_npm_packages(source / "examples/logs", work)
     except Skipped as reason:
@@ -53,7 +54,7 @@ def main() -> int:
     setpoint, power, response = output["node query.mjs values.sql"]
     emergency, *rates = output["node query.mjs problems.sql"]
     wanted = [
-        (setpoint["name"], "Setpoint"), (setpoint["object"], "2000h:00"), (int(setpoint["values"]), SETPOINTS),
+        (setpoint["name"], "Setpoint"), (setpoint["object"], "2000h:00"), (setpoint["unit"], "°C"), (int(setpoint["values"]), SETPOINTS),
         (setpoint["min"], min(ALL_SETPOINTS)), (setpoint["max"], max(ALL_SETPOINTS)),
         (setpoint["mean"], round(sum(ALL_SETPOINTS) / SETPOINTS, 3)),
         (power["name"], "Heating power"), (int(power["values"]), POWERS),
