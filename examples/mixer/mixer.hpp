@@ -6,24 +6,27 @@
 #include <mixer/device.hpp>
 
 namespace od = mixer::od;
+using namespace canopen::literals;
 
 struct Mixer {
-  /// One function for all valves: an open valve warms its zone, in 0.1 °C.
+  /// One function for all valves: an open valve warms its zone.
   template <std::uint8_t I>
-  void written(od::valve<I>, std::uint8_t percent, auto& node) {
+  void written(od::valve<I>, od::valve<1>::type opening, auto& node) {
+    od::zone_temperature<1>::type temperature = 20_degC;
+    if (opening > 0_percent) temperature = 25_degC;
     const std::uint8_t zone = I <= 2 ? 1 : 2;  // a sub-index at run time
-    static_cast<void>(node.set(od::zone_temperature{}, zone, static_cast<std::int16_t>(200 + percent)));
+    static_cast<void>(node.set(od::zone_temperature{}, zone, temperature));
   }
 
   /// Read when a TPDO or an upload needs it.
-  std::uint32_t read(od::litres_delivered) { return litres; }
+  od::litres_delivered::type read(od::litres_delivered) { return litres; }
 
   /// Only known recipes are accepted.
   canopen::AbortCode write(od::recipe, const od::recipe::type& name) {
     return name.view().starts_with("water") ? canopen::ok : canopen::AbortCode::invalid_value;
   }
 
-  std::uint32_t litres = 0;
+  od::litres_delivered::type litres{};
 };
 
 /// The composition of the device, for its program and its conformance test.

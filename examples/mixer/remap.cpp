@@ -26,18 +26,19 @@ int main() {
   std::printf("oil: %s\n", std::string{to_text(refused.abort_code())}.c_str());
 
   if (const auto mapped = remote.map<2, Delivery>(); !mapped) return 2;
-  std::uint32_t litres = 0;
-  std::int16_t temperature = 0;
-  const auto listening = remote.on_pdo<2, Delivery>([&](std::uint32_t value, std::int16_t degrees) {
-    litres = value;
-    temperature = degrees;
+  od::litres_delivered::type litres{};
+  od::zone_temperature<2>::type temperature{};
+  const auto listening = remote.on_pdo<2, Delivery>([&](auto new_litres, auto new_temperature) {
+    litres = new_litres;
+    temperature = new_temperature;
   });
   if (!listening) return 3;
 
   if (!master.command(canopen::NmtCommand::start, canopen::NodeId{5})) return 4;
-  node.application<Mixer>().litres = 12;
-  if (!remote.send<mixer::Rpdo1>(std::uint8_t{0}, std::uint8_t{0}, std::uint8_t{0}, std::uint8_t{50})) return 4;
+  node.application<Mixer>().litres = 12_l;
+  const od::valve<1>::type closed = 0_percent, half_open = 50_percent;
+  if (!remote.send<mixer::Rpdo1>(closed, closed, closed, half_open)) return 4;
   master.poll(canopen::from_milliseconds(10));
-  std::printf("%u litres, zone 2: %.1f degrees\n", unsigned{litres}, temperature / 10.0);
-  return litres == 12 && temperature == 250 ? 0 : 5;
+  std::printf("%.0f l, zone 2: %.1f °C\n", litres.in(), temperature.in());
+  return litres == 12_l && temperature == 25_degC ? 0 : 5;
 }

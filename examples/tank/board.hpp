@@ -2,16 +2,17 @@
 #pragma once
 
 #include <cstdint>
+#include <tank/device.hpp>
 
 struct Board {
   std::uint8_t switches = 5;  ///< of the node-ID, in binary
-  std::uint16_t sensor = 0;   ///< mm
+  tank::od::level::type sensor{};
   bool run_led = false;
   bool error_led = false;
   bool measures = false;
 
   void start_measuring() { measures = true; }
-  [[nodiscard]] std::uint16_t level() const { return measures ? sensor : std::uint16_t{0}; }
+  [[nodiscard]] tank::od::level::type level() const { return measures ? sensor : tank::od::level::type{}; }
   void set_leds(bool run, bool error) {
     run_led = run;
     error_led = error;

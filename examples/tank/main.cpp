@@ -9,6 +9,7 @@
 
 #include "tank.hpp"
 
+using namespace canopen::literals;
 using Bus = canopen::VirtualBus::Endpoint;
 using TankNode = canopen::Node<TankParts, Bus, canopen::BoundTo<od::store_eds>, canopen::BoundTo<od::volume_table>>;
 
@@ -46,16 +47,16 @@ int main() {
   };
 
   if (!master.command(canopen::NmtCommand::start, node_id)) return 2;
-  board.sensor = 1'900;
+  board.sensor = 1.9_m;
   master.poll(canopen::from_milliseconds(200));
   if (emergencies != 1 || last.code != 0xFF01 || !board.run_led || board.error_led) return 3;
-  board.sensor = 1'200;
+  board.sensor = 1.2_m;
   master.poll(canopen::from_milliseconds(200));
   if (emergencies != 2 || last.code != 0) return 4;
 
   auto remote = master.remote<tank::Device>(node_id);
   const auto level = remote.read(od::level{});
-  if (!level || level.value() != 1'200) return 5;
+  if (!level || *level != 1.2_m) return 5;
   const auto uploaded = master.upload(node_id, od::store_eds::index, 0);
   if (!uploaded || uploaded.value().size() != eds.size()) return 6;
   const std::array<std::uint8_t, 4> table{0x00, 0x00, 0x64, 0x00};

@@ -15,20 +15,20 @@ struct Tank {
 
   /// TPDO 1 is sent when the level has changed.
   void every(canopen::Milliseconds<100>, auto& node) {
-    const std::uint16_t level = board.level();
+    const od::level::type level = board.level();
     if (level != measured) node.set(od::level{}, level);
     measured = level;
     const bool is_above = level > node.get(od::maximum_level{});
     if (is_above && !was_above) {
-      const auto low = static_cast<std::uint8_t>(level & 0xFF);
-      const auto high = static_cast<std::uint8_t>(level >> 8);
+      const auto low = static_cast<std::uint8_t>(level.raw() & 0xFF);
+      const auto high = static_cast<std::uint8_t>(level.raw() >> 8);
       node.emergency(0xFF01, canopen::ErrorRegister::manufacturer, {low, high});
     }
     if (!is_above && was_above) node.emergency_over(canopen::ErrorRegister::manufacturer);
     was_above = is_above;
   }
 
-  std::uint16_t measured = 0;
+  od::level::type measured{};
   bool was_above = false;
 };
 
