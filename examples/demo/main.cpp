@@ -32,6 +32,7 @@
 namespace {
 
 using canopen::NodeId;
+using namespace canopen::literals;
 using namespace std::chrono_literals;
 
 constexpr NodeId drive_id{3};
@@ -42,30 +43,27 @@ constexpr NodeId sensor_id{5};
 
 void heading(const char* text) { fmt::print("\n-- {}\n", text); }
 
-/// The CiA 402 statusword after shutdown (06h), switch on (07h) and enable operation (0Fh).
-std::uint16_t statusword_after(std::uint16_t controlword) {
-  switch (controlword & 0x0F) {
-    case 0x06: return 0x0231;
-    case 0x07: return 0x0233;
-    case 0x0F: return 0x0237;
-    default: return 0x0250;
-  }
+/// The statusword of a drive after a command of CiA 402, from any state.
+template <class Statusword, class Controlword>
+Statusword statusword_after(Controlword word) {
+  using command = typename Controlword::command_value;
+  using state = typename Statusword::state_value;
+  const state reached = word.is(command::shutdown)           ? state::ready_to_switch_on
+                        : word.is(command::switch_on)        ? state::switched_on
+                        : word.is(command::enable_operation) ? state::operation_enabled
+                                                             : state::switch_on_disabled;
+  return Statusword{}.state(reached).voltage_enabled(true).remote(true);
 }
 
-// What the drives do when they get a controlword.
-struct Stepper {
-  void write(ezd_1136::od::controlword, std::uint16_t controlword, auto& node) {
-    node.set(ezd_1136::od::statusword{}, statusword_after(controlword));
-  }
-};
+// What two of the drives do when they get a controlword.
 struct Spindle {
-  void write(cpd::od::controlword, std::uint16_t controlword, auto& node) {
-    node.set(cpd::od::statusword{}, statusword_after(controlword));
+  void write(cpd::od::controlword, cpd::od::controlword::type word, auto& node) {
+    node.set(cpd::od::statusword{}, statusword_after<cpd::od::statusword::type>(word));
   }
 };
 struct Drive {
-  void write(cpc_tc1::od::controlword, std::uint16_t controlword, auto& node) {
-    node.set(cpc_tc1::od::statusword{}, statusword_after(controlword));
+  void write(cpc_tc1::od::controlword, cpc_tc1::od::controlword::type word, auto& node) {
+    node.set(cpc_tc1::od::statusword{}, statusword_after<cpc_tc1::od::statusword::type>(word));
   }
   void write(cpc_tc1::od::target_velocity, std::int32_t velocity, auto& node) {
     node.set(cpc_tc1::od::velocity_actual_value{}, velocity);
@@ -76,7 +74,7 @@ struct Drive {
 using canopen::Composition;
 using WithoutStorage = canopen::without<canopen::part::storage>;
 using WithoutStorageAndLss = canopen::without<canopen::part::storage, canopen::part::lss>;
-using StepperParts = Composition<ezd_1136::Device, Stepper>;
+using StepperParts = Composition<ezd_1136::Device>;
 using SpindleParts = Composition<cpd::Device, Spindle, WithoutStorage>;
 using DriveParts = Composition<cpc_tc1::Device, Drive, WithoutStorageAndLss>;
 using InputsParts = Composition<can_2053c::Device, WithoutStorage>;
@@ -89,7 +87,7 @@ void show_identity(demo::Master& master, NodeId node) {
   const auto revision = master.read<RevisionNumber>(node);
   const std::string name = master.read_text<DeviceName>(node);
   fmt::print("   => node {}: \"{}\", vendor {:08X}h, product {:08X}h, revision {:08X}h\n", node.value(), name,
-             vendor.value_or(0), product.value_or(0), revision.value_or(0));
+             vendor.value_or(0), product.value_or(0), revision ? canopen::to_raw(*revision) : 0);
 }
 
 void show_identities(demo::Master& master) {
@@ -122,9 +120,9 @@ void show_identities(demo::Master& master) {
 
 /// Configures the nodes before they start, with one write that a node refuses.
 void configure(demo::Master& master) {
-  master.write<ezd_1136::od::producer_heartbeat_time>(stepper_id, 50);
-  master.write<rk5c::od::tpdo_communication_parameter_1::event_timer>(sensor_id, 20);
-  if (!master.write<rk5c::od::position_values_for_multi_sensor_devices<1>>(sensor_id, 0)) {
+  master.write<ezd_1136::od::producer_heartbeat_time>(stepper_id, 50_ms);
+  master.write<rk5c::od::tpdo_communication_parameter_1::event_timer>(sensor_id, 20_ms);
+  if (!master.write<rk5c::od::position_values_for_multi_sensor_devices<1>>(sensor_id, 0_um)) {
     const auto code = static_cast<std::uint32_t>(master.last_abort());
     fmt::print("   => refused: {:08X}h {}\n", code, canopen::to_text(master.last_abort()));
   }
@@ -198,20 +196,24 @@ int run_demo(demo::CandumpLog& log) {
   bus.run_for(2ms);
 
   heading("PDOs: the master enables the drives, an input changes, the sensor moves, the drive turns");
-  std::int32_t position = 0;
+  using Position = rk5c::od::position_values_for_multi_sensor_devices<1>;
+  Position::type position{};
   master.on_tpdo(sensor_id, 1,
-                 [&position](const canopen::Frame& frame) { position = rk5c::Tpdo1::get<0>(frame.data); });
-  for (const std::uint16_t controlword : std::array<std::uint16_t, 3>{0x06, 0x07, 0x0F}) {
-    master.send_rpdo<cpd::Rpdo1>(spindle_id, 1, cpd::Rpdo1::pack(controlword));
-    master.send_rpdo<cpc_tc1::Rpdo1>(drive_id, 1, cpc_tc1::Rpdo1::pack(controlword));
+                 [&position](const canopen::Frame& frame) { position = rk5c::Tpdo1::get<Position>(frame.data); });
+  using Word = cpc_tc1::od::controlword::type;
+  using command = Word::command_value;
+  for (const command step : {command::shutdown, command::switch_on, command::enable_operation}) {
+    const auto word = canopen::raw(Word{}.command(step).raw());  // of both drives
+    master.send_rpdo<cpd::Rpdo1>(spindle_id, 1, cpd::Rpdo1::pack(word));
+    master.send_rpdo<cpc_tc1::Rpdo1>(drive_id, 1, cpc_tc1::Rpdo1::pack(word));
     bus.run_for(2ms);
   }
-  inputs.set<can_2053c::od::read_input_8_bit<1>>(0b0000'0101);
-  sensor.set<rk5c::od::position_values_for_multi_sensor_devices<1>>(123'456);
-  sensor.set<rk5c::od::speed_value<1>>(-250);
+  inputs.modify(can_2053c::od::read_input_8_bit<1>{}, [](auto& lines) { lines.di0(true).di2(true); });
+  sensor.set<rk5c::od::position_values_for_multi_sensor_devices<1>>(12.3456_m);
+  sensor.set<rk5c::od::speed_value<1>>(-0.25_m_per_s);
   bus.run_for(20ms);
-  fmt::print("   => the master has got the position {}\n", position);
-  master.send_rpdo<ezd_1136::Rpdo2>(stepper_id, 2, ezd_1136::Rpdo2::pack(position, 4'000));
+  fmt::print("   => the master has got the position {} m\n", position.in<canopen::unit::metre>());
+  master.send_rpdo<ezd_1136::Rpdo2>(stepper_id, 2, ezd_1136::Rpdo2::pack(canopen::raw(position.raw()), 40_rev_per_s));
   bus.run_for(10ms);
 
   heading("the master stops all nodes: heartbeats go on, PDOs do not");
@@ -220,9 +222,10 @@ int run_demo(demo::CandumpLog& log) {
   fmt::print("\n{} frames, {} nodes booted, bus time {:.1f} ms\n", trace.frames(), master.booted().size(),
              bus.now().since_start().count() / 1000.0);
 
-  const bool as_wanted = master.booted().size() == 5 && position == 123'456 &&
-                         stepper.get<ezd_1136::od::target_position>() == 123'456 &&
-                         drive.get<cpc_tc1::od::statusword>() == 0x0237 && spindle.get<cpd::od::statusword>() == 0x0237;
+  const bool as_wanted = master.booted().size() == 5 && position == 12.3456_m &&
+                         stepper.get<ezd_1136::od::target_position>() == 123'456_inc &&
+                         drive.get<cpc_tc1::od::statusword>().operation_enabled() &&
+                         spindle.get<cpd::od::statusword>().operation_enabled();
   heading("PDO layouts of the eight devices");
   print_all_layouts();
   if (!as_wanted) fmt::print(stderr, "demo: the network did not end as it should\n");

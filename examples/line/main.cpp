@@ -9,12 +9,14 @@
 
 namespace {
 
+using namespace canopen::literals;
+
 void run(const char* address) {
   canopen::HostBus bus{address};
   canopen::Plant<line::Network, canopen::HostBus> plant{bus};
-  plant.on(line::signals::inputs::read_input_8_bit_1{}, [&plant](std::uint8_t levels) {
-    const bool stands_still = plant.encoder.speed_value_1() == 0;
-    plant.outputs.write_output_8_bit_1(stands_still ? levels : std::uint8_t{0});
+  plant.on(line::signals::inputs::read_input_8_bit_1{}, [&plant](auto levels) {
+    const bool stands_still = plant.encoder.speed_value_1() == 0_mm_per_s;
+    plant.outputs.write_output_8_bit_1(canopen::raw(stands_still ? levels.raw() : std::uint8_t{0}));
   });
   plant.on_booted = [](const canopen::PlantNode& node) {
     std::printf("%.*s: booted\n", static_cast<int>(node.name.size()), node.name.data());

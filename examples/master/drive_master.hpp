@@ -35,14 +35,19 @@ class DriveMaster {
   [[nodiscard]] std::optional<std::int32_t> position() const { return position_; }
 
   [[nodiscard]] canopen::Result<void> switch_on() {
-    if (const auto sent = drive_.template send<cpc_tc1::Rpdo1>(std::uint16_t{0x06}); !sent) return sent;
+    using command = Controlword::command_value;
+    if (const auto sent = drive_.template send<cpc_tc1::Rpdo1>(Controlword{}.command(command::shutdown)); !sent)
+      return sent;
     const auto status = drive_.template read<cpc_tc1::od::statusword>();
     if (!status) return status.abort_code();
-    log_("statusword " + std::to_string(*status));
+    log_(status->ready_to_switch_on() ? "ready to switch on" : "not ready to switch on");
     return canopen::ok;
   }
 
  private:
+  using Controlword = cpc_tc1::od::controlword::type;
+  using Statusword = cpc_tc1::od::statusword::type;
+
   [[nodiscard]] static std::vector<canopen::NmtSlave> network_list() {
     using namespace canopen::slave_assignment;
     canopen::NmtSlave drive{canopen::NodeId{5}, listed | boot | mandatory};
@@ -53,12 +58,13 @@ class DriveMaster {
   }
 
   [[nodiscard]] canopen::Result<void> configure() {
-    return drive_.template write<cpc_tc1::od::tpdo_communication_parameter_2::event_timer>(20);
+    using namespace canopen::literals;
+    return drive_.template write<cpc_tc1::od::tpdo_communication_parameter_2::event_timer>(20_ms);
   }
 
   void listen() {
-    const canopen::Result<void> done = drive_.template on_pdo<cpc_tc1::Tpdo2>(
-        [this](std::uint16_t /*statusword*/, std::int32_t position) { position_ = position; });
+    const canopen::Result<void> done =
+        drive_.template on_pdo<cpc_tc1::Tpdo2>([this](Statusword, std::int32_t position) { position_ = position; });
     if (!done) log_("no TPDO 2: " + std::string{to_text(done.abort_code())});
   }
 

@@ -56,6 +56,7 @@ class PlantMaster {
 
  private:
   static constexpr std::uint8_t life_time_factor = 3;
+  static constexpr std::uint8_t all_lines = 0xFF;
   static constexpr std::size_t nodes = 4;
 
   /// The guard time in ms.
@@ -97,23 +98,24 @@ class PlantMaster {
 
   /// Output modules set their outputs to 0 if the master is lost. Input modules send their values by an event timer.
   [[nodiscard]] canopen::Result<void> configure(canopen::NodeId node_id) {
+    using namespace canopen::literals;
     switch (node_id.value()) {
       case 1:
         return all({guarded<can_2057c::Device, can_2057c::od::guard_time, can_2057c::od::life_time_factor>(outputs_),
-                    outputs_.template write<can_2057c::od::error_mode_output_8_bit<1>>(0xFF),
-                    outputs_.template write<can_2057c::od::error_mode_output_8_bit<2>>(0xFF)});
-      case 2: return inputs_.template write<can_2053c::od::tpdo_communication_parameter_1::event_timer>(500);
+                    outputs_.template write<can_2057c::od::error_mode_output_8_bit<1>>(canopen::raw(all_lines)),
+                    outputs_.template write<can_2057c::od::error_mode_output_8_bit<2>>(canopen::raw(all_lines))});
+      case 2: return inputs_.template write<can_2053c::od::tpdo_communication_parameter_1::event_timer>(500_ms);
       case 3:
         return guarded<can_2024c::Device, can_2024c::od::guard_time, can_2024c::od::life_time_factor>(
             analogue_outputs_);
-      case 4: return analogue_inputs_.template write<can_2017c::od::tpdo_communication_parameter_2::event_timer>(50);
+      case 4: return analogue_inputs_.template write<can_2017c::od::tpdo_communication_parameter_2::event_timer>(50_ms);
       default: return canopen::ok;
     }
   }
   template <class Device, class GuardTime, class LifeTimeFactor>
   [[nodiscard]] canopen::Result<void> guarded(canopen::MasterRemote<Device, B>& node) const {
-    return all(
-        {node.template write<GuardTime>(guard_time(cycle_)), node.template write<LifeTimeFactor>(life_time_factor)});
+    return all({node.template write<GuardTime>(canopen::raw(guard_time(cycle_))),
+                node.template write<LifeTimeFactor>(life_time_factor)});
   }
   /// Returns the first failure of several transfers.
   [[nodiscard]] static canopen::Result<void> all(std::initializer_list<canopen::Result<void>> results) {
@@ -125,11 +127,10 @@ class PlantMaster {
 
   void listen() {
     listening_ = static_cast<bool>(all({
-        inputs_.template on_pdo<can_2053c::Tpdo1>([this](std::uint8_t low, std::uint8_t high) {
-          read_.digital = static_cast<std::uint16_t>(low | high << 8);
-        }),
+        inputs_.template on_pdo<can_2053c::Tpdo1>(
+            [this](auto low, auto high) { read_.digital = static_cast<std::uint16_t>(low.raw() | high.raw() << 8); }),
         analogue_inputs_.template on_pdo<can_2017c::Tpdo2>(
-            [this](std::int16_t first, std::int16_t, std::int16_t, std::int16_t) { read_.analogue = first; }),
+            [this](auto first, auto, auto, auto) { read_.analogue = first.raw(); }),
     }));
     if (!listening_) log_("the PDOs of the inputs cannot be read");
   }
@@ -147,6 +148,7 @@ class PlantMaster {
 
   // Running
 
+  /// Numbers of the modules, whose inputs and outputs are wired to each other and have the same scale.
   struct Channels {
     std::uint16_t digital = 0;
     std::int16_t analogue = 0;
@@ -154,14 +156,14 @@ class PlantMaster {
   };
 
   void write_outputs() {
+    constexpr auto none = canopen::raw(std::int16_t{0});
     Channels next = written_.value_or(Channels{});
     next.digital = static_cast<std::uint16_t>(next.digital + 1);
     next.analogue = static_cast<std::int16_t>(next.analogue >= 16'000 ? -16'000 : next.analogue + 1'000);
     const auto sent = all({
-        outputs_.template send<can_2057c::Rpdo1>(static_cast<std::uint8_t>(next.digital),
-                                                 static_cast<std::uint8_t>(next.digital >> 8)),
-        analogue_outputs_.template send<can_2024c::Rpdo2>(next.analogue, std::int16_t{0}, std::int16_t{0},
-                                                          std::int16_t{0}),
+        outputs_.template send<can_2057c::Rpdo1>(canopen::raw(static_cast<std::uint8_t>(next.digital)),
+                                                 canopen::raw(static_cast<std::uint8_t>(next.digital >> 8))),
+        analogue_outputs_.template send<can_2024c::Rpdo2>(canopen::raw(next.analogue), none, none, none),
     });
     if (sent) written_ = next;
   }

@@ -13,15 +13,15 @@ class EightDevices {
   explicit EightDevices(B& bus) : plant{bus} {
     namespace signals = eight_devices::signals;
     plant.on(signals::digital_inputs::read_input_8_bit_1{},
-             [this](std::uint8_t levels) { plant.digital_outputs.write_output_8_bit_1(levels); });
+             [this](auto levels) { plant.digital_outputs.write_output_8_bit_1(canopen::raw(levels.raw())); });
     plant.on(signals::digital_inputs::read_input_8_bit_2{},
-             [this](std::uint8_t levels) { plant.digital_outputs.write_output_8_bit_2(levels); });
+             [this](auto levels) { plant.digital_outputs.write_output_8_bit_2(canopen::raw(levels.raw())); });
     plant.on(signals::analog_inputs::read_analogue_input_16_bit_1{},
-             [this](std::int16_t level) { plant.analog_outputs.write_analogue_output_16_bit_1(level); });
+             [this](auto level) { plant.analog_outputs.write_analogue_output_16_bit_1(level); });
     plant.on(signals::sensor::speed_value_1{},
-             [this](std::int16_t speed) { plant.analog_outputs.write_analogue_output_16_bit_2(speed); });
-    plant.on(signals::axis::position_actual_value{}, [this](std::int32_t position) {
-      plant.analog_outputs.write_analogue_output_16_bit_3(level_of(position));
+             [this](auto speed) { plant.analog_outputs.write_analogue_output_16_bit_2(canopen::raw(speed.raw())); });
+    plant.on(signals::axis::position_actual_value{}, [this](auto position) {
+      plant.analog_outputs.write_analogue_output_16_bit_3(canopen::raw(level_of(canopen::to_raw(position))));
     });
   }
 

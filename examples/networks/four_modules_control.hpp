@@ -12,11 +12,11 @@ class FourModules {
     namespace digital = four_modules::signals::digital_inputs;
     namespace analog = four_modules::signals::analog_inputs;
     plant.on(digital::read_input_8_bit_1{},
-             [this](std::uint8_t levels) { plant.digital_outputs.write_output_8_bit_1(levels); });
+             [this](auto levels) { plant.digital_outputs.write_output_8_bit_1(canopen::raw(levels.raw())); });
     plant.on(digital::read_input_8_bit_2{},
-             [this](std::uint8_t levels) { plant.digital_outputs.write_output_8_bit_2(levels); });
+             [this](auto levels) { plant.digital_outputs.write_output_8_bit_2(canopen::raw(levels.raw())); });
     plant.on(analog::read_analogue_input_16_bit_1{},
-             [this](std::int16_t level) { plant.analog_outputs.write_analogue_output_16_bit_1(level); });
+             [this](auto level) { plant.analog_outputs.write_analogue_output_16_bit_1(level); });
   }
 
   canopen::Plant<four_modules::Network, B> plant;

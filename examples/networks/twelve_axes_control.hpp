@@ -24,8 +24,8 @@ class TwelveAxes {
 
   /// The target of the first axis and the profile velocity of all, in the units of the drives.
   void move_to(std::int32_t target, std::uint32_t velocity) {
-    plant.axis1.target_position(target);
-    for_each_axis([velocity](auto& axis) { axis.profile_velocity(velocity); });
+    plant.axis1.target_position(canopen::raw(target));
+    for_each_axis([velocity](auto& axis) { axis.profile_velocity(canopen::raw(velocity)); });
   }
 
   canopen::Plant<twelve_axes::Network, B> plant;
@@ -33,7 +33,7 @@ class TwelveAxes {
  private:
   template <class Axis, class Leader>
   void follow(Axis& axis, Leader leader) {
-    plant.on(leader, [&axis](std::int32_t position) { axis.target_position(position); });
+    plant.on(leader, [&axis](auto position) { axis.target_position(position); });
   }
 
   template <class Visit>

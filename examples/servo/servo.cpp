@@ -3,13 +3,26 @@
 #include <canopen/host/virtual_bus_port.hpp>
 #include <canopen/master.hpp>
 #include <cpc_tc1/device.hpp>
-#include <cstdint>
+#include <cpc_tc1/meaning_text.hpp>
 #include <cstdio>
+#include <string>
 
 #include "motor.hpp"
 
 namespace od = cpc_tc1::od;
-using canopen::cia402::State;
+using command = od::controlword::type::command_value;
+using state = od::statusword::type::state_value;
+
+/// A command to the drive, and the state that it leads to.
+struct Step {
+  command given;
+  state reached;
+};
+constexpr Step steps[] = {
+    {command::shutdown, state::ready_to_switch_on},
+    {command::switch_on, state::switched_on},
+    {command::enable_operation, state::operation_enabled},
+};
 
 int main() {
   canopen::VirtualBus bus{500'000};
@@ -23,17 +36,19 @@ int main() {
   auto remote = master.remote<cpc_tc1::Device>(canopen::NodeId{5});
   if (!master.command(canopen::NmtCommand::start, canopen::NodeId{5})) return 1;
 
-  for (const int controlword : {0x06, 0x07, 0x0F}) {  // shutdown, switch on, enable operation
-    if (!remote.write(od::controlword{}, controlword)) return 2;
+  for (const auto& [given, reached] : steps) {
+    if (!remote.write(od::controlword{}, od::controlword::type{}.command(given))) return 2;
     const auto status = remote.read(od::statusword{});
-    std::printf("controlword %02Xh: statusword %04Xh\n", unsigned(controlword), unsigned{status.value()});
+    if (!status || !status->is(reached)) return 3;
+    std::printf("%s: %s\n", std::string{to_text(given)}.c_str(), std::string{to_text(reached)}.c_str());
   }
-  if (drive.drive().state() != State::operation_enabled || !drive.axis().powered) return 3;
+  if (!drive.axis().powered) return 4;
 
   drive.fault(0x2310, canopen::ErrorRegister::current, bus.now());  // the hardware reports an overcurrent
   master.poll(canopen::from_milliseconds(10));
   const auto status = remote.read(od::statusword{});
-  std::printf("overcurrent: statusword %04Xh, 1001h %02Xh\n", unsigned{status.value()},
-              unsigned{remote.read(od::error_register{}).value()});
-  return drive.drive().state() == State::fault && !drive.axis().powered ? 0 : 4;
+  const auto errors = remote.read(od::error_register{});
+  if (!status || !errors) return 5;
+  std::printf("overcurrent: fault %d, current error %d\n", status->fault(), errors->current());
+  return status->is(state::fault) && errors->current() && !drive.axis().powered ? 0 : 6;
 }

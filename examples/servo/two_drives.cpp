@@ -12,6 +12,7 @@
 namespace od = cpc_tc1::od;
 using canopen::NodeId;
 using Drive = canopen::cia402::DriveNode<ServoParts, canopen::VirtualBus::Endpoint, Motor>;
+using command = od::controlword::type::command_value;
 
 int main() {
   canopen::VirtualBus bus{500'000};
@@ -41,9 +42,9 @@ int main() {
   std::map<int, std::int32_t> positions;
   for (const int id : {5, 6}) {
     auto drive = master.remote<cpc_tc1::Device>(NodeId{static_cast<std::uint8_t>(id)});
-    const auto listening =
-        drive.on_pdo<cpc_tc1::Tpdo2>([&positions, id](auto, std::int32_t position) { positions[id] = position; });
-    if (!listening || !drive.write<od::controlword, 6>()) return 1;
+    const auto listening = drive.on_pdo<cpc_tc1::Tpdo2>(
+        [&positions, id](auto /*statusword*/, std::int32_t position) { positions[id] = position; });
+    if (!listening || !drive.write(od::controlword{}, od::controlword::type{}.command(command::shutdown))) return 1;
   }
   first.axis().set_position(1'000);
   second.fault(0x2310, canopen::ErrorRegister::current, bus.now());

@@ -15,17 +15,20 @@ namespace {
 std::atomic<bool> stop{false};
 
 struct Drive {
-  /// The CiA 402 statusword after shutdown (06h), switch on (07h) and enable operation (0Fh).
-  static std::uint16_t statusword_after(std::uint16_t controlword) {
-    switch (controlword & 0x0F) {
-      case 0x06: return 0x0231;
-      case 0x07: return 0x0233;
-      case 0x0F: return 0x0237;
-      default: return 0x0250;
-    }
+  using command = od::controlword::type::command_value;
+  using state = od::statusword::type::state_value;
+
+  /// The state after a command, from any state. canopen::cia402::DriveNode has all transitions
+  /// (docs/profiles/drive.md).
+  static state state_after(od::controlword::type word) {
+    if (word.is(command::shutdown)) return state::ready_to_switch_on;
+    if (word.is(command::switch_on)) return state::switched_on;
+    if (word.is(command::enable_operation)) return state::operation_enabled;
+    return state::switch_on_disabled;
   }
-  void written(od::controlword, std::uint16_t controlword, auto& node) {
-    node.set(od::statusword{}, statusword_after(controlword));
+  void written(od::controlword, od::controlword::type word, auto& node) {
+    const auto status = od::statusword::type{}.state(state_after(word)).voltage_enabled(true).remote(true);
+    node.set(od::statusword{}, status);
   }
 };
 
