@@ -333,7 +333,7 @@ def page(bench: Bench) -> str:
         sizes=beside_marks("bytes", sizes(bench)), whole_frames=beside_marks("instructions", whole_frames(bench)),
         parts=table("instructions", "edsc", rows=[(what, f"{count:g}") for what, count in parts(bench)]),
         services=with_bytes("service", services(bench)), objects=with_bytes("object", objects(bench)),
-        twins="\n".join(twins.table(bench.runtime)))
+        twins="\n".join(twins.table(bench.edsc, bench.runtime)))
 
 
 def main() -> None:

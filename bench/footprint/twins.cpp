@@ -1,9 +1,10 @@
-/// The same work with typed values and by hand, with masks and numbers, as pairs of functions: `typed_X` and `hand_X`.
-/// bench/footprint/measure.py compares their bytes and instructions.
+/// The same work with the typed values of a generated header and by hand, with masks and numbers, as pairs of
+/// functions: `typed_X` and `hand_X`. bench/footprint/measure.py compares their bytes and instructions.
 #include "twins.hpp"
 
 using twins::Values;
 using namespace canopen::literals;
+namespace od = twins::od;
 
 void first();
 void second();
@@ -13,14 +14,22 @@ namespace {
 
 using canopen::from_raw;
 using canopen::to_raw;
+using mode = od::modes_of_operation::value;
 
-twins::word word_of(const Values& values) { return from_raw<twins::word>(values.word); }
-twins::mode mode_of(const Values& values) { return from_raw<twins::mode>(values.mode); }
-twins::temperature temperature_of(const Values& values) { return from_raw<twins::temperature>(values.temperature); }
-twins::position position_of(const Values& values) { return from_raw<twins::position>(values.position); }
+od::statusword::type status_of(const Values& values) { return from_raw<od::statusword::type>(values.status); }
+od::controlword::type control_of(const Values& values) { return from_raw<od::controlword::type>(values.control); }
+od::door::type door_of(const Values& values) { return from_raw<od::door::type>(values.door); }
+od::modes_of_operation::type mode_of(const Values& values) {
+  return from_raw<od::modes_of_operation::type>(values.mode);
+}
+od::temperature::type temperature_of(const Values& values) {
+  return from_raw<od::temperature::type>(values.temperature);
+}
+od::target_position::type position_of(const Values& values) {
+  return from_raw<od::target_position::type>(values.position);
+}
 
-using Pdo = canopen::PdoLayout<twins::Typed<0x6041, twins::word>, twins::Typed<0x2001, twins::temperature>,
-                               twins::Typed<0x6061, twins::mode>>;
+using Pdo = canopen::PdoLayout<od::statusword, od::temperature, od::modes_of_operation_display>;
 using PdoByHand = canopen::PdoLayout<twins::Numbers<0x6041, std::uint16_t>, twins::Numbers<0x2001, std::int16_t>,
                                      twins::Numbers<0x6061, std::int8_t>>;
 
@@ -29,32 +38,32 @@ using PdoByHand = canopen::PdoLayout<twins::Numbers<0x6041, std::uint16_t>, twin
 extern "C" {
 
 void typed_flag(Values& values) {
-  if (word_of(values).fault()) first();
+  if (status_of(values).fault()) first();
 }
 void hand_flag(Values& values) {
-  if ((values.word & 0x0008) != 0) first();
+  if ((values.status & 0x0008) != 0) first();
 }
 
 void typed_two_flags(Values& values) {
-  if (word_of(values).all(twins::word{}.ready(true).enabled(true))) first();
+  if (status_of(values).all(od::statusword::type{}.ready_to_switch_on(true).operation_enabled(true))) first();
 }
 void hand_two_flags(Values& values) {
-  if ((values.word & 0x0005) == 0x0005) first();
+  if ((values.status & 0x0005) == 0x0005) first();
 }
 
-int typed_field(Values& values) { return word_of(values).zone(); }
-int hand_field(Values& values) { return (values.word >> 4) & 0xF; }
+int typed_field(Values& values) { return door_of(values).zone(); }
+int hand_field(Values& values) { return (values.door >> 4) & 0xF; }
 
-void typed_modify(Values& values) { values.word = to_raw(word_of(values).enabled(true).halt(false)); }
-void hand_modify(Values& values) { values.word = static_cast<std::uint16_t>((values.word | 0x0004) & ~0x0100); }
+void typed_modify(Values& values) { values.control = to_raw(control_of(values).quick_stop(true).halt(false)); }
+void hand_modify(Values& values) { values.control = static_cast<std::uint16_t>((values.control | 0x0004) & ~0x0100); }
 
-void typed_set_field(Values& values) { values.word = to_raw(word_of(values).zone(9)); }
-void hand_set_field(Values& values) { values.word = static_cast<std::uint16_t>((values.word & ~0x00F0) | 0x0090); }
+void typed_set_field(Values& values) { values.door = to_raw(door_of(values).zone(9)); }
+void hand_set_field(Values& values) { values.door = static_cast<std::uint8_t>((values.door & ~0xF0) | 0x90); }
 
 void typed_enumeration(Values& values) {
   switch (mode_of(values)) {
-    case twins::mode::profile_position: return first();
-    case twins::mode::homing: return second();
+    case mode::profile_position: return first();
+    case mode::homing: return second();
     default: return other();
   }
 }
@@ -66,7 +75,7 @@ void hand_enumeration(Values& values) {
   }
 }
 
-void typed_set_enumeration(Values& values) { values.mode = to_raw(twins::mode::homing); }
+void typed_set_enumeration(Values& values) { values.mode = to_raw(mode::homing); }
 void hand_set_enumeration(Values& values) { values.mode = 6; }
 
 void typed_compare(Values& values) {
@@ -83,11 +92,11 @@ void hand_compare_in_kelvin(Values& values) {
   if (values.temperature <= 268) first();
 }
 
-void typed_set_constant(Values& values) { values.temperature = to_raw(twins::temperature{21.5_degC}); }
+void typed_set_constant(Values& values) { values.temperature = to_raw(od::temperature::type{21.5_degC}); }
 void hand_set_constant(Values& values) { values.temperature = 215; }
 
 void typed_add(Values& values) {
-  values.temperature = to_raw(twins::temperature::clamped(temperature_of(values) + 0.5_K));
+  values.temperature = to_raw(od::temperature::type::clamped(temperature_of(values) + 0.5_K));
 }
 void hand_add(Values& values) {
   const int sum = values.temperature + 5;
@@ -107,19 +116,19 @@ int hand_convert_wide(Values& values) {
 }
 
 void typed_pack(Values& values, canopen::Frame& frame) {
-  Pdo::pack_into(frame, word_of(values), temperature_of(values), mode_of(values));
+  Pdo::pack_into(frame, status_of(values), temperature_of(values), mode_of(values));
 }
 void hand_pack(Values& values, canopen::Frame& frame) {
-  PdoByHand::pack_into(frame, values.word, values.temperature, values.mode);
+  PdoByHand::pack_into(frame, values.status, values.temperature, values.mode);
 }
 
 void typed_unpack(Values& values, const canopen::Frame& frame) {
-  values.word = to_raw(Pdo::get<0>(frame));
+  values.status = to_raw(Pdo::get<0>(frame));
   values.temperature = to_raw(Pdo::get<1>(frame));
   values.mode = to_raw(Pdo::get<2>(frame));
 }
 void hand_unpack(Values& values, const canopen::Frame& frame) {
-  values.word = PdoByHand::get<0>(frame);
+  values.status = PdoByHand::get<0>(frame);
   values.temperature = PdoByHand::get<1>(frame);
   values.mode = PdoByHand::get<2>(frame);
 }

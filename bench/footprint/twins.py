@@ -1,4 +1,5 @@
-"""Compares typed values with masks and numbers by hand: bytes and instructions of each pair of functions of twins.cpp."""
+"""Compares typed values with masks and numbers by hand: bytes and instructions of each pair of functions of twins.cpp. Its types are
+those of a generated header."""
 
 from __future__ import annotations
 
@@ -9,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
+SHEET = HERE.parents[1] / "tests/fixtures/typed_drive.eds"
 COMPILER = ("arm-none-eabi-g++", "-std=c++20", "-mthumb", "-ffunction-sections", "-fno-exceptions", "-fno-rtti", "-fno-ipa-icf", "-Wall",
             "-Wextra")
 TARGETS = {
@@ -44,11 +46,12 @@ class Size:
     instructions: int
 
 
-def sizes(runtime: Path, flags: tuple[str, ...]) -> dict[str, Size]:
+def sizes(edsc: Path, runtime: Path, flags: tuple[str, ...]) -> dict[str, Size]:
     """Those of each function, with its constants."""
     with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([edsc, "generate", SHEET, "-o", folder], check=True, capture_output=True)
         target = Path(folder) / "twins.o"
-        subprocess.run([*COMPILER, *flags, f"-I{runtime}", "-c", HERE / "twins.cpp", "-o", target], check=True)
+        subprocess.run([*COMPILER, *flags, f"-I{runtime}", f"-I{folder}", "-c", HERE / "twins.cpp", "-o", target], check=True)
         text = subprocess.run(["arm-none-eabi-objdump", "-d", target], check=True, capture_output=True, text=True).stdout
     found: dict[str, Size] = {}
     name = ""
@@ -69,9 +72,9 @@ def cell(typed: Size, by_hand: Size) -> str:
     return f"{typed.bytes}, {typed.instructions}; by hand {by_hand.bytes}, {by_hand.instructions}"
 
 
-def table(runtime: Path) -> list[str]:
+def table(edsc: Path, runtime: Path) -> list[str]:
     """Rows of Markdown: bytes and instructions. Where a twin differs, both."""
-    of_target = {name: sizes(runtime, flags) for name, flags in TARGETS.items()}
+    of_target = {name: sizes(edsc, runtime, flags) for name, flags in TARGETS.items()}
     rows = ["| bytes, instructions | " + " | ".join(TARGETS) + " |", "|---|" + "--:|" * len(TARGETS)]
     for key, text in ROWS.items():
         cells = [cell(found[f"typed_{key}"], found[f"hand_{key}"]) for found in of_target.values()]

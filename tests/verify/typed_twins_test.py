@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Typed values need no more flash and instructions than masks and numbers by hand.
 
-    typed_twins_test.py SOURCE_DIR
+    typed_twins_test.py SOURCE_DIR EDSC
 
 Compiles bench/footprint/twins.cpp for a Cortex-M0+ and a Cortex-M4, at -Os and at -O2, and compares each pair of functions.
 """
@@ -14,6 +14,7 @@ import unittest
 from pathlib import Path
 
 SOURCE = Path(sys.argv.pop(1)).resolve()
+EDSC = Path(sys.argv.pop(1)).resolve()
 sys.path.insert(0, str(SOURCE / "bench/footprint"))
 import twins  # noqa: E402
 
@@ -26,7 +27,7 @@ class TypedTwins(unittest.TestCase):
         if shutil.which(twins.COMPILER[0]) is None:
             self.skipTest("no compiler for Arm")
         for target, flags in twins.TARGETS.items():
-            found = twins.sizes(SOURCE / "runtime/include", flags)
+            found = twins.sizes(EDSC, SOURCE / "runtime/include", flags)
             for name in twins.ROWS:
                 typed, by_hand = found[f"typed_{name}"], found[f"hand_{name}"]
                 with self.subTest(target=target, name=name):
