@@ -139,6 +139,16 @@ OutputFile render_dbc(const Settings& settings, const NamedDevice& named) {
   return {settings.dbc, std::move(dbc.text)};
 }
 
+/// A note on the value of an option that the next version does not have.
+void print_removed_option(const Settings& settings, const LoadedDevice& loaded) {
+  if (loaded.options.typed_values || settings.output.empty() || settings.target != targets().front().name) return;
+  print_visibly(
+      stderr,
+      "{}: note: \"typed_values\": false will be removed in the next version; values with a meaning then have "
+      "a type of their own\n",
+      loaded.options_source->name());
+}
+
 /// A hint, if `--keep-going` would make warnings of all errors.
 constexpr const char* keep_going_hint =
     "edsc: nothing was generated. For a file that you cannot change, --keep-going (KEEP_GOING in CMake) generates the rest of the "
@@ -178,6 +188,7 @@ int generate(const Settings& settings) {
   if (settings.load.keep_going || diagnostics.any_silenced() || !lists_all(diagnostics)) {
     fmt::print(stderr, "{}", left_out_text(left_out));
   }
+  print_removed_option(settings, *loaded);
   write_all_files(files, inputs);
   if (settings.verbose) {
     for (const OutputFile& file : files) print_visibly(stdout, "{}\n", file.path);

@@ -2,6 +2,8 @@
 #ifndef EDSC_CAN_2017C_DICTIONARY_HPP
 #define EDSC_CAN_2017C_DICTIONARY_HPP
 
+#include <canopen/base/constant_errors.hpp>
+//
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -12,29 +14,41 @@
 #include <canopen/od/dictionary.hpp>
 #include <canopen/od/object.hpp>
 #include <canopen/od/object_list.hpp>
-
+#include <canopen/od/quantity.hpp>
+#include "meaning.hpp"
 namespace can_2017c {
 
 /// The entries of the object dictionary as types: index, sub-index, C++ type, access and mapping, checked at each use.
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  ro                                          can-2017c.eds:75
+/// Bits: 0..15 device_profile_number, 16 digital_input, 17 digital_output, 18 analogue_input, 19 analogue_output,
+///   20 counter, 21 pwm, 22 digital_input_output, 24..31 specific_functionality.
+/// Manual: 6.1, note 1.
 struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::device_type;
   static constexpr std::uint16_t index = 0x1000;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
 };
 
 /// Error register.  1001h:00  UNSIGNED8  ro                                        can-2017c.eds:84
+/// Bits: 0 generic_error, 1 current, 2 voltage, 3 temperature, 4 communication_error, 5 device_profile_specific,
+///   7 manufacturer_specific.
+/// Manual: 5.3.2, error register.
 struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  using type = meaning::error_register;
   static constexpr std::uint16_t index = 0x1001;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error register";
 };
 
 /// Pre-defined error field.  1003h:01..05  UNSIGNED32  ro                          can-2017c.eds:213
+/// Bits: 0..15 error_code, 16..31 manufacturer_specific_error_field.
+/// Manual: 5.3.2.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
+  using type = meaning::pre_defined_error_field;
   static_assert(SubIndex <= 5 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..5");
   static constexpr auto name = "Pre-defined error field";
 };
@@ -46,7 +60,10 @@ struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::
 };
 
 /// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          can-2017c.eds:257
+/// Bits: 0..28 can_id, 29 extended_frame, 30 generates_sync.
+/// Manual: 6.1, note 3.
 struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_sync;
   static constexpr std::uint16_t index = 0x1005;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
@@ -74,12 +91,15 @@ struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleStri
 };
 
 /// Guard time.  100Ch:00  UNSIGNED16  rw                                           can-2017c.eds:296
+/// Unit ms: 0 ms to 65535 ms; default value 0 ms.
+/// Manual: 5.4.2.
 struct guard_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x100C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Guard time";
-  static constexpr type low_limit = 0;
-  static constexpr type high_limit = 65535;
+  static constexpr type low_limit{canopen::raw(std::uint16_t{0})};
+  static constexpr type high_limit{canopen::raw(std::uint16_t{65535})};
 };
 
 /// Life time factor.  100Dh:00  UNSIGNED8  rw                                      can-2017c.eds:308
@@ -90,8 +110,14 @@ struct life_time_factor : canopen::TypedObject<std::uint8_t, canopen::Access::rw
 };
 
 /// Store parameters.  1010h:01..01  UNSIGNED32  rw                                 can-2017c.eds:331
+/// Values: 0 does_not_save, 1 saves_on_command, 2 saves_autonomously, 3 saves_on_command_and_autonomously,
+///   1702257011 save.
+/// A read value has the abilities of the device; the written value is the signature.
+/// See CiA 301, 7.5.2.13.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
+  using type = meaning::store_parameters;
+  using value = type;
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..1");
   static constexpr auto name = "Store parameters";
 };
@@ -106,8 +132,13 @@ struct store_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access:
 using store_parameters_save_all_parameters = store_parameters<1>;
 
 /// Restore default parameters.  1011h:01..01  UNSIGNED32  rw                       can-2017c.eds:354
+/// Values: 0 does_not_restore, 1 restores_on_command, 1684107116 load.
+/// A read value has the abilities of the device; the written value is the signature.
+/// See CiA 301, 7.5.2.14.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
+  using type = meaning::restore_default_parameters;
+  using value = type;
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..1");
   static constexpr auto name = "Restore default parameters";
 };
@@ -122,14 +153,20 @@ struct restore_default_parameters<0> : canopen::TypedObject<std::uint8_t, canope
 using restore_default_parameters_restore_all_default_parameters = restore_default_parameters<1>;
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          can-2017c.eds:365
+/// Bits: 0..28 can_id, 29 extended_frame, 31 not_valid.
+/// Manual: 5.3.1.
 struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_emcy;
   static constexpr std::uint16_t index = 0x1014;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
 /// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              can-2017c.eds:374
+/// Unit ms: default value 0 ms.
+/// Manual: 6.1, note 8.
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Producer heartbeat time";
@@ -156,7 +193,10 @@ struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr auto name = "Product code";
 };
 /// Revision number.  1018h:03  UNSIGNED32  ro                                      can-2017c.eds:123
+/// Bits: 0..15 minor_revision_number, 16..31 major_revision_number.
+/// See CiA 301, 7.5.2.21.
 struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::identity_object_revision_number;
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
@@ -178,13 +218,19 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              can-2017c.eds:397
+/// Bits: 0..28 can_id, 29 extended_frame, 30 dynamic, 31 not_valid.
+/// See CiA 301, 7.5.2.33.
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::sdo_server_parameter_cob_id_client_to_server;
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
 /// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              can-2017c.eds:405
+/// Bits: 0..28 can_id, 29 extended_frame, 30 dynamic, 31 not_valid.
+/// See CiA 301, 7.5.2.33.
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::sdo_server_parameter_cob_id_client_to_server;
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client";
@@ -200,13 +246,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  can-2017c.eds:431
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1400h:02  UNSIGNED8  rw                                     can-2017c.eds:439
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -222,13 +276,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  can-2017c.eds:461
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1401h:02  UNSIGNED8  rw                                     can-2017c.eds:469
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -244,13 +306,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  can-2017c.eds:491
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1402h:02  UNSIGNED8  rw                                     can-2017c.eds:499
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -266,13 +336,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  can-2017c.eds:521
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1403h:02  UNSIGNED8  rw                                     can-2017c.eds:529
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -288,13 +366,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1404h:01  UNSIGNED32  rw                                  can-2017c.eds:551
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1404;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1404h:02  UNSIGNED8  rw                                     can-2017c.eds:559
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1404;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -310,13 +396,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1405h:01  UNSIGNED32  rw                                  can-2017c.eds:583
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1405;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1405h:02  UNSIGNED8  rw                                     can-2017c.eds:591
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1405;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -332,13 +426,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1406h:01  UNSIGNED32  rw                                  can-2017c.eds:613
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1406;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1406h:02  UNSIGNED8  rw                                     can-2017c.eds:621
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1406;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -354,13 +456,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1407h:01  UNSIGNED32  rw                                  can-2017c.eds:643
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1407;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1407h:02  UNSIGNED8  rw                                     can-2017c.eds:651
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1407;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -376,13 +486,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1408h:01  UNSIGNED32  rw                                  can-2017c.eds:673
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1408;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1408h:02  UNSIGNED8  rw                                     can-2017c.eds:681
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1408;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -398,13 +516,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1409h:01  UNSIGNED32  rw                                  can-2017c.eds:703
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1409;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1409h:02  UNSIGNED8  rw                                     can-2017c.eds:711
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1409;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -420,49 +546,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      can-2017c.eds:740
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      can-2017c.eds:748
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      can-2017c.eds:756
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      can-2017c.eds:764
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1600h:05  UNSIGNED32  rw                                      can-2017c.eds:772
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1600h:06  UNSIGNED32  rw                                      can-2017c.eds:780
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1600h:07  UNSIGNED32  rw                                      can-2017c.eds:788
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1600h:08  UNSIGNED32  rw                                      can-2017c.eds:796
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -478,49 +628,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      can-2017c.eds:817
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      can-2017c.eds:825
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      can-2017c.eds:833
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      can-2017c.eds:841
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1601h:05  UNSIGNED32  rw                                      can-2017c.eds:849
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1601h:06  UNSIGNED32  rw                                      can-2017c.eds:857
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1601h:07  UNSIGNED32  rw                                      can-2017c.eds:865
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1601h:08  UNSIGNED32  rw                                      can-2017c.eds:873
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -536,49 +710,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      can-2017c.eds:894
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      can-2017c.eds:902
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      can-2017c.eds:910
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      can-2017c.eds:918
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1602h:05  UNSIGNED32  rw                                      can-2017c.eds:926
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1602h:06  UNSIGNED32  rw                                      can-2017c.eds:934
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1602h:07  UNSIGNED32  rw                                      can-2017c.eds:942
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1602h:08  UNSIGNED32  rw                                      can-2017c.eds:950
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -594,49 +792,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      can-2017c.eds:971
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      can-2017c.eds:979
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      can-2017c.eds:987
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      can-2017c.eds:995
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1603h:05  UNSIGNED32  rw                                      can-2017c.eds:1003
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1603h:06  UNSIGNED32  rw                                      can-2017c.eds:1011
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1603h:07  UNSIGNED32  rw                                      can-2017c.eds:1019
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1603h:08  UNSIGNED32  rw                                      can-2017c.eds:1027
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -652,49 +874,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1604h:01  UNSIGNED32  rw                                      can-2017c.eds:1048
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1604h:02  UNSIGNED32  rw                                      can-2017c.eds:1056
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1604h:03  UNSIGNED32  rw                                      can-2017c.eds:1064
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1604h:04  UNSIGNED32  rw                                      can-2017c.eds:1072
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1604h:05  UNSIGNED32  rw                                      can-2017c.eds:1080
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1604h:06  UNSIGNED32  rw                                      can-2017c.eds:1088
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1604h:07  UNSIGNED32  rw                                      can-2017c.eds:1096
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1604h:08  UNSIGNED32  rw                                      can-2017c.eds:1104
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1604;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -710,49 +956,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1605h:01  UNSIGNED32  rw                                      can-2017c.eds:1125
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1605h:02  UNSIGNED32  rw                                      can-2017c.eds:1133
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1605h:03  UNSIGNED32  rw                                      can-2017c.eds:1141
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1605h:04  UNSIGNED32  rw                                      can-2017c.eds:1149
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1605h:05  UNSIGNED32  rw                                      can-2017c.eds:1157
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1605h:06  UNSIGNED32  rw                                      can-2017c.eds:1165
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1605h:07  UNSIGNED32  rw                                      can-2017c.eds:1173
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1605h:08  UNSIGNED32  rw                                      can-2017c.eds:1181
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1605;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -768,49 +1038,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1606h:01  UNSIGNED32  rw                                      can-2017c.eds:1202
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1606h:02  UNSIGNED32  rw                                      can-2017c.eds:1210
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1606h:03  UNSIGNED32  rw                                      can-2017c.eds:1218
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1606h:04  UNSIGNED32  rw                                      can-2017c.eds:1226
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1606h:05  UNSIGNED32  rw                                      can-2017c.eds:1234
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1606h:06  UNSIGNED32  rw                                      can-2017c.eds:1242
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1606h:07  UNSIGNED32  rw                                      can-2017c.eds:1250
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1606h:08  UNSIGNED32  rw                                      can-2017c.eds:1258
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1606;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -826,49 +1120,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1607h:01  UNSIGNED32  rw                                      can-2017c.eds:1279
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1607h:02  UNSIGNED32  rw                                      can-2017c.eds:1287
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1607h:03  UNSIGNED32  rw                                      can-2017c.eds:1295
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1607h:04  UNSIGNED32  rw                                      can-2017c.eds:1303
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1607h:05  UNSIGNED32  rw                                      can-2017c.eds:1311
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1607h:06  UNSIGNED32  rw                                      can-2017c.eds:1319
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1607h:07  UNSIGNED32  rw                                      can-2017c.eds:1327
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1607h:08  UNSIGNED32  rw                                      can-2017c.eds:1335
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1607;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -884,49 +1202,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1608h:01  UNSIGNED32  rw                                      can-2017c.eds:1356
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1608h:02  UNSIGNED32  rw                                      can-2017c.eds:1364
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1608h:03  UNSIGNED32  rw                                      can-2017c.eds:1372
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1608h:04  UNSIGNED32  rw                                      can-2017c.eds:1380
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1608h:05  UNSIGNED32  rw                                      can-2017c.eds:1388
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1608h:06  UNSIGNED32  rw                                      can-2017c.eds:1396
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1608h:07  UNSIGNED32  rw                                      can-2017c.eds:1404
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1608h:08  UNSIGNED32  rw                                      can-2017c.eds:1412
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1608;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -942,49 +1284,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1609h:01  UNSIGNED32  rw                                      can-2017c.eds:1433
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1609h:02  UNSIGNED32  rw                                      can-2017c.eds:1441
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1609h:03  UNSIGNED32  rw                                      can-2017c.eds:1449
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1609h:04  UNSIGNED32  rw                                      can-2017c.eds:1457
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1609h:05  UNSIGNED32  rw                                      can-2017c.eds:1465
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1609h:06  UNSIGNED32  rw                                      can-2017c.eds:1473
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1609h:07  UNSIGNED32  rw                                      can-2017c.eds:1481
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1609h:08  UNSIGNED32  rw                                      can-2017c.eds:1489
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.36.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1609;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -1000,25 +1366,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  can-2017c.eds:1516
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1800h:02  UNSIGNED8  rw                                     can-2017c.eds:1524
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1800h:03  UNSIGNED16  rw                                         can-2017c.eds:1532
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Inhibit Time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1800h:05  UNSIGNED16  rw                                          can-2017c.eds:1541
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Event Timer.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -1034,25 +1415,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  can-2017c.eds:1564
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1801h:02  UNSIGNED8  rw                                     can-2017c.eds:1572
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1801h:03  UNSIGNED16  rw                                         can-2017c.eds:1580
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Inhibit Time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1801h:05  UNSIGNED16  rw                                          can-2017c.eds:1589
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Event Timer.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -1068,25 +1464,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  can-2017c.eds:1612
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1802h:02  UNSIGNED8  rw                                     can-2017c.eds:1620
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1802h:03  UNSIGNED16  rw                                         can-2017c.eds:1628
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Inhibit Time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1802h:05  UNSIGNED16  rw                                          can-2017c.eds:1637
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Event Timer.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -1102,25 +1513,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  can-2017c.eds:1660
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1803h:02  UNSIGNED8  rw                                     can-2017c.eds:1668
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1803h:03  UNSIGNED16  rw                                         can-2017c.eds:1676
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Inhibit Time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1803h:05  UNSIGNED16  rw                                          can-2017c.eds:1685
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Event Timer.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -1136,25 +1562,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1804h:01  UNSIGNED32  rw                                  can-2017c.eds:1708
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1804h:02  UNSIGNED8  rw                                     can-2017c.eds:1716
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1804h:03  UNSIGNED16  rw                                         can-2017c.eds:1724
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Inhibit Time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1804h:05  UNSIGNED16  rw                                          can-2017c.eds:1733
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Event Timer.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1804;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -1170,25 +1611,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1805h:01  UNSIGNED32  rw                                  can-2017c.eds:1758
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1805h:02  UNSIGNED8  rw                                     can-2017c.eds:1766
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1805h:03  UNSIGNED16  rw                                         can-2017c.eds:1774
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Inhibit Time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1805h:05  UNSIGNED16  rw                                          can-2017c.eds:1783
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Event Timer.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1805;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -1204,25 +1660,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1806h:01  UNSIGNED32  rw                                  can-2017c.eds:1806
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1806h:02  UNSIGNED8  rw                                     can-2017c.eds:1814
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1806h:03  UNSIGNED16  rw                                         can-2017c.eds:1822
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Inhibit Time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1806h:05  UNSIGNED16  rw                                          can-2017c.eds:1831
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Event Timer.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1806;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -1238,25 +1709,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1807h:01  UNSIGNED32  rw                                  can-2017c.eds:1854
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1807h:02  UNSIGNED8  rw                                     can-2017c.eds:1862
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1807h:03  UNSIGNED16  rw                                         can-2017c.eds:1870
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Inhibit Time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1807h:05  UNSIGNED16  rw                                          can-2017c.eds:1879
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Event Timer.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1807;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -1272,25 +1758,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1808h:01  UNSIGNED32  rw                                  can-2017c.eds:1902
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1808h:02  UNSIGNED8  rw                                     can-2017c.eds:1910
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1808h:03  UNSIGNED16  rw                                         can-2017c.eds:1918
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Inhibit Time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1808h:05  UNSIGNED16  rw                                          can-2017c.eds:1927
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Event Timer.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1808;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -1306,25 +1807,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1809h:01  UNSIGNED32  rw                                  can-2017c.eds:1950
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 5.2.1.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1809h:02  UNSIGNED8  rw                                     can-2017c.eds:1958
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// Manual: 5.2.2.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1809h:03  UNSIGNED16  rw                                         can-2017c.eds:1966
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Inhibit Time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1809h:05  UNSIGNED16  rw                                          can-2017c.eds:1975
+/// Unit ms: default value 0 ms.
+/// Manual: 3.3, Event Timer.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1809;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -1340,49 +1856,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      can-2017c.eds:2005
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      can-2017c.eds:2013
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      can-2017c.eds:2021
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      can-2017c.eds:2029
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A00h:05  UNSIGNED32  rw                                      can-2017c.eds:2037
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A00h:06  UNSIGNED32  rw                                      can-2017c.eds:2045
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A00h:07  UNSIGNED32  rw                                      can-2017c.eds:2053
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A00h:08  UNSIGNED32  rw                                      can-2017c.eds:2061
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -1398,49 +1938,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      can-2017c.eds:2083
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      can-2017c.eds:2091
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      can-2017c.eds:2099
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      can-2017c.eds:2107
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A01h:05  UNSIGNED32  rw                                      can-2017c.eds:2115
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A01h:06  UNSIGNED32  rw                                      can-2017c.eds:2123
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A01h:07  UNSIGNED32  rw                                      can-2017c.eds:2131
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A01h:08  UNSIGNED32  rw                                      can-2017c.eds:2139
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -1456,49 +2020,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      can-2017c.eds:2161
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      can-2017c.eds:2169
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      can-2017c.eds:2177
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      can-2017c.eds:2185
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A02h:05  UNSIGNED32  rw                                      can-2017c.eds:2193
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A02h:06  UNSIGNED32  rw                                      can-2017c.eds:2201
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A02h:07  UNSIGNED32  rw                                      can-2017c.eds:2209
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A02h:08  UNSIGNED32  rw                                      can-2017c.eds:2217
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -1514,49 +2102,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      can-2017c.eds:2238
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      can-2017c.eds:2246
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      can-2017c.eds:2254
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      can-2017c.eds:2262
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A03h:05  UNSIGNED32  rw                                      can-2017c.eds:2270
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A03h:06  UNSIGNED32  rw                                      can-2017c.eds:2278
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A03h:07  UNSIGNED32  rw                                      can-2017c.eds:2286
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A03h:08  UNSIGNED32  rw                                      can-2017c.eds:2294
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -1572,49 +2184,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A04h:01  UNSIGNED32  rw                                      can-2017c.eds:2315
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A04h:02  UNSIGNED32  rw                                      can-2017c.eds:2323
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A04h:03  UNSIGNED32  rw                                      can-2017c.eds:2331
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A04h:04  UNSIGNED32  rw                                      can-2017c.eds:2339
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A04h:05  UNSIGNED32  rw                                      can-2017c.eds:2347
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A04h:06  UNSIGNED32  rw                                      can-2017c.eds:2355
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A04h:07  UNSIGNED32  rw                                      can-2017c.eds:2363
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A04h:08  UNSIGNED32  rw                                      can-2017c.eds:2371
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A04;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -1630,49 +2266,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A05h:01  UNSIGNED32  rw                                      can-2017c.eds:2392
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A05h:02  UNSIGNED32  rw                                      can-2017c.eds:2400
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A05h:03  UNSIGNED32  rw                                      can-2017c.eds:2408
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A05h:04  UNSIGNED32  rw                                      can-2017c.eds:2416
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A05h:05  UNSIGNED32  rw                                      can-2017c.eds:2424
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A05h:06  UNSIGNED32  rw                                      can-2017c.eds:2432
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A05h:07  UNSIGNED32  rw                                      can-2017c.eds:2440
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A05h:08  UNSIGNED32  rw                                      can-2017c.eds:2448
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A05;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -1688,49 +2348,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A06h:01  UNSIGNED32  rw                                      can-2017c.eds:2469
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A06h:02  UNSIGNED32  rw                                      can-2017c.eds:2477
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A06h:03  UNSIGNED32  rw                                      can-2017c.eds:2485
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A06h:04  UNSIGNED32  rw                                      can-2017c.eds:2493
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A06h:05  UNSIGNED32  rw                                      can-2017c.eds:2501
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A06h:06  UNSIGNED32  rw                                      can-2017c.eds:2509
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A06h:07  UNSIGNED32  rw                                      can-2017c.eds:2517
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A06h:08  UNSIGNED32  rw                                      can-2017c.eds:2525
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A06;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -1746,49 +2430,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A07h:01  UNSIGNED32  rw                                      can-2017c.eds:2546
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A07h:02  UNSIGNED32  rw                                      can-2017c.eds:2554
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A07h:03  UNSIGNED32  rw                                      can-2017c.eds:2562
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A07h:04  UNSIGNED32  rw                                      can-2017c.eds:2570
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A07h:05  UNSIGNED32  rw                                      can-2017c.eds:2578
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A07h:06  UNSIGNED32  rw                                      can-2017c.eds:2586
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A07h:07  UNSIGNED32  rw                                      can-2017c.eds:2594
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A07h:08  UNSIGNED32  rw                                      can-2017c.eds:2602
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A07;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -1804,49 +2512,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A08h:01  UNSIGNED32  rw                                      can-2017c.eds:2623
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A08h:02  UNSIGNED32  rw                                      can-2017c.eds:2631
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A08h:03  UNSIGNED32  rw                                      can-2017c.eds:2639
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A08h:04  UNSIGNED32  rw                                      can-2017c.eds:2647
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A08h:05  UNSIGNED32  rw                                      can-2017c.eds:2655
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A08h:06  UNSIGNED32  rw                                      can-2017c.eds:2663
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A08h:07  UNSIGNED32  rw                                      can-2017c.eds:2671
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A08h:08  UNSIGNED32  rw                                      can-2017c.eds:2679
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A08;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -1862,49 +2594,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A09h:01  UNSIGNED32  rw                                      can-2017c.eds:2700
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A09h:02  UNSIGNED32  rw                                      can-2017c.eds:2708
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A09h:03  UNSIGNED32  rw                                      can-2017c.eds:2716
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A09h:04  UNSIGNED32  rw                                      can-2017c.eds:2724
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A09h:05  UNSIGNED32  rw                                      can-2017c.eds:2732
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A09h:06  UNSIGNED32  rw                                      can-2017c.eds:2740
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A09h:07  UNSIGNED32  rw                                      can-2017c.eds:2748
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A09h:08  UNSIGNED32  rw                                      can-2017c.eds:2756
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// See CiA 301, 7.5.2.38.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A09;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -1912,8 +2668,12 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 }  // namespace tpdo_mapping_parameter_10
 
 /// Read analogue input 16-bit.  6401h:01..08  INTEGER16  ro  TPDO                  can-2017c.eds:2780
+/// Unit V, scale 4/13107, offset 2/13107.
+/// -32768 is -10 V, 32767 is 10 V.
+/// Manual: 5.2.3, step 5.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct read_analogue_input_16_bit : canopen::Object<0x6401, SubIndex, std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = canopen::Quantity<std::int16_t, canopen::unit::volt, std::ratio<4, 13107>, std::ratio<2, 13107>>;
   static_assert(SubIndex <= 8 || SubIndex == canopen::whole_array, "read_analogue_input_16_bit has the sub-indices 0..8");
   static constexpr auto name = "Read analogue input 16-bit";
 };

@@ -2,6 +2,8 @@
 #ifndef EDSC_CPC_TC1_DICTIONARY_HPP
 #define EDSC_CPC_TC1_DICTIONARY_HPP
 
+#include <canopen/base/constant_errors.hpp>
+//
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -12,36 +14,54 @@
 #include <canopen/od/dictionary.hpp>
 #include <canopen/od/object.hpp>
 #include <canopen/od/object_list.hpp>
-
+#include <canopen/od/quantity.hpp>
+#include "meaning.hpp"
 namespace cpc_tc1 {
 
 /// The entries of the object dictionary as types: index, sub-index, C++ type, access and mapping, checked at each use.
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  const                                       cpc-tc1.eds:85
+/// Bits: 0..15 device_profile, 16..31 additional_information.
+/// Manual: 12, 1000h.
 struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::constant> {
+  using type = meaning::device_type;
   static constexpr std::uint16_t index = 0x1000;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
 };
 
 /// Error register.  1001h:00  UNSIGNED8  ro                                        cpc-tc1.eds:96
+/// Bits: 0 generic_error, 1 current, 2 voltage, 3 temperature, 4 communication_error, 5 device_profile_specific.
+/// Manual: 12, 1001h, bit definition.
 struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  using type = meaning::error_register;
   static constexpr std::uint16_t index = 0x1001;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error register";
 };
 
 /// Manufacturer status register.  1002h:00  UNSIGNED32  ro                         cpc-tc1.eds:198
+/// Bits: 0 ready_to_switch_on, 1 switched_on, 2 operation_enabled, 3 fault, 4 voltage_enabled, 5 quick_stop,
+///   6 switch_on_disabled, 7 warning, 9 remote, 10 target_reached, 11 internal_limit_active,
+///   16 external_enable_digital_input, 17 motor_on, 18 phase_find_completed, 19 home_position_established,
+///   20 error_mapping_active, 21 auxiliary_command_added, 24 motor_stationary.
+/// Values of state: not_ready_to_switch_on, switch_on_disabled, ready_to_switch_on, switched_on, operation_enabled,
+///   quick_stop_active, fault_reaction_active, fault.
+/// Manual: 12, 1002h, value definition.
 struct manufacturer_status_register : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::manufacturer_status_register;
   static constexpr std::uint16_t index = 0x1002;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer status register";
 };
 
 /// Pre-defined error field.  1003h:01..10  UNSIGNED32  ro                          cpc-tc1.eds:222
+/// Bits: 0..15 error_code.
+/// Manual: 12, 1003h, value definition.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
+  using type = meaning::pre_defined_error_field;
   static_assert(SubIndex <= 16 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..16");
   static constexpr auto name = "Pre-defined error field";
 };
@@ -53,16 +73,22 @@ struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::
 };
 
 /// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          cpc-tc1.eds:354
+/// Bits: 0..10 can_id, 29 frame, 30 gen.
+/// Manual: 12, 1005h, description of SYNC COB-ID.
 struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_sync;
   static constexpr std::uint16_t index = 0x1005;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
-  static constexpr type low_limit = 0x00000000;
-  static constexpr type high_limit = 0x800007FF;
+  static constexpr std::uint32_t low_limit = 0x00000000;
+  static constexpr std::uint32_t high_limit = 0x800007FF;
 };
 
 /// Communication cycle period.  1006h:00  UNSIGNED32  rw                           cpc-tc1.eds:367
+/// Unit us: default value 0 us.
+/// Manual: 12, 1006h.
 struct communication_cycle_period : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::microsecond>;
   static constexpr std::uint16_t index = 0x1006;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Communication cycle period";
@@ -90,8 +116,13 @@ struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleStri
 };
 
 /// Store parameters.  1010h:01..06  UNSIGNED32  rw                                 cpc-tc1.eds:420
+/// Bits: 0 cmd, 1 automatically_save.
+/// Values of signature: save.
+/// A read value has the abilities of the device; the written value is the signature.
+/// Manual: 12, 1010h, structure of storage and read access; 12, 1010h, signature of storage write access.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
+  using type = meaning::store_parameters;
   static_assert(SubIndex <= 6 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..6");
   static constexpr auto name = "Store parameters";
 };
@@ -121,8 +152,13 @@ using store_parameters_save_virtual_machine_program = store_parameters<5>;
 using store_parameters_save_error_mapping_data = store_parameters<6>;
 
 /// Restore default parameters.  1011h:01..06  UNSIGNED32  rw                       cpc-tc1.eds:486
+/// Bits: 0 cmd.
+/// Values of signature: load.
+/// A read value has the abilities of the device; the written value is the signature.
+/// Manual: 12, 1011h, structure of restore default read access; 12, 1011h, signature of restore default write access.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
+  using type = meaning::restore_default_parameters;
   static_assert(SubIndex <= 6 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..6");
   static constexpr auto name = "Restore default parameters";
 };
@@ -152,29 +188,41 @@ using restore_default_parameters_restore_virtual_machine_program = restore_defau
 using restore_default_parameters_restore_error_mapping_data = restore_default_parameters<6>;
 
 /// High resolution time stamp.  1013h:00  UNSIGNED32  rw  PDO                      cpc-tc1.eds:535
+/// Unit us: default value 0 us.
+/// Manual: 12, 1013h.
 struct high_resolution_time_stamp : canopen::TypedObject<std::uint32_t, canopen::Access::rw, canopen::Mappable::both> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::microsecond>;
   static constexpr std::uint16_t index = 0x1013;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "High resolution time stamp";
 };
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  ro                                          cpc-tc1.eds:548
+/// Bits: 0..10 can_id, 29 frame, 31 valid.
+/// Manual: 12, 1014h, description of the EMCY COB-ID.
 struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::cob_id_emcy;
   static constexpr std::uint16_t index = 0x1014;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
 /// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    cpc-tc1.eds:557
+/// Unit us, scale 100: default value 0 us.
+/// Manual: 12, 1015h.
 struct inhibit_time_emcy : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1015;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Inhibit time EMCY";
 };
 
 /// Consumer heartbeat time.  1016h:01..04  UNSIGNED32  rw                          cpc-tc1.eds:584
+/// Bits: 0..15 heartbeat_time, 16..23 node_id.
+/// Manual: 12, 1016h, value definition.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t, canopen::Access::rw> {
+  using type = meaning::consumer_heartbeat_time;
   static_assert(SubIndex <= 4 || SubIndex == canopen::whole_array, "consumer_heartbeat_time has the sub-indices 0..4");
   static constexpr auto name = "Consumer heartbeat time";
 };
@@ -186,7 +234,10 @@ struct consumer_heartbeat_time<0> : canopen::TypedObject<std::uint8_t, canopen::
 };
 
 /// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              cpc-tc1.eds:617
+/// Unit ms: default value 0 ms.
+/// Manual: 12, 1017h.
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Producer heartbeat time";
@@ -215,7 +266,10 @@ struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr auto name = "Product code";
 };
 /// Revision number.  1018h:03  UNSIGNED32  ro                                      cpc-tc1.eds:137
+/// Bits: 0..15 minor_revision_number, 16..31 major_revision_number.
+/// Manual: 12, 1018h, structure of revision number.
 struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::identity_object_revision_number;
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
@@ -229,12 +283,16 @@ struct serial_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> 
 }  // namespace identity_object
 
 /// Synchronous counter overflow value.  1019h:00  UNSIGNED8  rw                    cpc-tc1.eds:630
+/// Values: 0 no_counter.
+/// See CiA 301, 7.5.2.22.
 struct synchronous_counter_overflow_value : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::synchronous_counter_overflow_value;
+  using value = type;
   static constexpr std::uint16_t index = 0x1019;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Synchronous counter overflow value";
-  static constexpr type low_limit = 0;
-  static constexpr type high_limit = 240;
+  static constexpr std::uint8_t low_limit = 0;
+  static constexpr std::uint8_t high_limit = 240;
 };
 
 /// Store EDS.  1021h:00  DOMAIN  ro                                                cpc-tc1.eds:642
@@ -245,7 +303,11 @@ struct store_eds : canopen::TypedObject<canopen::Domain, canopen::Access::ro> {
 };
 
 /// Store format.  1022h:00  UNSIGNED8  ro                                          cpc-tc1.eds:652
+/// Values: 0 not_compressed.
+/// Manual: 12, 1022h, values for EDS store format.
 struct store_format : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  using type = meaning::store_format;
+  using value = type;
   static constexpr std::uint16_t index = 0x1022;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Store format";
@@ -262,13 +324,19 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type high_limit = 2;
 };
 /// COB-ID client to server.  1200h:01  UNSIGNED32  const                           cpc-tc1.eds:679
+/// Bits: 0..10 can_id, 29 frame, 30 dyn, 31 valid.
+/// Manual: 12, 1200h, description of SDO server COB-ID.
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::constant> {
+  using type = meaning::sdo_server_parameter_cob_id_client_to_server;
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
 /// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              cpc-tc1.eds:687
+/// Bits: 0..10 can_id, 29 frame, 30 dyn, 31 valid.
+/// Manual: 12, 1200h, description of SDO server COB-ID.
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::sdo_server_parameter_cob_id_client_to_server;
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client";
@@ -286,13 +354,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type high_limit = 2;
 };
 /// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  cpc-tc1.eds:713
+/// Bits: 0..10 can_id, 29 frame, 31 valid.
+/// Manual: 12, 1400h~1403h, description of RPDO COB-ID.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_emcy;
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1400h:02  UNSIGNED8  rw                                     cpc-tc1.eds:721
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// See CiA 301, 7.5.2.35.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -310,13 +386,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type high_limit = 2;
 };
 /// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  cpc-tc1.eds:745
+/// Bits: 0..10 can_id, 29 frame, 31 valid.
+/// Manual: 12, 1400h~1403h, description of RPDO COB-ID.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_emcy;
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1401h:02  UNSIGNED8  rw                                     cpc-tc1.eds:753
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// See CiA 301, 7.5.2.35.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -334,13 +418,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type high_limit = 2;
 };
 /// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  cpc-tc1.eds:777
+/// Bits: 0..10 can_id, 29 frame, 31 valid.
+/// Manual: 12, 1400h~1403h, description of RPDO COB-ID.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_emcy;
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1402h:02  UNSIGNED8  rw                                     cpc-tc1.eds:785
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// See CiA 301, 7.5.2.35.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -358,13 +450,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type high_limit = 2;
 };
 /// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  cpc-tc1.eds:809
+/// Bits: 0..10 can_id, 29 frame, 31 valid.
+/// Manual: 12, 1400h~1403h, description of RPDO COB-ID.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_emcy;
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1403h:02  UNSIGNED8  rw                                     cpc-tc1.eds:817
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// See CiA 301, 7.5.2.35.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -382,25 +482,37 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      cpc-tc1.eds:842
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      cpc-tc1.eds:850
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      cpc-tc1.eds:858
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      cpc-tc1.eds:866
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -418,25 +530,37 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      cpc-tc1.eds:890
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      cpc-tc1.eds:898
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      cpc-tc1.eds:906
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      cpc-tc1.eds:914
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -454,25 +578,37 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      cpc-tc1.eds:938
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      cpc-tc1.eds:946
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      cpc-tc1.eds:954
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      cpc-tc1.eds:962
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -490,25 +626,37 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      cpc-tc1.eds:986
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      cpc-tc1.eds:994
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1002
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1010
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1600h~1603h, the structure of RPDO mapping.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -526,25 +674,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type high_limit = 5;
 };
 /// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1041
+/// Bits: 0..10 can_id, 29 frame, 30 rtr, 31 valid.
+/// Manual: 12, 1800h~1803h, description of TPDO COB-ID.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_cob_id_used_by_tpdo;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1800h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1049
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// See CiA 301, 7.5.2.37.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1800h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1057
+/// Unit us, scale 100: default value 0 us.
+/// Manual: 12, 1800h~1803h, sub-index 0x03.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1800h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1067
+/// Unit ms: default value 100 ms.
+/// Manual: 12, 1800h~1803h, sub-index 0x05.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -562,25 +725,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type high_limit = 5;
 };
 /// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1092
+/// Bits: 0..10 can_id, 29 frame, 30 rtr, 31 valid.
+/// Manual: 12, 1800h~1803h, description of TPDO COB-ID.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_cob_id_used_by_tpdo;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1801h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1100
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// See CiA 301, 7.5.2.37.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1801h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1108
+/// Unit us, scale 100: default value 0 us.
+/// Manual: 12, 1800h~1803h, sub-index 0x03.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1801h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1118
+/// Unit ms: default value 100 ms.
+/// Manual: 12, 1800h~1803h, sub-index 0x05.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -598,25 +776,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type high_limit = 5;
 };
 /// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1143
+/// Bits: 0..10 can_id, 29 frame, 30 rtr, 31 valid.
+/// Manual: 12, 1800h~1803h, description of TPDO COB-ID.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_cob_id_used_by_tpdo;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1802h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1151
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// See CiA 301, 7.5.2.37.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1802h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1159
+/// Unit us, scale 100: default value 0 us.
+/// Manual: 12, 1800h~1803h, sub-index 0x03.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1802h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1169
+/// Unit ms: default value 100 ms.
+/// Manual: 12, 1800h~1803h, sub-index 0x05.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -634,25 +827,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type high_limit = 5;
 };
 /// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  cpc-tc1.eds:1194
+/// Bits: 0..10 can_id, 29 frame, 30 rtr, 31 valid.
+/// Manual: 12, 1800h~1803h, description of TPDO COB-ID.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_cob_id_used_by_tpdo;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1803h:02  UNSIGNED8  rw                                     cpc-tc1.eds:1202
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// See CiA 301, 7.5.2.37.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1803h:03  UNSIGNED16  rw                                         cpc-tc1.eds:1210
+/// Unit us, scale 100: default value 0 us.
+/// Manual: 12, 1800h~1803h, sub-index 0x03.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1803h:05  UNSIGNED16  rw                                          cpc-tc1.eds:1220
+/// Unit ms: default value 100 ms.
+/// Manual: 12, 1800h~1803h, sub-index 0x05.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -670,25 +878,37 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1247
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1255
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1263
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1271
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -706,25 +926,37 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1295
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1303
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1311
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1319
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -742,25 +974,37 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1343
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1351
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1359
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1367
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -778,25 +1022,37 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type high_limit = 4;
 };
 /// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      cpc-tc1.eds:1392
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      cpc-tc1.eds:1400
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      cpc-tc1.eds:1408
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      cpc-tc1.eds:1416
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 12, 1A00h, the structure of TPDO mapping.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -804,14 +1060,35 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 }  // namespace tpdo_mapping_parameter_4
 
 /// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   cpc-tc1.eds:1425
+/// Bits: 0 switch_on, 1 enable_voltage, 2 quick_stop, 3 enable_operation, 7 fault_reset, 8 halt.
+/// Bits for profile_position: 4 new_set_point, 5 change_set_immediately, 6 relative, 9 change_on_set_point.
+/// Bits for velocity: 4 enable_ramp, 5 unlock_ramp, 6 reference_ramp.
+/// Bits for homing: 4 homing_operation_start.
+/// Bits for interpolated_position: 4 enable_interpolation.
+/// Values of command: fault_reset, disable_voltage, quick_stop, shutdown, switch_on, enable_operation.
+/// See CiA 402-2, 8.4.1.
 struct controlword : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = meaning::controlword;
   static constexpr std::uint16_t index = 0x6040;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Controlword";
 };
 
 /// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     cpc-tc1.eds:1434
+/// Bits: 0 ready_to_switch_on, 1 switched_on, 2 operation_enabled, 3 fault, 4 voltage_enabled, 5 quick_stop,
+///   6 switch_on_disabled, 7 warning, 9 remote, 10 target_reached, 11 internal_limit_active.
+/// Bits for profile_position: 12 set_point_acknowledge, 13 following_error.
+/// Bits for profile_velocity: 12 speed_is_zero, 13 max_slippage_error.
+/// Bits for homing: 12 homing_attained, 13 homing_error.
+/// Bits for interpolated_position: 12 ip_mode_active.
+/// Bits for cyclic_synchronous_position: 12 drive_follows_command_value, 13 following_error.
+/// Bits for cyclic_synchronous_velocity: 12 drive_follows_command_value.
+/// Bits for cyclic_synchronous_torque: 12 drive_follows_command_value.
+/// Values of state: not_ready_to_switch_on, switch_on_disabled, ready_to_switch_on, switched_on, operation_enabled,
+///   quick_stop_active, fault_reaction_active, fault.
+/// See CiA 402-2, 8.4.2.
 struct statusword : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = meaning::statusword;
   static constexpr std::uint16_t index = 0x6041;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Statusword";

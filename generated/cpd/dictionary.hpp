@@ -2,6 +2,8 @@
 #ifndef EDSC_CPD_DICTIONARY_HPP
 #define EDSC_CPD_DICTIONARY_HPP
 
+#include <canopen/base/constant_errors.hpp>
+//
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -12,29 +14,39 @@
 #include <canopen/od/dictionary.hpp>
 #include <canopen/od/object.hpp>
 #include <canopen/od/object_list.hpp>
-
+#include <canopen/od/quantity.hpp>
+#include "meaning.hpp"
 namespace cpd {
 
 /// The entries of the object dictionary as types: index, sub-index, C++ type, access and mapping, checked at each use.
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  ro                                          cpd.eds:94
+/// Bits: 0..15 device_profile, 17 servo_drive.
+/// Manual: 9.4.1.
 struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::device_type;
   static constexpr std::uint16_t index = 0x1000;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
 };
 
 /// Error register.  1001h:00  UNSIGNED8  ro                                        cpd.eds:105
+/// Bits: 0 generic_error, 4 communication_error, 5 device_profile, 7 manufacturer_specific.
+/// Manual: 7.3.1; 9.4.2.
 struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  using type = meaning::error_register;
   static constexpr std::uint16_t index = 0x1001;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error register";
 };
 
 /// Pre-defined error field.  1003h:01..05  UNSIGNED32  ro                          cpd.eds:239
+/// Bits: 0..15 error_code, 16..31 additional_error_information.
+/// Manual: 9.4.3.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
+  using type = meaning::pre_defined_error_field;
   static_assert(SubIndex <= 5 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..5");
   static constexpr auto name = "Pre-defined error field";
 };
@@ -46,7 +58,10 @@ struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::
 };
 
 /// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          cpd.eds:283
+/// Bits: 0..6 node_address, 7..10 function_code, 29 identifier, 30 sync_producer, 31 sync_consumer.
+/// Manual: 9.4.4.
 struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_sync;
   static constexpr std::uint16_t index = 0x1005;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
@@ -74,7 +89,10 @@ struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleStri
 };
 
 /// Guard time.  100Ch:00  UNSIGNED16  rw                                           cpd.eds:320
+/// Unit ms: default value 0 ms.
+/// Manual: 9.4.8.
 struct guard_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x100C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Guard time";
@@ -88,8 +106,14 @@ struct life_time_factor : canopen::TypedObject<std::uint8_t, canopen::Access::rw
 };
 
 /// Store parameters.  1010h:01..03  UNSIGNED32  rw                                 cpd.eds:355
+/// Values: 0 does_not_save, 1 saves_on_command, 2 saves_autonomously, 3 saves_on_command_and_autonomously,
+///   1702257011 save.
+/// A read value has the abilities of the device; the written value is the signature.
+/// See CiA 301, 7.5.2.13.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
+  using type = meaning::store_parameters;
+  using value = type;
   static_assert(SubIndex <= 3 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..3");
   static constexpr auto name = "Store parameters";
 };
@@ -110,8 +134,13 @@ using store_parameters_save_communication_parameters = store_parameters<2>;
 using store_parameters_save_application_parameters = store_parameters<3>;
 
 /// Restore default parameters.  1011h:01..03  UNSIGNED32  rw                       cpd.eds:394
+/// Values: 0 does_not_restore, 1 restores_on_command, 1684107116 load.
+/// A read value has the abilities of the device; the written value is the signature.
+/// See CiA 301, 7.5.2.14.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
+  using type = meaning::restore_default_parameters;
+  using value = type;
   static_assert(SubIndex <= 3 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..3");
   static constexpr auto name = "Restore default parameters";
 };
@@ -132,22 +161,31 @@ using restore_default_parameters_restore_communication_default_parameters = rest
 using restore_default_parameters_restore_application_default_parameters = restore_default_parameters<3>;
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          cpd.eds:423
+/// Bits: 0..6 node_address, 7..10 function_code, 29 identifier.
+/// Manual: 9.4.12.
 struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_emcy;
   static constexpr std::uint16_t index = 0x1014;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
 /// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    cpd.eds:432
+/// Unit us, scale 100: default value 0 us.
+/// Manual: 9.4.13.
 struct inhibit_time_emcy : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1015;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Inhibit time EMCY";
 };
 
 /// Consumer heartbeat time.  1016h:01..03  UNSIGNED32  rw                          cpd.eds:458
+/// Bits: 0..15 time_interval, 16..23 node_id.
+/// Manual: 9.4.14.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t, canopen::Access::rw> {
+  using type = meaning::consumer_heartbeat_time;
   static_assert(SubIndex <= 3 || SubIndex == canopen::whole_array, "consumer_heartbeat_time has the sub-indices 0..3");
   static constexpr auto name = "Consumer heartbeat time";
 };
@@ -159,7 +197,10 @@ struct consumer_heartbeat_time<0> : canopen::TypedObject<std::uint8_t, canopen::
 };
 
 /// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              cpd.eds:484
+/// Unit ms: default value 0 ms.
+/// Manual: 9.4.15.
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Producer heartbeat time";
@@ -186,7 +227,10 @@ struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr auto name = "Product code";
 };
 /// Revision number.  1018h:03  UNSIGNED32  ro                                      cpd.eds:143
+/// Bits: 0..15 minor_revision_number, 16..31 major_revision_number.
+/// See CiA 301, 7.5.2.21.
 struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::identity_object_revision_number;
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
@@ -212,6 +256,16 @@ struct verify_configuration<0> : canopen::TypedObject<std::uint8_t, canopen::Acc
   static constexpr auto name = "Highest sub-index supported";
 };
 
+/// Configuration time.  1020h:02  UNSIGNED32  rw                                   cpd.eds:517
+/// Unit ms: default value 0 ms.
+/// Time since midnight.
+/// See CiA 301, 7.5.2.23.
+template <>
+struct verify_configuration<2> : canopen::Object<0x1020, 2, std::uint32_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::millisecond>;
+  static constexpr auto name = "Verify configuration";
+};
+
 /// Configuration date.  1020h:01  UNSIGNED32  rw                                   cpd.eds:509
 using verify_configuration_configuration_date = verify_configuration<1>;
 
@@ -219,8 +273,12 @@ using verify_configuration_configuration_date = verify_configuration<1>;
 using verify_configuration_configuration_time = verify_configuration<2>;
 
 /// Error behaviour.  1029h:01..01  UNSIGNED8  rw                                   cpd.eds:541
+/// Values: 0 pre_operational, 1 no_state_change, 2 stopped.
+/// Manual: 9.4.18.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct error_behaviour : canopen::Object<0x1029, SubIndex, std::uint8_t, canopen::Access::rw> {
+  using type = meaning::error_behaviour;
+  using value = type;
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "error_behaviour has the sub-indices 0..1");
   static constexpr auto name = "Error behaviour";
 };
@@ -243,13 +301,19 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              cpd.eds:563
+/// Bits: 0..28 can_id, 29 extended_frame, 30 dynamic, 31 not_valid.
+/// See CiA 301, 7.5.2.33.
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::sdo_server_parameter_1_cob_id_client_to_server;
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
 /// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              cpd.eds:571
+/// Bits: 0..28 can_id, 29 extended_frame, 30 dynamic, 31 not_valid.
+/// See CiA 301, 7.5.2.33.
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::sdo_server_parameter_1_cob_id_client_to_server;
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client";
@@ -265,13 +329,19 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID client to server.  1201h:01  UNSIGNED32  rw                              cpd.eds:593
+/// Bits: 0..28 can_id, 29 extended_frame, 30 dynamic, 31 not_valid.
+/// See CiA 301, 7.5.2.33.
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::sdo_server_parameter_1_cob_id_client_to_server;
   static constexpr std::uint16_t index = 0x1201;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
 /// COB-ID server to client.  1201h:02  UNSIGNED32  rw                              cpd.eds:601
+/// Bits: 0..28 can_id, 29 extended_frame, 30 dynamic, 31 not_valid.
+/// See CiA 301, 7.5.2.33.
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::sdo_server_parameter_1_cob_id_client_to_server;
   static constexpr std::uint16_t index = 0x1201;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client";
@@ -295,13 +365,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  cpd.eds:637
+/// Bits: 0..6 node_address, 7..10 function_code, 29 identifier, 30 rtr, 31 pdo.
+/// Manual: 9.4.21.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1400h:02  UNSIGNED8  rw                                     cpd.eds:645
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// See CiA 301, 7.5.2.35.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -317,13 +395,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  cpd.eds:676
+/// Bits: 0..6 node_address, 7..10 function_code, 29 identifier, 30 rtr, 31 pdo.
+/// Manual: 9.4.21.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1401h:02  UNSIGNED8  rw                                     cpd.eds:684
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// See CiA 301, 7.5.2.35.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -339,13 +425,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  cpd.eds:715
+/// Bits: 0..6 node_address, 7..10 function_code, 29 identifier, 30 rtr, 31 pdo.
+/// Manual: 9.4.21.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1402h:02  UNSIGNED8  rw                                     cpd.eds:723
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// See CiA 301, 7.5.2.35.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -361,13 +455,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  cpd.eds:751
+/// Bits: 0..6 node_address, 7..10 function_code, 29 identifier, 30 rtr, 31 pdo.
+/// Manual: 9.4.21.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1403h:02  UNSIGNED8  ro                                     cpd.eds:759
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// See CiA 301, 7.5.2.35.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -385,7 +487,10 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1600h:01  UNSIGNED32  ro                                      cpd.eds:787
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
@@ -403,25 +508,37 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1601h:01  UNSIGNED32  ro                                      cpd.eds:816
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1601h:02  UNSIGNED32  ro                                      cpd.eds:824
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1601h:03  UNSIGNED32  ro                                      cpd.eds:832
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1601h:04  UNSIGNED32  ro                                      cpd.eds:840
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -439,25 +556,37 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1602h:01  UNSIGNED32  ro                                      cpd.eds:867
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1602h:02  UNSIGNED32  ro                                      cpd.eds:875
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1602h:03  UNSIGNED32  ro                                      cpd.eds:883
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1602h:04  UNSIGNED32  ro                                      cpd.eds:891
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -473,25 +602,37 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      cpd.eds:916
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      cpd.eds:924
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      cpd.eds:932
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      cpd.eds:940
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -507,25 +648,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  cpd.eds:964
+/// Bits: 0..6 node_address, 7..10 function_code, 29 identifier, 30 rtr, 31 pdo.
+/// Manual: 9.4.21, 9.4.29 to 9.4.32.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1800h:02  UNSIGNED8  rw                                     cpd.eds:972
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// See CiA 301, 7.5.2.37.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1800h:03  UNSIGNED16  rw                                         cpd.eds:980
+/// Unit us, scale 100: default value 0 us.
+/// Manual: 9.4.29 to 9.4.32.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1800h:05  UNSIGNED16  rw                                          cpd.eds:990
+/// Unit ms: default value 0 ms.
+/// Manual: 9.4.29 to 9.4.32.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -541,25 +697,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  cpd.eds:1020
+/// Bits: 0..6 node_address, 7..10 function_code, 29 identifier, 30 rtr, 31 pdo.
+/// Manual: 9.4.21, 9.4.29 to 9.4.32.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1801h:02  UNSIGNED8  rw                                     cpd.eds:1028
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// See CiA 301, 7.5.2.37.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1801h:03  UNSIGNED16  rw                                         cpd.eds:1036
+/// Unit us, scale 100: default value 0 us.
+/// Manual: 9.4.29 to 9.4.32.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1801h:05  UNSIGNED16  rw                                          cpd.eds:1046
+/// Unit ms: default value 100 ms.
+/// Manual: 9.4.29 to 9.4.32.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -575,25 +746,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  cpd.eds:1076
+/// Bits: 0..6 node_address, 7..10 function_code, 29 identifier, 30 rtr, 31 pdo.
+/// Manual: 9.4.21, 9.4.29 to 9.4.32.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1802h:02  UNSIGNED8  rw                                     cpd.eds:1084
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// See CiA 301, 7.5.2.37.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1802h:03  UNSIGNED16  rw                                         cpd.eds:1092
+/// Unit us, scale 100: default value 0 us.
+/// Manual: 9.4.29 to 9.4.32.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1802h:05  UNSIGNED16  rw                                          cpd.eds:1102
+/// Unit ms: default value 100 ms.
+/// Manual: 9.4.29 to 9.4.32.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -609,25 +795,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  cpd.eds:1131
+/// Bits: 0..6 node_address, 7..10 function_code, 29 identifier, 30 rtr, 31 pdo.
+/// Manual: 9.4.21, 9.4.29 to 9.4.32.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1803h:02  UNSIGNED8  ro                                     cpd.eds:1139
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// See CiA 301, 7.5.2.37.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1803h:03  UNSIGNED16  rw                                         cpd.eds:1147
+/// Unit us, scale 100: default value 0 us.
+/// Manual: 9.4.29 to 9.4.32.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1803h:05  UNSIGNED16  rw                                          cpd.eds:1157
+/// Unit ms: default value 0 ms.
+/// Manual: 9.4.29 to 9.4.32.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -645,7 +846,10 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A00h:01  UNSIGNED32  ro                                      cpd.eds:1184
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
@@ -663,25 +867,37 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A01h:01  UNSIGNED32  ro                                      cpd.eds:1212
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A01h:02  UNSIGNED32  ro                                      cpd.eds:1220
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A01h:03  UNSIGNED32  ro                                      cpd.eds:1228
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A01h:04  UNSIGNED32  ro                                      cpd.eds:1236
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -699,25 +915,37 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A02h:01  UNSIGNED32  ro                                      cpd.eds:1263
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A02h:02  UNSIGNED32  ro                                      cpd.eds:1271
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A02h:03  UNSIGNED32  ro                                      cpd.eds:1279
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A02h:04  UNSIGNED32  ro                                      cpd.eds:1287
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -733,25 +961,37 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr auto name = "Number of mapped objects";
 };
 /// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      cpd.eds:1311
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      cpd.eds:1319
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      cpd.eds:1327
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      cpd.eds:1335
+/// Bits: 0..7 object_length, 8..15 subindex, 16..31 index.
+/// Manual: 9.4.25, 3.3.4.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
@@ -759,7 +999,10 @@ struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 }  // namespace tpdo_mapping_parameter_4
 
 /// Drive status.  2041h:00  UNSIGNED16  ro                                         cpd.eds:1660
+/// Bits: 5..7 asynchronous_errors.
+/// Manual: 7.2.2.
 struct drive_status : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  using type = meaning::drive_status;
   static constexpr std::uint16_t index = 0x2041;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Drive status";
@@ -812,20 +1055,28 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Negative limit switch contact.  3006h:0F  UNSIGNED16  rw                        cpd.eds:1742
+/// Values: 0 inactive, 1 break_contact, 2 make_contact.
+/// Manual: 6.4.6.
 struct negative_limit_switch_contact : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = meaning::motion_settings_negative_limit_switch_contact;
+  using value = type;
   static constexpr std::uint16_t index = 0x3006;
   static constexpr std::uint8_t sub_index = 0x0F;
   static constexpr auto name = "Negative limit switch contact";
-  static constexpr type low_limit = 0;
-  static constexpr type high_limit = 2;
+  static constexpr std::uint16_t low_limit = 0;
+  static constexpr std::uint16_t high_limit = 2;
 };
 /// Positive limit switch contact.  3006h:10  UNSIGNED16  rw                        cpd.eds:1753
+/// Values: 0 inactive, 1 break_contact, 2 make_contact.
+/// Manual: 6.4.6.
 struct positive_limit_switch_contact : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = meaning::motion_settings_negative_limit_switch_contact;
+  using value = type;
   static constexpr std::uint16_t index = 0x3006;
   static constexpr std::uint8_t sub_index = 0x10;
   static constexpr auto name = "Positive limit switch contact";
-  static constexpr type low_limit = 0;
-  static constexpr type high_limit = 2;
+  static constexpr std::uint16_t low_limit = 0;
+  static constexpr std::uint16_t high_limit = 2;
 };
 /// Direction of rotation inversion.  3006h:12  UNSIGNED16  rw                      cpd.eds:1764
 struct direction_of_rotation_inversion : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
@@ -860,13 +1111,19 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Analogue input ANA1.  3009h:01  INTEGER16  ro  TPDO                             cpd.eds:1811
+/// Unit mV.
+/// Manual: 6.4.7.
 struct analogue_input_ana1 : canopen::TypedObject<std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = canopen::Quantity<std::int16_t, canopen::unit::millivolt>;
   static constexpr std::uint16_t index = 0x3009;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Analogue input ANA1";
 };
 /// Analogue input ANA2.  3009h:05  INTEGER16  ro  TPDO                             cpd.eds:1821
+/// Unit mV.
+/// Manual: 6.4.7.
 struct analogue_input_ana2 : canopen::TypedObject<std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = canopen::Quantity<std::int16_t, canopen::unit::millivolt>;
   static constexpr std::uint16_t index = 0x3009;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Analogue input ANA2";
@@ -882,13 +1139,19 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Quick stop current limit.  3011h:05  UNSIGNED16  rw                             cpd.eds:1845
+/// Unit A, scale 1/100: default value 0 A.
+/// Manual: 6.4.2.
 struct quick_stop_current_limit : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::ampere, std::ratio<1, 100>>;
   static constexpr std::uint16_t index = 0x3011;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Quick stop current limit";
 };
 /// Stop current limit.  3011h:06  UNSIGNED16  rw                                   cpd.eds:1856
+/// Unit A, scale 1/100: default value 0 A.
+/// Manual: 6.4.2.
 struct stop_current_limit : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::ampere, std::ratio<1, 100>>;
   static constexpr std::uint16_t index = 0x3011;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Stop current limit";
@@ -904,25 +1167,41 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Manual movement activation.  301Bh:09  UNSIGNED16  rww  RPDO                    cpd.eds:1882
+/// Values: 1 pos_direction_of_rotation_slow, 5 pos_direction_of_rotation_fast.
+/// Manual: 6.3.4.
 struct manual_movement_activation : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = meaning::operating_mode_settings_manual_movement_activation;
+  using value = type;
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x09;
   static constexpr auto name = "Manual movement activation";
 };
 /// Current setpoint specification.  301Bh:10  UNSIGNED16  rw                       cpd.eds:1891
+/// Values: 2 with_parameter.
+/// Manual: 6.3.1.
 struct current_setpoint_specification : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = meaning::operating_mode_settings_current_setpoint_specification;
+  using value = type;
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x10;
   static constexpr auto name = "Current setpoint specification";
 };
 /// Speed setpoint specification.  301Bh:11  UNSIGNED16  rw                         cpd.eds:1899
+/// Values: 2 with_parameter.
+/// Manual: 6.3.2.
 struct speed_setpoint_specification : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = meaning::operating_mode_settings_current_setpoint_specification;
+  using value = type;
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x11;
   static constexpr auto name = "Speed setpoint specification";
 };
 /// Gear activation.  301Bh:12  UNSIGNED16  rw                                      cpd.eds:1907
+/// Values: 1 immediate_synchronisation.
+/// Manual: 6.3.3.
 struct gear_activation : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = meaning::operating_mode_settings_gear_activation;
+  using value = type;
   static constexpr std::uint16_t index = 0x301B;
   static constexpr std::uint8_t sub_index = 0x12;
   static constexpr auto name = "Gear activation";
@@ -944,13 +1223,19 @@ struct action_status : canopen::TypedObject<std::uint16_t, canopen::Access::ro, 
   static constexpr auto name = "Action status";
 };
 /// Active monitoring signals.  301Ch:07  UNSIGNED16  ro                            cpd.eds:1939
+/// Bits: 1 limp_limn, 2 sw_limp_sw_limn.
+/// Manual: 6.4.6.
 struct active_monitoring_signals : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  using type = meaning::monitoring_status_active_monitoring_signals;
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Active monitoring signals";
 };
 /// Latched monitoring signals.  301Ch:08  UNSIGNED16  ro                           cpd.eds:1948
+/// Bits: 1 limp_limn, 2 sw_limp_sw_limn.
+/// Manual: 6.4.6.
 struct latched_monitoring_signals : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  using type = meaning::monitoring_status_active_monitoring_signals;
   static constexpr std::uint16_t index = 0x301C;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Latched monitoring signals";
@@ -994,7 +1279,10 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Current setpoint.  3020h:04  INTEGER16  rww  RPDO                               cpd.eds:2012
+/// Unit A, scale 1/100: default value 0 A.
+/// Manual: 6.3.1.
 struct current_setpoint : canopen::TypedObject<std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::int16_t, canopen::unit::ampere, std::ratio<1, 100>>;
   static constexpr std::uint16_t index = 0x3020;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Current setpoint";
@@ -1010,7 +1298,10 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Speed setpoint.  3021h:04  INTEGER16  rww  RPDO                                 cpd.eds:2037
+/// Unit rpm: default value 0 rpm.
+/// Manual: 6.3.2.
 struct speed_setpoint : canopen::TypedObject<std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::int16_t, canopen::unit::revolution_per_minute>;
   static constexpr std::uint16_t index = 0x3021;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Speed setpoint";
@@ -1048,13 +1339,19 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// Slow speed.  3029h:04  UNSIGNED16  rw                                           cpd.eds:2094
+/// Unit rpm: default value 0 rpm.
+/// Manual: 6.3.4.
 struct slow_speed : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::revolution_per_minute>;
   static constexpr std::uint16_t index = 0x3029;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Slow speed";
 };
 /// Fast speed.  3029h:05  UNSIGNED16  rw                                           cpd.eds:2103
+/// Unit rpm: default value 0 rpm.
+/// Manual: 6.3.4.
 struct fast_speed : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::revolution_per_minute>;
   static constexpr std::uint16_t index = 0x3029;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Fast speed";
@@ -1101,21 +1398,47 @@ struct error_code : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
 };
 
 /// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   cpd.eds:1354
+/// Bits: 0 switch_on, 1 enable_voltage, 2 quick_stop, 3 enable_operation, 7 fault_reset, 8 halt.
+/// Bits for profile_position: 4 new_set_point, 5 change_set_immediately, 6 relative, 9 change_on_set_point.
+/// Bits for velocity: 4 enable_ramp, 5 unlock_ramp, 6 reference_ramp.
+/// Bits for homing: 4 homing_operation_start.
+/// Bits for interpolated_position: 4 enable_interpolation.
+/// Values of command: fault_reset, disable_voltage, quick_stop, shutdown, switch_on, enable_operation.
+/// See CiA 402-2, 8.4.1.
 struct controlword : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = meaning::controlword;
   static constexpr std::uint16_t index = 0x6040;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Controlword";
 };
 
 /// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     cpd.eds:1365
+/// Bits: 0 ready_to_switch_on, 1 switched_on, 2 operation_enabled, 3 fault, 4 voltage_enabled, 5 quick_stop,
+///   6 switch_on_disabled, 7 warning, 9 remote, 10 target_reached, 11 internal_limit_active, 15 ref_ok.
+/// Bits for profile_position: 12 set_point_acknowledge, 13 following_error.
+/// Bits for profile_velocity: 12 speed_is_zero, 13 max_slippage_error.
+/// Bits for homing: 12 homing_attained, 13 homing_error.
+/// Bits for interpolated_position: 12 ip_mode_active.
+/// Bits for cyclic_synchronous_position: 12 drive_follows_command_value, 13 following_error.
+/// Bits for cyclic_synchronous_velocity: 12 drive_follows_command_value.
+/// Bits for cyclic_synchronous_torque: 12 drive_follows_command_value.
+/// Values of state: not_ready_to_switch_on, switch_on_disabled, ready_to_switch_on, switched_on, operation_enabled,
+///   quick_stop_active, fault_reaction_active, fault.
+/// Manual: 7.2.2; 6.4.6.
 struct statusword : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = meaning::statusword;
   static constexpr std::uint16_t index = 0x6041;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Statusword";
 };
 
 /// Modes of operation.  6060h:00  INTEGER8  rw                                     cpd.eds:1377
+/// Values: -4 speed_regulation, -3 current_regulation, -2 electronic_gear, -1 manual_movement, 1 profile_position,
+///   3 profile_velocity, 6 homing.
+/// Manual: 6.2.1; 6.2.2; 6.2.3; 6.3.1; 6.3.2; 6.3.3; 6.3.4.
 struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::rw> {
+  using type = meaning::modes_of_operation;
+  using value = type;
   static constexpr std::uint16_t index = 0x6060;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Modes of operation";
@@ -1123,7 +1446,12 @@ struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::r
 };
 
 /// Modes of operation display.  6061h:00  INTEGER8  ro  TPDO                       cpd.eds:1388
+/// Values: -4 speed_regulation, -3 current_regulation, -2 electronic_gear, -1 manual_movement, 1 profile_position,
+///   3 profile_velocity, 6 homing.
+/// Manual: 6.2.1.
 struct modes_of_operation_display : canopen::TypedObject<std::int8_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = meaning::modes_of_operation;
+  using value = type;
   static constexpr std::uint16_t index = 0x6061;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Modes of operation display";
@@ -1137,7 +1465,10 @@ struct position_actual_value : canopen::TypedObject<std::int32_t, canopen::Acces
 };
 
 /// Following error window.  6065h:00  UNSIGNED32  rw                               cpd.eds:1408
+/// Unit inc: default value 0 inc.
+/// Manual: 6.4.6.
 struct following_error_window : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::increment>;
   static constexpr std::uint16_t index = 0x6065;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Following error window";
@@ -1151,7 +1482,10 @@ struct position_window : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 };
 
 /// Position window time.  6068h:00  UNSIGNED16  rw                                 cpd.eds:1429
+/// Unit ms: default value 0 ms.
+/// Manual: 6.4.4.
 struct position_window_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x6068;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position window time";
@@ -1165,7 +1499,10 @@ struct velocity_demand_value : canopen::TypedObject<std::int32_t, canopen::Acces
 };
 
 /// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           cpd.eds:1450
+/// Unit rpm.
+/// Manual: 6.2.2.
 struct velocity_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = canopen::Quantity<std::int32_t, canopen::unit::revolution_per_minute>;
   static constexpr std::uint16_t index = 0x606C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Velocity actual value";
@@ -1198,50 +1535,90 @@ using software_position_limit_min_position_limit = software_position_limit<1>;
 using software_position_limit_max_position_limit = software_position_limit<2>;
 
 /// Max profile velocity.  607Fh:00  UNSIGNED32  rw                                 cpd.eds:1507
+/// Unit rpm: default value 0 rpm.
+/// Manual: 6.2.1.
 struct max_profile_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::revolution_per_minute>;
   static constexpr std::uint16_t index = 0x607F;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Max profile velocity";
 };
 
 /// Profile velocity.  6081h:00  UNSIGNED32  rww  RPDO                              cpd.eds:1518
+/// Unit rpm: default value 0 rpm.
+/// Manual: 6.2.1.
 struct profile_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::revolution_per_minute>;
   static constexpr std::uint16_t index = 0x6081;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile velocity";
 };
 
 /// Profile acceleration.  6083h:00  UNSIGNED32  rw                                 cpd.eds:1530
+/// Unit rpm/s: default value 0 rpm/s.
+/// Manual: 6.2.1.
 struct profile_acceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::revolution_per_minute_per_second>;
   static constexpr std::uint16_t index = 0x6083;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile acceleration";
 };
 
 /// Profile deceleration.  6084h:00  UNSIGNED32  rw                                 cpd.eds:1542
+/// Unit rpm/s: default value 0 rpm/s.
+/// Manual: 6.2.1.
 struct profile_deceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::revolution_per_minute_per_second>;
   static constexpr std::uint16_t index = 0x6084;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile deceleration";
 };
 
 /// Motion profile type.  6086h:00  INTEGER16  rw                                   cpd.eds:1553
+/// Values: 0 linear_ramp, 1 sin2_ramp, 2 jerk_free_ramp, 3 jerk_limited_ramp.
+/// See CiA 402-2, motion profile type.
 struct motion_profile_type : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  using type = meaning::motion_profile_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x6086;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Motion profile type";
 };
 
 /// Homing method.  6098h:00  INTEGER8  rw                                          cpd.eds:1563
+/// Values: 0 no_homing, 1 negative_limit_switch_and_index_pulse, 2 positive_limit_switch_and_index_pulse,
+///   3 home_switch_at_positive_end_off_and_index_pulse, 4 home_switch_at_positive_end_on_and_index_pulse,
+///   5 home_switch_at_negative_end_off_and_index_pulse, 6 home_switch_at_negative_end_on_and_index_pulse,
+///   7 home_switch_lower_edge_off_start_positive_and_index_pulse,
+///   8 home_switch_lower_edge_on_start_positive_and_index_pulse,
+///   9 home_switch_upper_edge_on_start_positive_and_index_pulse,
+///   10 home_switch_upper_edge_off_start_positive_and_index_pulse,
+///   11 home_switch_upper_edge_off_start_negative_and_index_pulse,
+///   12 home_switch_upper_edge_on_start_negative_and_index_pulse,
+///   13 home_switch_lower_edge_on_start_negative_and_index_pulse,
+///   14 home_switch_lower_edge_off_start_negative_and_index_pulse, 17 negative_limit_switch, 18 positive_limit_switch,
+///   19 home_switch_at_positive_end_off, 20 home_switch_at_positive_end_on, 21 home_switch_at_negative_end_off,
+///   22 home_switch_at_negative_end_on, 23 home_switch_lower_edge_off_start_positive,
+///   24 home_switch_lower_edge_on_start_positive, 25 home_switch_upper_edge_on_start_positive,
+///   26 home_switch_upper_edge_off_start_positive, 27 home_switch_upper_edge_off_start_negative,
+///   28 home_switch_upper_edge_on_start_negative, 29 home_switch_lower_edge_on_start_negative,
+///   30 home_switch_lower_edge_off_start_negative, 33 index_pulse_in_negative_direction,
+///   34 index_pulse_in_positive_direction, 35 present_position_35, 37 present_position.
+/// See CiA 402-2, 11.4.
 struct homing_method : canopen::TypedObject<std::int8_t, canopen::Access::rw> {
+  using type = meaning::homing_method;
+  using value = type;
   static constexpr std::uint16_t index = 0x6098;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Homing method";
 };
 
 /// Homing speeds.  6099h:01..02  UNSIGNED32  rw                                    cpd.eds:1586
+/// Unit rpm: default value 0 rpm.
+/// Manual: 6.2.3.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct homing_speeds : canopen::Object<0x6099, SubIndex, std::uint32_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::revolution_per_minute>;
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "homing_speeds has the sub-indices 0..2");
   static constexpr auto name = "Homing speeds";
 };
@@ -1266,14 +1643,22 @@ struct following_error_actual_value : canopen::TypedObject<std::int32_t, canopen
 };
 
 /// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                cpd.eds:1617
+/// Unit rpm: default value 0 rpm.
+/// Manual: 6.2.2.
 struct target_velocity : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::int32_t, canopen::unit::revolution_per_minute>;
   static constexpr std::uint16_t index = 0x60FF;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target velocity";
 };
 
 /// Supported drive modes.  6502h:00  UNSIGNED32  ro                                cpd.eds:1629
+/// Bits: 0 profile_position, 1 velocity, 2 profile_velocity, 3 profile_torque, 5 homing, 6 interpolated_position,
+///   7 cyclic_synchronous_position, 8 cyclic_synchronous_velocity, 9 cyclic_synchronous_torque,
+///   10 cyclic_synchronous_torque_with_commutation_angle, 16..31 manufacturer_specific_modes.
+/// See CiA 402-2, 8.4.10.
 struct supported_drive_modes : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::supported_drive_modes;
   static constexpr std::uint16_t index = 0x6502;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Supported drive modes";

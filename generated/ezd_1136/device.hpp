@@ -2,6 +2,8 @@
 #ifndef EDSC_EZD_1136_DEVICE_HPP
 #define EDSC_EZD_1136_DEVICE_HPP
 
+#include <canopen/base/constant_errors.hpp>
+//
 #include <array>
 #include <canopen/base/bytes.hpp>
 #include <canopen/can/cob_id_check.hpp>

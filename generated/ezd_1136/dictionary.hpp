@@ -2,6 +2,8 @@
 #ifndef EDSC_EZD_1136_DICTIONARY_HPP
 #define EDSC_EZD_1136_DICTIONARY_HPP
 
+#include <canopen/base/constant_errors.hpp>
+//
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -12,29 +14,41 @@
 #include <canopen/od/dictionary.hpp>
 #include <canopen/od/object.hpp>
 #include <canopen/od/object_list.hpp>
-
+#include <canopen/od/quantity.hpp>
+#include "meaning.hpp"
 namespace ezd_1136 {
 
 /// The entries of the object dictionary as types: index, sub-index, C++ type, access and mapping, checked at each use.
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  ro                                          ezd-1136.eds:81
+/// Bits: 0..15 device_profile_number, 16 frequency_converter, 17 servo_drive, 18 stepper_motor,
+///   22 multiple_device_modules, 24..31 manufacturer_mode.
+/// See CiA 402-1.
 struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::device_type;
   static constexpr std::uint16_t index = 0x1000;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
 };
 
 /// Error register.  1001h:00  UNSIGNED8  ro                                        ezd-1136.eds:91
+/// Bits: 0 general_error, 1 current, 2 voltage, 3 temperature, 4 communicate, 5 device_protocol,
+///   7 manufacturer_specified_error.
+/// Manual: Emergency Object Services, error register bits.
 struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  using type = meaning::error_register;
   static constexpr std::uint16_t index = 0x1001;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error register";
 };
 
 /// Pre-defined error field.  1003h:01..08  UNSIGNED32  ro                          ezd-1136.eds:228
+/// Bits: 0..15 error_code, 16..31 additional_information.
+/// See CiA 301, 7.5.2.4.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct pre_defined_error_field : canopen::Object<0x1003, SubIndex, std::uint32_t, canopen::Access::ro> {
+  using type = meaning::pre_defined_error_field;
   static_assert(SubIndex <= 8 || SubIndex == canopen::whole_array, "pre_defined_error_field has the sub-indices 0..8");
   static constexpr auto name = "Pre-defined error field";
 };
@@ -46,14 +60,20 @@ struct pre_defined_error_field<0> : canopen::TypedObject<std::uint8_t, canopen::
 };
 
 /// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          ezd-1136.eds:293
+/// Bits: 0..28 can_id, 29 extended_frame, 30 generates_sync.
+/// See CiA 301, 7.5.2.5.
 struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_sync;
   static constexpr std::uint16_t index = 0x1005;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
 };
 
 /// Communication cycle period.  1006h:00  UNSIGNED32  rw                           ezd-1136.eds:303
+/// Unit us: default value 0 us.
+/// See CiA 301, 7.5.2.6.
 struct communication_cycle_period : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::microsecond>;
   static constexpr std::uint16_t index = 0x1006;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Communication cycle period";
@@ -81,7 +101,10 @@ struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleStri
 };
 
 /// Guard time.  100Ch:00  UNSIGNED16  rw                                           ezd-1136.eds:340
+/// Unit ms: default value 0 ms.
+/// Manual: Node/Life Protection.
 struct guard_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x100C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Guard time";
@@ -95,15 +118,21 @@ struct life_time_factor : canopen::TypedObject<std::uint8_t, canopen::Access::rw
 };
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          ezd-1136.eds:360
+/// Bits: 0..28 can_id, 29 extended_frame, 31 not_valid.
+/// See CiA 301, 7.5.2.17.
 struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_emcy;
   static constexpr std::uint16_t index = 0x1014;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
 /// Consumer heartbeat time.  1016h:01..01  UNSIGNED32  rw                          ezd-1136.eds:386
+/// Bits: 0..15 heartbeat_time, 16..23 node_id.
+/// See CiA 301, 7.5.2.19.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct consumer_heartbeat_time : canopen::Object<0x1016, SubIndex, std::uint32_t, canopen::Access::rw> {
+  using type = meaning::consumer_heartbeat_time;
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "consumer_heartbeat_time has the sub-indices 0..1");
   static constexpr auto name = "Consumer heartbeat time";
 };
@@ -115,7 +144,10 @@ struct consumer_heartbeat_time<0> : canopen::TypedObject<std::uint8_t, canopen::
 };
 
 /// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              ezd-1136.eds:396
+/// Unit ms: default value 0 ms.
+/// Manual: Heartbeat.
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Producer heartbeat time";
@@ -142,7 +174,10 @@ struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr auto name = "Product code";
 };
 /// Revision number.  1018h:03  UNSIGNED32  ro                                      ezd-1136.eds:132
+/// Bits: 0..15 minor_revision_number, 16..31 major_revision_number.
+/// See CiA 301, 7.5.2.21.
 struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::identity_object_revision_number;
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
@@ -164,13 +199,19 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID client to server.  1200h:01  UNSIGNED32  ro                              ezd-1136.eds:419
+/// Bits: 0..28 can_id, 29 extended_frame, 30 dynamic, 31 not_valid.
+/// See CiA 301, 7.5.2.33.
 struct cob_id_client_to_server : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::sdo_server_parameter_cob_id_client_to_server;
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server";
 };
 /// COB-ID server to client.  1200h:02  UNSIGNED32  ro                              ezd-1136.eds:427
+/// Bits: 0..28 can_id, 29 extended_frame, 30 dynamic, 31 not_valid.
+/// See CiA 301, 7.5.2.33.
 struct cob_id_server_to_client : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::sdo_server_parameter_cob_id_client_to_server;
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client";
@@ -186,13 +227,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1400h:01  UNSIGNED32  rw                                  ezd-1136.eds:450
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// See CiA 301, 7.5.2.35.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1400h:02  UNSIGNED8  rw                                     ezd-1136.eds:460
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// See CiA 301, 7.5.2.35.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1400;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -208,13 +257,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1401h:01  UNSIGNED32  rw                                  ezd-1136.eds:482
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// See CiA 301, 7.5.2.35.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1401h:02  UNSIGNED8  rw                                     ezd-1136.eds:490
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// See CiA 301, 7.5.2.35.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1401;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -230,13 +287,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1402h:01  UNSIGNED32  rw                                  ezd-1136.eds:512
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// See CiA 301, 7.5.2.35.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1402h:02  UNSIGNED8  rw                                     ezd-1136.eds:520
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// See CiA 301, 7.5.2.35.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1402;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -252,13 +317,21 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by RPDO.  1403h:01  UNSIGNED32  rw                                  ezd-1136.eds:542
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// See CiA 301, 7.5.2.35.
 struct cob_id_used_by_rpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by RPDO";
 };
 /// Transmission type.  1403h:02  UNSIGNED8  rw                                     ezd-1136.eds:550
+/// Values: 0 synchronous_acyclic, 254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with the next SYNC.
+/// See CiA 301, 7.5.2.35.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1403;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
@@ -275,49 +348,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1600h:01  UNSIGNED32  rw                                      ezd-1136.eds:574
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1600h:02  UNSIGNED32  rw                                      ezd-1136.eds:582
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1600h:03  UNSIGNED32  rw                                      ezd-1136.eds:590
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1600h:04  UNSIGNED32  rw                                      ezd-1136.eds:598
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1600h:05  UNSIGNED32  rw                                      ezd-1136.eds:606
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1600h:06  UNSIGNED32  rw                                      ezd-1136.eds:614
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1600h:07  UNSIGNED32  rw                                      ezd-1136.eds:622
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1600h:08  UNSIGNED32  rw                                      ezd-1136.eds:630
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1600;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -334,49 +431,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1601h:01  UNSIGNED32  rw                                      ezd-1136.eds:653
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1601h:02  UNSIGNED32  rw                                      ezd-1136.eds:661
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1601h:03  UNSIGNED32  rw                                      ezd-1136.eds:669
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1601h:04  UNSIGNED32  rw                                      ezd-1136.eds:677
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1601h:05  UNSIGNED32  rw                                      ezd-1136.eds:685
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1601h:06  UNSIGNED32  rw                                      ezd-1136.eds:693
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1601h:07  UNSIGNED32  rw                                      ezd-1136.eds:701
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1601h:08  UNSIGNED32  rw                                      ezd-1136.eds:709
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1601;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -393,49 +514,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1602h:01  UNSIGNED32  rw                                      ezd-1136.eds:732
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1602h:02  UNSIGNED32  rw                                      ezd-1136.eds:740
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1602h:03  UNSIGNED32  rw                                      ezd-1136.eds:748
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1602h:04  UNSIGNED32  rw                                      ezd-1136.eds:756
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1602h:05  UNSIGNED32  rw                                      ezd-1136.eds:764
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1602h:06  UNSIGNED32  rw                                      ezd-1136.eds:772
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1602h:07  UNSIGNED32  rw                                      ezd-1136.eds:780
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1602h:08  UNSIGNED32  rw                                      ezd-1136.eds:788
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1602;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -452,49 +597,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1603h:01  UNSIGNED32  rw                                      ezd-1136.eds:811
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1603h:02  UNSIGNED32  rw                                      ezd-1136.eds:819
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1603h:03  UNSIGNED32  rw                                      ezd-1136.eds:827
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1603h:04  UNSIGNED32  rw                                      ezd-1136.eds:835
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1603h:05  UNSIGNED32  rw                                      ezd-1136.eds:843
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1603h:06  UNSIGNED32  rw                                      ezd-1136.eds:851
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1603h:07  UNSIGNED32  rw                                      ezd-1136.eds:859
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1603h:08  UNSIGNED32  rw                                      ezd-1136.eds:867
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1603;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -510,25 +679,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  ezd-1136.eds:890
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// See CiA 301, 7.5.2.37.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1800h:02  UNSIGNED8  rw                                     ezd-1136.eds:900
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// See CiA 301, 7.5.2.37.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1800h:03  UNSIGNED16  rw                                         ezd-1136.eds:909
+/// Unit us, scale 100: default value 0 us.
+/// Manual: PDO communication parameters, prohibited time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1800h:05  UNSIGNED16  rw                                          ezd-1136.eds:920
+/// Unit ms: default value 0 ms.
+/// See CiA 301, 7.5.2.37.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -544,25 +728,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1801h:01  UNSIGNED32  rw                                  ezd-1136.eds:942
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// See CiA 301, 7.5.2.37.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1801h:02  UNSIGNED8  rw                                     ezd-1136.eds:950
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// See CiA 301, 7.5.2.37.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1801h:03  UNSIGNED16  rw                                         ezd-1136.eds:959
+/// Unit us, scale 100: default value 0 us.
+/// Manual: PDO communication parameters, prohibited time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1801h:05  UNSIGNED16  rw                                          ezd-1136.eds:969
+/// Unit ms: default value 0 ms.
+/// See CiA 301, 7.5.2.37.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1801;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -578,25 +777,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1802h:01  UNSIGNED32  rw                                  ezd-1136.eds:991
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// See CiA 301, 7.5.2.37.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1802h:02  UNSIGNED8  rw                                     ezd-1136.eds:999
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// See CiA 301, 7.5.2.37.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1802h:03  UNSIGNED16  rw                                         ezd-1136.eds:1007
+/// Unit us, scale 100: default value 0 us.
+/// Manual: PDO communication parameters, prohibited time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1802h:05  UNSIGNED16  rw                                          ezd-1136.eds:1017
+/// Unit ms: default value 0 ms.
+/// See CiA 301, 7.5.2.37.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1802;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -612,25 +826,40 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr auto name = "Highest sub-index supported";
 };
 /// COB-ID used by TPDO.  1803h:01  UNSIGNED32  rw                                  ezd-1136.eds:1040
+/// Bits: 0..28 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// See CiA 301, 7.5.2.37.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_communication_parameter_1_cob_id_used_by_rpdo;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1803h:02  UNSIGNED8  rw                                     ezd-1136.eds:1048
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// See CiA 301, 7.5.2.37.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
 };
 /// Inhibit time.  1803h:03  UNSIGNED16  rw                                         ezd-1136.eds:1056
+/// Unit us, scale 100: default value 0 us.
+/// Manual: PDO communication parameters, prohibited time.
 struct inhibit_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Inhibit time";
 };
 /// Event timer.  1803h:05  UNSIGNED16  rw                                          ezd-1136.eds:1066
+/// Unit ms: default value 0 ms.
+/// See CiA 301, 7.5.2.37.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1803;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
@@ -647,49 +876,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A00h:01  UNSIGNED32  rw                                      ezd-1136.eds:1090
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A00h:02  UNSIGNED32  rw                                      ezd-1136.eds:1098
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A00h:03  UNSIGNED32  rw                                      ezd-1136.eds:1106
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A00h:04  UNSIGNED32  rw                                      ezd-1136.eds:1114
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A00h:05  UNSIGNED32  rw                                      ezd-1136.eds:1122
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A00h:06  UNSIGNED32  rw                                      ezd-1136.eds:1130
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A00h:07  UNSIGNED32  rw                                      ezd-1136.eds:1138
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A00h:08  UNSIGNED32  rw                                      ezd-1136.eds:1146
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -706,49 +959,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A01h:01  UNSIGNED32  rw                                      ezd-1136.eds:1169
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A01h:02  UNSIGNED32  rw                                      ezd-1136.eds:1177
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A01h:03  UNSIGNED32  rw                                      ezd-1136.eds:1185
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A01h:04  UNSIGNED32  rw                                      ezd-1136.eds:1193
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A01h:05  UNSIGNED32  rw                                      ezd-1136.eds:1201
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A01h:06  UNSIGNED32  rw                                      ezd-1136.eds:1209
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A01h:07  UNSIGNED32  rw                                      ezd-1136.eds:1217
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A01h:08  UNSIGNED32  rw                                      ezd-1136.eds:1225
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A01;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -765,49 +1042,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A02h:01  UNSIGNED32  rw                                      ezd-1136.eds:1248
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A02h:02  UNSIGNED32  rw                                      ezd-1136.eds:1256
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A02h:03  UNSIGNED32  rw                                      ezd-1136.eds:1264
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A02h:04  UNSIGNED32  rw                                      ezd-1136.eds:1272
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A02h:05  UNSIGNED32  rw                                      ezd-1136.eds:1280
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A02h:06  UNSIGNED32  rw                                      ezd-1136.eds:1288
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A02h:07  UNSIGNED32  rw                                      ezd-1136.eds:1296
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A02h:08  UNSIGNED32  rw                                      ezd-1136.eds:1304
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A02;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -824,49 +1125,73 @@ struct number_of_mapped_objects : canopen::TypedObject<std::uint8_t, canopen::Ac
   static constexpr type high_limit = 8;
 };
 /// Mapping entry 1.  1A03h:01  UNSIGNED32  rw                                      ezd-1136.eds:1327
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
 };
 /// Mapping entry 2.  1A03h:02  UNSIGNED32  rw                                      ezd-1136.eds:1335
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
 };
 /// Mapping entry 3.  1A03h:03  UNSIGNED32  rw                                      ezd-1136.eds:1343
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_3 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Mapping entry 3";
 };
 /// Mapping entry 4.  1A03h:04  UNSIGNED32  rw                                      ezd-1136.eds:1351
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_4 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x04;
   static constexpr auto name = "Mapping entry 4";
 };
 /// Mapping entry 5.  1A03h:05  UNSIGNED32  rw                                      ezd-1136.eds:1359
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_5 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Mapping entry 5";
 };
 /// Mapping entry 6.  1A03h:06  UNSIGNED32  rw                                      ezd-1136.eds:1367
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_6 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x06;
   static constexpr auto name = "Mapping entry 6";
 };
 /// Mapping entry 7.  1A03h:07  UNSIGNED32  rw                                      ezd-1136.eds:1375
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_7 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x07;
   static constexpr auto name = "Mapping entry 7";
 };
 /// Mapping entry 8.  1A03h:08  UNSIGNED32  rw                                      ezd-1136.eds:1383
+/// Bits: 0..7 object_length, 8..15 sub_index, 16..31 index.
+/// Manual: PDO Mapping parameters.
 struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::rpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A03;
   static constexpr std::uint8_t sub_index = 0x08;
   static constexpr auto name = "Mapping entry 8";
@@ -874,14 +1199,20 @@ struct mapping_entry_8 : canopen::TypedObject<std::uint32_t, canopen::Access::rw
 }  // namespace tpdo_mapping_parameter_4
 
 /// Integrated current.  2064h:00  INTEGER16  ro                                    ezd-1136.eds:1831
+/// Unit A, scale 1/1000: default value 0 A.
+/// Manual: Configuration parameters, 2064h.
 struct integrated_current : canopen::TypedObject<std::int16_t, canopen::Access::ro> {
+  using type = canopen::Quantity<std::int16_t, canopen::unit::ampere, std::ratio<1, 1000>>;
   static constexpr std::uint16_t index = 0x2064;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Integrated current";
 };
 
 /// Bus voltage.  2065h:00  UNSIGNED16  ro                                          ezd-1136.eds:1842
+/// Unit V, scale 1/100: default value 0 V.
+/// Manual: Configuration parameters, 2065h.
 struct bus_voltage : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::volt, std::ratio<1, 100>>;
   static constexpr std::uint16_t index = 0x2065;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Bus voltage";
@@ -895,7 +1226,11 @@ struct drive_error_code : canopen::TypedObject<std::uint16_t, canopen::Access::r
 };
 
 /// Run state.  206Dh:00  INTEGER16  ro                                             ezd-1136.eds:1863
+/// Values: 1 enable_disconnected, 2 stopped, 3 running.
+/// Manual: Operation status.
 struct run_state : canopen::TypedObject<std::int16_t, canopen::Access::ro> {
+  using type = meaning::run_state;
+  using value = type;
   static constexpr std::uint16_t index = 0x206D;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Run state";
@@ -909,7 +1244,10 @@ struct locked_rotor_detection : canopen::TypedObject<std::uint16_t, canopen::Acc
 };
 
 /// Analog voltage.  2090h:00  UNSIGNED16  ro                                       ezd-1136.eds:1881
+/// Unit V, scale 1/1000: default value 0 V.
+/// Manual: Configuration parameters, 2090h.
 struct analog_voltage : canopen::TypedObject<std::uint16_t, canopen::Access::ro> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::volt, std::ratio<1, 1000>>;
   static constexpr std::uint16_t index = 0x2090;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Analog voltage";
@@ -923,19 +1261,28 @@ struct current_loop_kpt : canopen::TypedObject<std::uint16_t, canopen::Access::r
 };
 
 /// Running direction.  20C9h:00  UNSIGNED16  rw                                    ezd-1136.eds:1902
+/// Values: 0 default_direction, 1 reverse_running_direction, 2 reverse_encoder_direction,
+///   3 reverse_running_direction_and_encoder_direction.
+/// Manual: Configuration parameters, 20C9h.
 struct running_direction : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = meaning::running_direction;
+  using value = type;
   static constexpr std::uint16_t index = 0x20C9;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Running direction";
-  static constexpr type high_limit = 3;
+  static constexpr std::uint16_t high_limit = 3;
 };
 
 /// Control mode.  20CEh:00  UNSIGNED16  wo                                         ezd-1136.eds:1915
+/// Values: 0 pulse_control, 1 software_control, 5 torque_control, 6 position_depression.
+/// Manual: Configuration parameters, 20CEh.
 struct control_mode : canopen::TypedObject<std::uint16_t, canopen::Access::wo> {
+  using type = meaning::control_mode;
+  using value = type;
   static constexpr std::uint16_t index = 0x20CE;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Control mode";
-  static constexpr type high_limit = 6;
+  static constexpr std::uint16_t high_limit = 6;
 };
 
 /// L1e6.  20D0h:00  UNSIGNED16  rw                                                 ezd-1136.eds:1925
@@ -953,12 +1300,15 @@ struct r1e3 : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
 };
 
 /// Idle current.  20D5h:00  UNSIGNED16  rw                                         ezd-1136.eds:1944
+/// Unit %: 10 % to 100 %; default value 50 %.
+/// Manual: Configuration parameters, 20D5h.
 struct idle_current : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::percent>;
   static constexpr std::uint16_t index = 0x20D5;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Idle current";
-  static constexpr type low_limit = 10;
-  static constexpr type high_limit = 100;
+  static constexpr type low_limit{canopen::raw(std::uint16_t{10})};
+  static constexpr type high_limit{canopen::raw(std::uint16_t{100})};
 };
 
 /// Current loop KiS.  20D7h:00  UNSIGNED16  rw                                     ezd-1136.eds:1956
@@ -969,12 +1319,16 @@ struct current_loop_ki_s : canopen::TypedObject<std::uint16_t, canopen::Access::
 };
 
 /// Motor mode setting.  20D9h:00  INTEGER16  rw                                    ezd-1136.eds:1965
+/// Values: 0 open_loop, 1 closed_loop.
+/// Manual: Configuration parameters, 20D9h.
 struct motor_mode_setting : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  using type = meaning::motor_mode_setting;
+  using value = type;
   static constexpr std::uint16_t index = 0x20D9;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Motor mode setting";
-  static constexpr type low_limit = 0;
-  static constexpr type high_limit = 1;
+  static constexpr std::int16_t low_limit = 0;
+  static constexpr std::int16_t high_limit = 1;
 };
 
 /// LRD threshold speed.  20DBh:00  UNSIGNED16  rw                                  ezd-1136.eds:1976
@@ -1028,30 +1382,38 @@ struct current_loop_ki_maximum : canopen::TypedObject<std::uint16_t, canopen::Ac
 };
 
 /// Current command setting.  20F1h:00  INTEGER16  rw                               ezd-1136.eds:2041
+/// Unit A, scale 1/1000: 0.1 A to 6.5 A; default value 1.5 A.
+/// Manual: Configuration parameters, 20F1h.
 struct current_command_setting : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::int16_t, canopen::unit::ampere, std::ratio<1, 1000>>;
   static constexpr std::uint16_t index = 0x20F1;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current command setting";
-  static constexpr type low_limit = 100;
-  static constexpr type high_limit = 6500;
+  static constexpr type low_limit{canopen::raw(std::int16_t{100})};
+  static constexpr type high_limit{canopen::raw(std::int16_t{6500})};
 };
 
 /// Resolution setting.  20F2h:00  UNSIGNED32  rw                                   ezd-1136.eds:2054
+/// Unit PPR: 200 PPR to 102400 PPR; default value 4000 PPR.
 struct resolution_setting : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::increment_per_revolution>;
   static constexpr std::uint16_t index = 0x20F2;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Resolution setting";
-  static constexpr type low_limit = 200;
-  static constexpr type high_limit = 102400;
+  static constexpr type low_limit{canopen::raw(std::uint32_t{200})};
+  static constexpr type high_limit{canopen::raw(std::uint32_t{102400})};
 };
 
 /// Half current time.  20F5h:00  UNSIGNED16  rw                                    ezd-1136.eds:2067
+/// Unit ms: 1 ms to 30000 ms; default value 200 ms.
+/// Manual: Configuration parameters, 20F5h.
 struct half_current_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x20F5;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Half current time";
-  static constexpr type low_limit = 1;
-  static constexpr type high_limit = 30000;
+  static constexpr type low_limit{canopen::raw(std::uint16_t{1})};
+  static constexpr type high_limit{canopen::raw(std::uint16_t{30000})};
 };
 
 /// Encoder resolution.  20F6h:00  UNSIGNED16  rw                                   ezd-1136.eds:2079
@@ -1230,11 +1592,15 @@ struct torque_speed : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
 };
 
 /// Automatic parameter detection.  2127h:00  UNSIGNED16  rw                        ezd-1136.eds:2304
+/// Values: 0 manual_settings, 1 automatic_detection.
+/// Manual: Configuration parameters, 2127h.
 struct automatic_parameter_detection : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = meaning::automatic_parameter_detection;
+  using value = type;
   static constexpr std::uint16_t index = 0x2127;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Automatic parameter detection";
-  static constexpr type high_limit = 1;
+  static constexpr std::uint16_t high_limit = 1;
 };
 
 /// Digital input functions.  2190h:01..08  UNSIGNED16  rw                          ezd-1136.eds:2328
@@ -1317,125 +1683,199 @@ struct global_variable_5 : canopen::TypedObject<std::int32_t, canopen::Access::r
 };
 
 /// Error code.  603Fh:00  UNSIGNED16  ro  TPDO                                     ezd-1136.eds:1393
+/// Bits: 0..7 alarm, 8 eeprom_data_read_error, 9 bus_voltage_instability, 10 emergency_stop, 11 positive_limit,
+///   12 negative_limit, 13 home_return_failure.
+/// Manual: Emergency error code.
 struct error_code : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = meaning::error_code;
   static constexpr std::uint16_t index = 0x603F;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error code";
 };
 
 /// Controlword.  6040h:00  UNSIGNED16  rww  RPDO                                   ezd-1136.eds:1403
+/// Bits: 0 firing, 1 voltage_output, 2 quick_stop, 3 allow, 7 error_reset, 8 suspend.
+/// Bits for profile_position: 4 new_location_point, 5 immediately_trigger, 6 abs_ref.
+/// Bits for home: 4 start_movement.
+/// Values of command: firing, quick_stop, able.
+/// Manual: Control and status word, control word bits; Control and status word, typical value.
 struct controlword : canopen::TypedObject<std::uint16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = meaning::controlword;
   static constexpr std::uint16_t index = 0x6040;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Controlword";
 };
 
 /// Statusword.  6041h:00  UNSIGNED16  ro  TPDO                                     ezd-1136.eds:1412
+/// Bits: 0 ready_to_switch_on, 1 switched_on, 2 operation_enabled, 3 fault, 4 voltage_enabled, 5 quick_stop,
+///   6 switch_on_disabled, 9 remote, 11 limit_effective.
+/// Bits for profile_position: 8 abnormal_stop, 10 position_reach, 12 new_location_point_response, 14 parameter_has_0,
+///   15 triggering_response.
+/// Bits for profile_velocity: 8 stop, 10 speed_reached, 12 speed_is_0, 14 parameter_has_0.
+/// Bits for home: 8 abnormal_stop, 10 position_reach, 12 origin_completed, 13 origin_error, 14 parameter_has_0,
+///   15 triggering_response.
+/// Bits for csp: 12 follows_the_master_station.
+/// Values of state: not_ready_to_switch_on, switch_on_disabled, ready_to_switch_on, switched_on, operation_enabled,
+///   quick_stop_active, fault_reaction_active, fault.
+/// Manual: Control and status word, status word bits.
 struct statusword : canopen::TypedObject<std::uint16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = meaning::statusword;
   static constexpr std::uint16_t index = 0x6041;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Statusword";
 };
 
 /// Quick stop option code.  605Ah:00  INTEGER16  rw                                ezd-1136.eds:1421
+/// Values: 1 slow_down_ramp, 2 quick_stop_ramp, 5 slow_down_ramp_and_stay, 6 quick_stop_ramp_and_stay.
+/// 5 to 8 stay in Quick Stop Active.
+/// Manual: Motion parameters, 605Ah.
 struct quick_stop_option_code : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  using type = meaning::quick_stop_option_code;
+  using value = type;
   static constexpr std::uint16_t index = 0x605A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Quick stop option code";
-  static constexpr type low_limit = 1;
-  static constexpr type high_limit = 6;
+  static constexpr std::int16_t low_limit = 1;
+  static constexpr std::int16_t high_limit = 6;
 };
 
 /// Shutdown option code.  605Bh:00  INTEGER16  rw                                  ezd-1136.eds:1432
+/// Values: 0 disable_drive_function, 1 slow_down_ramp.
+/// See CiA 402-2, 8.4.4.
 struct shutdown_option_code : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  using type = meaning::shutdown_option_code;
+  using value = type;
   static constexpr std::uint16_t index = 0x605B;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Shutdown option code";
 };
 
 /// Disable operation option code.  605Ch:00  INTEGER16  rw                         ezd-1136.eds:1441
+/// Values: 0 disable_drive_function, 1 slow_down_ramp.
+/// See CiA 402-2, 8.4.5.
 struct disable_operation_option_code : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  using type = meaning::shutdown_option_code;
+  using value = type;
   static constexpr std::uint16_t index = 0x605C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Disable operation option code";
 };
 
 /// Fault reaction option code.  605Eh:00  INTEGER16  rw                            ezd-1136.eds:1450
+/// Values: 0 disable_drive_function, 1 slow_down_ramp, 2 quick_stop_ramp, 3 current_limit, 4 voltage_limit.
+/// See CiA 402-2, 8.4.7.
 struct fault_reaction_option_code : canopen::TypedObject<std::int16_t, canopen::Access::rw> {
+  using type = meaning::fault_reaction_option_code;
+  using value = type;
   static constexpr std::uint16_t index = 0x605E;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Fault reaction option code";
 };
 
 /// Modes of operation.  6060h:00  INTEGER8  rww  RPDO                              ezd-1136.eds:1460
+/// Values: 1 profile_position, 3 profile_velocity, 6 home, 8 csp.
+/// Manual: Motion parameters, 6060h, and glossary.
 struct modes_of_operation : canopen::TypedObject<std::int8_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = meaning::modes_of_operation;
+  using value = type;
   static constexpr std::uint16_t index = 0x6060;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Modes of operation";
-  static constexpr type low_limit = 1;
-  static constexpr type high_limit = 8;
+  static constexpr std::int8_t low_limit = 1;
+  static constexpr std::int8_t high_limit = 8;
   static constexpr canopen::ValueRange accepted[] = {{0, 1}, {3, 3}, {6, 6}, {8, 8}};
 };
 
 /// Modes of operation display.  6061h:00  INTEGER8  ro  TPDO                       ezd-1136.eds:1471
+/// Values: 1 profile_position, 3 profile_velocity, 6 home, 8 csp.
+/// Manual: Motion parameters, 6061h.
 struct modes_of_operation_display : canopen::TypedObject<std::int8_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = meaning::modes_of_operation;
+  using value = type;
   static constexpr std::uint16_t index = 0x6061;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Modes of operation display";
 };
 
 /// Position actual value.  6064h:00  INTEGER32  ro  TPDO                           ezd-1136.eds:1480
+/// Unit inc.
+/// Manual: Motion parameters.
 struct position_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = canopen::Quantity<std::int32_t, canopen::unit::increment>;
   static constexpr std::uint16_t index = 0x6064;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Position actual value";
 };
 
 /// Velocity actual value.  606Ch:00  INTEGER32  ro  TPDO                           ezd-1136.eds:1490
+/// Unit rev/s, scale 1/100.
+/// Manual: Motion parameters.
 struct velocity_actual_value : canopen::TypedObject<std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = canopen::Quantity<std::int32_t, canopen::unit::revolution_per_second, std::ratio<1, 100>>;
   static constexpr std::uint16_t index = 0x606C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Velocity actual value";
 };
 
 /// Target torque.  6071h:00  INTEGER16  rww  RPDO                                  ezd-1136.eds:1502
+/// Unit permille: default value 0 permille.
+/// Of the rated torque 6076h.
+/// See CiA 402-2, target torque.
 struct target_torque : canopen::TypedObject<std::int16_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::int16_t, canopen::unit::permille>;
   static constexpr std::uint16_t index = 0x6071;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target torque";
 };
 
 /// Torque demand value.  6074h:00  INTEGER16  ro                                   ezd-1136.eds:1511
+/// Unit permille: default value 0 permille.
+/// Of the rated torque 6076h.
+/// See CiA 402-2, torque demand.
 struct torque_demand_value : canopen::TypedObject<std::int16_t, canopen::Access::ro> {
+  using type = canopen::Quantity<std::int16_t, canopen::unit::permille>;
   static constexpr std::uint16_t index = 0x6074;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Torque demand value";
 };
 
 /// Current actual value.  6078h:00  INTEGER16  ro                                  ezd-1136.eds:1520
+/// Unit permille: default value 0 permille.
+/// Of the rated current 6075h.
+/// See CiA 402-2, current actual value.
 struct current_actual_value : canopen::TypedObject<std::int16_t, canopen::Access::ro> {
+  using type = canopen::Quantity<std::int16_t, canopen::unit::permille>;
   static constexpr std::uint16_t index = 0x6078;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Current actual value";
 };
 
 /// Target position.  607Ah:00  INTEGER32  rww  RPDO                                ezd-1136.eds:1529
+/// Unit inc: default value 0 inc.
+/// Manual: Motion parameters.
 struct target_position : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::int32_t, canopen::unit::increment>;
   static constexpr std::uint16_t index = 0x607A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target position";
 };
 
 /// Home offset.  607Ch:00  INTEGER32  rww  RPDO                                    ezd-1136.eds:1540
+/// Unit inc: default value 0 inc.
+/// Manual: Motion parameters.
 struct home_offset : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::int32_t, canopen::unit::increment>;
   static constexpr std::uint16_t index = 0x607C;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Home offset";
 };
 
 /// Software position limit.  607Dh:01..02  INTEGER32  rw                           ezd-1136.eds:1563
+/// Unit inc: default value -2000000000 inc.
+/// Manual: Motion parameters.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct software_position_limit : canopen::Object<0x607D, SubIndex, std::int32_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::int32_t, canopen::unit::increment>;
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "software_position_limit has the sub-indices 0..2");
   static constexpr auto name = "Software position limit";
 };
@@ -1453,35 +1893,50 @@ using software_position_limit_minimum_software_position_limit = software_positio
 using software_position_limit_maximum_software_position_limit = software_position_limit<2>;
 
 /// Profile velocity.  6081h:00  UNSIGNED32  rww  RPDO                              ezd-1136.eds:1582
+/// Unit rev/s, scale 1/100: default value 0 rev/s.
+/// Manual: Motion parameters.
 struct profile_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::revolution_per_second, std::ratio<1, 100>>;
   static constexpr std::uint16_t index = 0x6081;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile velocity";
 };
 
 /// End velocity.  6082h:00  UNSIGNED32  rww  RPDO                                  ezd-1136.eds:1595
+/// Unit rev/s, scale 1/100: default value 0 rev/s.
+/// Manual: Operating modes, dictionary of objects.
 struct end_velocity : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::revolution_per_second, std::ratio<1, 100>>;
   static constexpr std::uint16_t index = 0x6082;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "End velocity";
 };
 
 /// Profile acceleration.  6083h:00  UNSIGNED32  rww  RPDO                          ezd-1136.eds:1607
+/// Unit rev/s²: default value 0 rev/s².
+/// Manual: Motion parameters.
 struct profile_acceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::revolution_per_second_squared>;
   static constexpr std::uint16_t index = 0x6083;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile acceleration";
 };
 
 /// Profile deceleration.  6084h:00  UNSIGNED32  rww  RPDO                          ezd-1136.eds:1617
+/// Unit rev/s²: default value 0 rev/s².
+/// Manual: Motion parameters.
 struct profile_deceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::revolution_per_second_squared>;
   static constexpr std::uint16_t index = 0x6084;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Profile deceleration";
 };
 
 /// Quick stop deceleration.  6085h:00  UNSIGNED32  rww  RPDO                       ezd-1136.eds:1627
+/// Unit rev/s²: default value 0 rev/s².
+/// Manual: Motion parameters.
 struct quick_stop_deceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::revolution_per_second_squared>;
   static constexpr std::uint16_t index = 0x6085;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Quick stop deceleration";
@@ -1495,15 +1950,39 @@ struct torque_slope : canopen::TypedObject<std::uint32_t, canopen::Access::rww, 
 };
 
 /// Homing method.  6098h:00  INTEGER8  rww  RPDO                                   ezd-1136.eds:1646
+/// Values: 0 no_homing, 1 negative_limit_switch_and_index_pulse, 2 positive_limit_switch_and_index_pulse,
+///   3 home_switch_at_positive_end_off_and_index_pulse, 4 home_switch_at_positive_end_on_and_index_pulse,
+///   5 home_switch_at_negative_end_off_and_index_pulse, 6 home_switch_at_negative_end_on_and_index_pulse,
+///   7 home_switch_lower_edge_off_start_positive_and_index_pulse,
+///   8 home_switch_lower_edge_on_start_positive_and_index_pulse,
+///   9 home_switch_upper_edge_on_start_positive_and_index_pulse,
+///   10 home_switch_upper_edge_off_start_positive_and_index_pulse,
+///   11 home_switch_upper_edge_off_start_negative_and_index_pulse,
+///   12 home_switch_upper_edge_on_start_negative_and_index_pulse,
+///   13 home_switch_lower_edge_on_start_negative_and_index_pulse,
+///   14 home_switch_lower_edge_off_start_negative_and_index_pulse, 17 negative_limit_switch, 18 positive_limit_switch,
+///   19 home_switch_at_positive_end_off, 20 home_switch_at_positive_end_on, 21 home_switch_at_negative_end_off,
+///   22 home_switch_at_negative_end_on, 23 home_switch_lower_edge_off_start_positive,
+///   24 home_switch_lower_edge_on_start_positive, 25 home_switch_upper_edge_on_start_positive,
+///   26 home_switch_upper_edge_off_start_positive, 27 home_switch_upper_edge_off_start_negative,
+///   28 home_switch_upper_edge_on_start_negative, 29 home_switch_lower_edge_on_start_negative,
+///   30 home_switch_lower_edge_off_start_negative, 33 index_pulse_in_negative_direction,
+///   34 index_pulse_in_positive_direction, 35 present_position_35, 37 present_position.
+/// See CiA 402-2, 11.4.
 struct homing_method : canopen::TypedObject<std::int8_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = meaning::homing_method;
+  using value = type;
   static constexpr std::uint16_t index = 0x6098;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Homing method";
 };
 
 /// Homing speeds.  6099h:01..02  UNSIGNED32  rww  RPDO                             ezd-1136.eds:1668
+/// Unit rev/s, scale 1/100: default value 0 rev/s.
+/// Manual: Motion parameters.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct homing_speeds : canopen::Object<0x6099, SubIndex, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::revolution_per_second, std::ratio<1, 100>>;
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "homing_speeds has the sub-indices 0..2");
   static constexpr auto name = "Homing speeds";
 };
@@ -1521,7 +2000,10 @@ using homing_speeds_speed_during_search_for_switch = homing_speeds<1>;
 using homing_speeds_speed_during_search_for_zero = homing_speeds<2>;
 
 /// Homing acceleration.  609Ah:00  UNSIGNED32  rww  RPDO                           ezd-1136.eds:1689
+/// Unit rev/s²: default value 0 rev/s².
+/// Manual: Operating modes, dictionary of objects.
 struct homing_acceleration : canopen::TypedObject<std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::revolution_per_second_squared>;
   static constexpr std::uint16_t index = 0x609A;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Homing acceleration";
@@ -1535,15 +2017,25 @@ struct position_offset : canopen::TypedObject<std::int32_t, canopen::Access::rww
 };
 
 /// Digital inputs.  60FDh:00  UNSIGNED32  ro  TPDO                                 ezd-1136.eds:1709
+/// Bits: 0 negative_limit_switch, 1 positive_limit_switch, 2 home_switch, 3 interlock, 16 input_1, 17 input_2,
+///   18 input_3, 19 input_4, 20 input_5, 21 input_6, 22 input_7, 23 input_8, 24 input_9, 25 input_10, 26 input_11,
+///   27 input_12, 28 input_13, 29 input_14, 30 input_15, 31 input_16.
+/// See CiA 402-2, 10.5.7.
 struct digital_inputs : canopen::TypedObject<std::uint32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = meaning::digital_inputs;
   static constexpr std::uint16_t index = 0x60FD;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Digital inputs";
 };
 
 /// Digital outputs.  60FEh:01..02  UNSIGNED32  rww  RPDO                           ezd-1136.eds:1732
+/// Bits: 0 set_brake, 16 output_1, 17 output_2, 18 output_3, 19 output_4, 20 output_5, 21 output_6, 22 output_7,
+///   23 output_8, 24 output_9, 25 output_10, 26 output_11, 27 output_12, 28 output_13, 29 output_14, 30 output_15,
+///   31 output_16.
+/// See CiA 402-2, digital outputs.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct digital_outputs : canopen::Object<0x60FE, SubIndex, std::uint32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = meaning::digital_outputs;
   static_assert(SubIndex <= 2 || SubIndex == canopen::whole_array, "digital_outputs has the sub-indices 0..2");
   static constexpr auto name = "Digital outputs";
 };
@@ -1561,14 +2053,22 @@ using digital_outputs_physical_outputs = digital_outputs<1>;
 using digital_outputs_bit_mask = digital_outputs<2>;
 
 /// Target velocity.  60FFh:00  INTEGER32  rww  RPDO                                ezd-1136.eds:1749
+/// Unit rev/s, scale 1/100: default value 0 rev/s.
+/// Manual: Motion parameters.
 struct target_velocity : canopen::TypedObject<std::int32_t, canopen::Access::rww, canopen::Mappable::rpdo> {
+  using type = canopen::Quantity<std::int32_t, canopen::unit::revolution_per_second, std::ratio<1, 100>>;
   static constexpr std::uint16_t index = 0x60FF;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Target velocity";
 };
 
 /// Supported drive modes.  6502h:00  UNSIGNED32  ro                                ezd-1136.eds:1760
+/// Bits: 0 profile_position, 1 velocity, 2 profile_velocity, 3 profile_torque, 5 homing, 6 interpolated_position,
+///   7 cyclic_synchronous_position, 8 cyclic_synchronous_velocity, 9 cyclic_synchronous_torque,
+///   10 cyclic_synchronous_torque_with_commutation_angle, 16..31 manufacturer_specific_modes.
+/// See CiA 402-2, 8.4.10.
 struct supported_drive_modes : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::supported_drive_modes;
   static constexpr std::uint16_t index = 0x6502;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Supported drive modes";

@@ -2,6 +2,8 @@
 #ifndef EDSC_RK5C_DICTIONARY_HPP
 #define EDSC_RK5C_DICTIONARY_HPP
 
+#include <canopen/base/constant_errors.hpp>
+//
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -12,41 +14,57 @@
 #include <canopen/od/dictionary.hpp>
 #include <canopen/od/object.hpp>
 #include <canopen/od/object_list.hpp>
-
+#include <canopen/od/quantity.hpp>
+#include "meaning.hpp"
 namespace rk5c {
 
 /// The entries of the object dictionary as types: index, sub-index, C++ type, access and mapping, checked at each use.
 namespace od {
 
 /// Device type.  1000h:00  UNSIGNED32  ro                                          rk5c.eds:80
+/// Bits: 0..15 device_profile_number, 16..31 additional_information.
+/// Manual: 4.2, 1000h, figure 30.
 struct device_type : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::device_type;
   static constexpr std::uint16_t index = 0x1000;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Device type";
-  static constexpr type low_limit = 0x000A0196;
-  static constexpr type high_limit = 0x000A0196;
+  static constexpr std::uint32_t low_limit = 0x000A0196;
+  static constexpr std::uint32_t high_limit = 0x000A0196;
 };
 
 /// Error register.  1001h:00  UNSIGNED8  ro                                        rk5c.eds:93
+/// Bits: 0 generic_error, 1 current, 2 voltage, 3 temperature, 4 communication_error, 5 device_profile_specific,
+///   7 manufacturer_specific.
+/// Values of error: no_error, data_set_error, device_hardware_error.
+/// Manual: 4.2, 1001h, table 3.
 struct error_register : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
+  using type = meaning::error_register;
   static constexpr std::uint16_t index = 0x1001;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Error register";
-  static constexpr type low_limit = 0x00;
-  static constexpr type high_limit = 0x81;
+  static constexpr std::uint8_t low_limit = 0x00;
+  static constexpr std::uint8_t high_limit = 0x81;
 };
 
 /// Manufacturer status register.  1002h:00  UNSIGNED32  ro                         rk5c.eds:190
+/// Bits: 0 status, 1 working_state, 2 magnet_error, 3 range_error, 4 data_flash_error, 5 controller_error,
+///   6 temperature_state.
+/// Manual: 4.2, 1002h, figure 31.
 struct manufacturer_status_register : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::manufacturer_status_register;
   static constexpr std::uint16_t index = 0x1002;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Manufacturer status register";
-  static constexpr type low_limit = 0x00000000;
-  static constexpr type high_limit = 0x0000007F;
+  static constexpr std::uint32_t low_limit = 0x00000000;
+  static constexpr std::uint32_t high_limit = 0x0000007F;
 };
 
 /// COB-ID SYNC.  1005h:00  UNSIGNED32  rw                                          rk5c.eds:204
+/// Bits: 0..10 can_id, 29 extended_frame, 30 generates_sync.
+/// Manual: 4.2, 1005h, table 4.
 struct cob_id_sync : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_sync;
   static constexpr std::uint16_t index = 0x1005;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID SYNC";
@@ -74,8 +92,14 @@ struct manufacturer_software_version : canopen::TypedObject<canopen::VisibleStri
 };
 
 /// Store parameters.  1010h:01..01  UNSIGNED32  rw                                 rk5c.eds:256
+/// Values: 0 does_not_save, 1 saves_on_command, 2 saves_autonomously, 3 saves_on_command_and_autonomously,
+///   1702257011 save.
+/// A read value has the abilities of the device; the written value is the signature.
+/// Manual: 4.2, 1010h.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct store_parameters : canopen::Object<0x1010, SubIndex, std::uint32_t, canopen::Access::rw> {
+  using type = meaning::store_parameters;
+  using value = type;
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "store_parameters has the sub-indices 0..1");
   static constexpr auto name = "Store parameters";
 };
@@ -90,8 +114,13 @@ struct store_parameters<0> : canopen::TypedObject<std::uint8_t, canopen::Access:
 using store_parameters_save_all_parameters = store_parameters<1>;
 
 /// Restore default parameters.  1011h:01..01  UNSIGNED32  rw                       rk5c.eds:283
+/// Values: 0 does_not_restore, 1 restores_on_command, 1684107116 load.
+/// A read value has the abilities of the device; the written value is the signature.
+/// Manual: 4.2, 1011h.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct restore_default_parameters : canopen::Object<0x1011, SubIndex, std::uint32_t, canopen::Access::rw> {
+  using type = meaning::restore_default_parameters;
+  using value = type;
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "restore_default_parameters has the sub-indices 0..1");
   static constexpr auto name = "Restore default parameters";
 };
@@ -106,26 +135,35 @@ struct restore_default_parameters<0> : canopen::TypedObject<std::uint8_t, canope
 using restore_default_parameters_restore_all_default_parameters = restore_default_parameters<1>;
 
 /// COB-ID EMCY.  1014h:00  UNSIGNED32  rw                                          rk5c.eds:293
+/// Bits: 0..10 can_id, 29 extended_frame, 31 not_valid.
+/// Manual: 4.2, 1014h, table 5.
 struct cob_id_emcy : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::cob_id_emcy;
   static constexpr std::uint16_t index = 0x1014;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "COB-ID EMCY";
 };
 
 /// Inhibit time EMCY.  1015h:00  UNSIGNED16  rw                                    rk5c.eds:303
+/// Unit us, scale 100: default value 0 us.
+/// Manual: 4.2, 1015h.
 struct inhibit_time_emcy : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::microsecond, std::ratio<100>>;
   static constexpr std::uint16_t index = 0x1015;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Inhibit time EMCY";
 };
 
 /// Producer heartbeat time.  1017h:00  UNSIGNED16  rw                              rk5c.eds:314
+/// Unit ms: 0 ms to 65535 ms; default value 0 ms.
+/// Manual: 4.2, 1017h.
 struct producer_heartbeat_time : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1017;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Producer heartbeat time";
-  static constexpr type low_limit = 0;
-  static constexpr type high_limit = 65535;
+  static constexpr type low_limit{canopen::raw(std::uint16_t{0})};
+  static constexpr type high_limit{canopen::raw(std::uint16_t{65535})};
 };
 
 /// Identity object.  1018h
@@ -155,7 +193,10 @@ struct product_code : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
   static constexpr type high_limit = 0x43354B52;
 };
 /// Revision number.  1018h:03  UNSIGNED32  ro                                      rk5c.eds:145
+/// Bits: 0..15 minor_revision_number, 16..31 major_revision_number.
+/// See CiA 301, 7.5.2.21.
 struct revision_number : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::identity_object_revision_number;
   static constexpr std::uint16_t index = 0x1018;
   static constexpr std::uint8_t sub_index = 0x03;
   static constexpr auto name = "Revision number";
@@ -179,20 +220,26 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type high_limit = 2;
 };
 /// COB-ID client to server (rx).  1200h:01  UNSIGNED32  ro                         rk5c.eds:343
+/// Bits: 0..10 can_id, 29 extended_frame, 30 dynamic, 31 not_valid.
+/// Manual: 4.2, 1200h, table 6.
 struct cob_id_client_to_server_rx : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::sdo_server_parameter_cob_id_client_to_server_rx;
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID client to server (rx)";
-  static constexpr type low_limit = 0x00000601;
-  static constexpr type high_limit = 0x0000067F;
+  static constexpr std::uint32_t low_limit = 0x00000601;
+  static constexpr std::uint32_t high_limit = 0x0000067F;
 };
 /// COB-ID server to client (tx).  1200h:02  UNSIGNED32  ro                         rk5c.eds:356
+/// Bits: 0..10 can_id, 29 extended_frame, 30 dynamic, 31 not_valid.
+/// Manual: 4.2, 1200h, table 6.
 struct cob_id_server_to_client_tx : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::sdo_server_parameter_cob_id_client_to_server_rx;
   static constexpr std::uint16_t index = 0x1200;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "COB-ID server to client (tx)";
-  static constexpr type low_limit = 0x00000581;
-  static constexpr type high_limit = 0x000005FF;
+  static constexpr std::uint32_t low_limit = 0x00000581;
+  static constexpr std::uint32_t high_limit = 0x000005FF;
 };
 }  // namespace sdo_server_parameter
 
@@ -207,26 +254,38 @@ struct highest_sub_index_supported : canopen::TypedObject<std::uint8_t, canopen:
   static constexpr type high_limit = 5;
 };
 /// COB-ID used by TPDO.  1800h:01  UNSIGNED32  rw                                  rk5c.eds:384
+/// Bits: 0..10 can_id, 29 extended_frame, 30 no_rtr, 31 not_valid.
+/// Manual: 4.2, 1800h, table 7.
 struct cob_id_used_by_tpdo : canopen::TypedObject<std::uint32_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_cob_id_used_by_tpdo;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "COB-ID used by TPDO";
 };
 /// Transmission type.  1800h:02  UNSIGNED8  rw                                     rk5c.eds:396
+/// Values: 0 synchronous_acyclic, 252 rtr_only_synchronous, 253 rtr_only_event_driven,
+///   254 event_driven_manufacturer_specific, 255 event_driven_device_profile.
+/// 1 to 240: synchronous, with every n-th SYNC.
+/// Manual: 4.2, 1800h, table 8.
 struct transmission_type : canopen::TypedObject<std::uint8_t, canopen::Access::rw> {
+  using type = meaning::tpdo_communication_parameter_1_transmission_type;
+  using value = type;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Transmission type";
-  static constexpr type low_limit = 0;
-  static constexpr type high_limit = 255;
+  static constexpr std::uint8_t low_limit = 0;
+  static constexpr std::uint8_t high_limit = 255;
 };
 /// Event timer.  1800h:05  UNSIGNED16  rw                                          rk5c.eds:407
+/// Unit ms: 0 ms to 65535 ms; default value 1 ms.
+/// Manual: 4.2, 1800h.
 struct event_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x1800;
   static constexpr std::uint8_t sub_index = 0x05;
   static constexpr auto name = "Event timer";
-  static constexpr type low_limit = 0;
-  static constexpr type high_limit = 65535;
+  static constexpr type low_limit{canopen::raw(std::uint16_t{0})};
+  static constexpr type high_limit{canopen::raw(std::uint16_t{65535})};
 };
 }  // namespace tpdo_communication_parameter_1
 
@@ -241,20 +300,26 @@ struct number_of_mapped_application_objects : canopen::TypedObject<std::uint8_t,
   static constexpr type high_limit = 2;
 };
 /// Mapping entry 1.  1A00h:01  UNSIGNED32  ro                                      rk5c.eds:437
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 4.2, 1A00h, table 9.
 struct mapping_entry_1 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::tpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x01;
   static constexpr auto name = "Mapping entry 1";
-  static constexpr type low_limit = 0x60200120;
-  static constexpr type high_limit = 0x60200120;
+  static constexpr std::uint32_t low_limit = 0x60200120;
+  static constexpr std::uint32_t high_limit = 0x60200120;
 };
 /// Mapping entry 2.  1A00h:02  UNSIGNED32  ro                                      rk5c.eds:448
+/// Bits: 0..7 length, 8..15 sub_index, 16..31 index.
+/// Manual: 4.2, 1A00h, table 9.
 struct mapping_entry_2 : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = meaning::tpdo_mapping_parameter_1_mapping_entry_1;
   static constexpr std::uint16_t index = 0x1A00;
   static constexpr std::uint8_t sub_index = 0x02;
   static constexpr auto name = "Mapping entry 2";
-  static constexpr type low_limit = 0x60300110;
-  static constexpr type high_limit = 0x60300110;
+  static constexpr std::uint32_t low_limit = 0x60300110;
+  static constexpr std::uint32_t high_limit = 0x60300110;
 };
 }  // namespace tpdo_mapping_parameter_1
 
@@ -281,18 +346,41 @@ struct linear_encoder_measuring_step_settings<0> : canopen::TypedObject<std::uin
 };
 
 /// Position step setting.  6005h:01  UNSIGNED32  ro                                rk5c.eds:480
+/// Unit um, scale 1/1000: default value 100 um.
+/// Position step of linear encoders.
+/// Manual: 4.2, 6005h.
+template <>
+struct linear_encoder_measuring_step_settings<1> : canopen::Object<0x6005, 1, std::uint32_t, canopen::Access::ro> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::micrometre, std::ratio<1, 1000>>;
+  static constexpr auto name = "Linear encoder measuring step settings";
+};
+
+/// Speed step setting.  6005h:02  UNSIGNED32  ro                                   rk5c.eds:491
+/// Unit mm/s, scale 1/100: default value 1 mm/s.
+/// Speed step of linear encoders.
+/// Manual: 4.2, 6005h.
+template <>
+struct linear_encoder_measuring_step_settings<2> : canopen::Object<0x6005, 2, std::uint32_t, canopen::Access::ro> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::millimetre_per_second, std::ratio<1, 100>>;
+  static constexpr auto name = "Linear encoder measuring step settings";
+};
+
+/// Position step setting.  6005h:01  UNSIGNED32  ro                                rk5c.eds:480
 using linear_encoder_measuring_step_settings_position_step_setting = linear_encoder_measuring_step_settings<1>;
 
 /// Speed step setting.  6005h:02  UNSIGNED32  ro                                   rk5c.eds:491
 using linear_encoder_measuring_step_settings_speed_step_setting = linear_encoder_measuring_step_settings<2>;
 
 /// Preset values for multi-sensor devices.  6010h:01..01  INTEGER32  rw            rk5c.eds:518
+/// Unit um, scale 100: -214748364800 um to 214748364700 um; default value 0 um.
+/// Manual: 2.3; 4.2, 6010h.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct preset_values_for_multi_sensor_devices : canopen::Object<0x6010, SubIndex, std::int32_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::int32_t, canopen::unit::micrometre, std::ratio<100>>;
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "preset_values_for_multi_sensor_devices has the sub-indices 0..1");
   static constexpr auto name = "Preset values for multi-sensor devices";
-  static constexpr typename preset_values_for_multi_sensor_devices::type low_limit = -2147483648;
-  static constexpr typename preset_values_for_multi_sensor_devices::type high_limit = 2147483647;
+  static constexpr typename preset_values_for_multi_sensor_devices::type low_limit{canopen::raw(std::int32_t{-2147483648})};
+  static constexpr typename preset_values_for_multi_sensor_devices::type high_limit{canopen::raw(std::int32_t{2147483647})};
 };
 template <>
 struct preset_values_for_multi_sensor_devices<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
@@ -302,12 +390,15 @@ struct preset_values_for_multi_sensor_devices<0> : canopen::TypedObject<std::uin
 };
 
 /// Position values for multi-sensor devices.  6020h:01..01  INTEGER32  ro  TPDO    rk5c.eds:547
+/// Unit um, scale 100: -214748364800 um to 214748364700 um.
+/// Manual: 2.3.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct position_values_for_multi_sensor_devices : canopen::Object<0x6020, SubIndex, std::int32_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = canopen::Quantity<std::int32_t, canopen::unit::micrometre, std::ratio<100>>;
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "position_values_for_multi_sensor_devices has the sub-indices 0..1");
   static constexpr auto name = "Position values for multi-sensor devices";
-  static constexpr typename position_values_for_multi_sensor_devices::type low_limit = -2147483648;
-  static constexpr typename position_values_for_multi_sensor_devices::type high_limit = 2147483647;
+  static constexpr typename position_values_for_multi_sensor_devices::type low_limit{canopen::raw(std::int32_t{-2147483648})};
+  static constexpr typename position_values_for_multi_sensor_devices::type high_limit{canopen::raw(std::int32_t{2147483647})};
 };
 template <>
 struct position_values_for_multi_sensor_devices<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
@@ -317,12 +408,15 @@ struct position_values_for_multi_sensor_devices<0> : canopen::TypedObject<std::u
 };
 
 /// Speed value.  6030h:01..01  INTEGER16  ro  TPDO                                 rk5c.eds:577
+/// Unit mm/s: -32768 mm/s to 32767 mm/s.
+/// Manual: 2.3.
 template <std::uint8_t SubIndex = canopen::whole_array>
 struct speed_value : canopen::Object<0x6030, SubIndex, std::int16_t, canopen::Access::ro, canopen::Mappable::tpdo> {
+  using type = canopen::Quantity<std::int16_t, canopen::unit::millimetre_per_second>;
   static_assert(SubIndex <= 1 || SubIndex == canopen::whole_array, "speed_value has the sub-indices 0..1");
   static constexpr auto name = "Speed value";
-  static constexpr typename speed_value::type low_limit = -32768;
-  static constexpr typename speed_value::type high_limit = 32767;
+  static constexpr typename speed_value::type low_limit{canopen::raw(std::int16_t{-32768})};
+  static constexpr typename speed_value::type high_limit{canopen::raw(std::int16_t{32767})};
 };
 template <>
 struct speed_value<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> {
@@ -332,21 +426,28 @@ struct speed_value<0> : canopen::TypedObject<std::uint8_t, canopen::Access::ro> 
 };
 
 /// Cyclic timer.  6200h:00  UNSIGNED16  rw                                         rk5c.eds:590
+/// Unit ms: 0 ms to 65535 ms; default value 1 ms.
+/// 0: TPDO1 is not sent.
+/// Manual: 4.2, 6200h, figure 40.
 struct cyclic_timer : canopen::TypedObject<std::uint16_t, canopen::Access::rw> {
+  using type = canopen::Quantity<std::uint16_t, canopen::unit::millisecond>;
   static constexpr std::uint16_t index = 0x6200;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Cyclic timer";
-  static constexpr type low_limit = 0;
-  static constexpr type high_limit = 65535;
+  static constexpr type low_limit{canopen::raw(std::uint16_t{0})};
+  static constexpr type high_limit{canopen::raw(std::uint16_t{65535})};
 };
 
 /// Measuring step.  6501h:00  UNSIGNED32  ro                                       rk5c.eds:605
+/// Unit um, scale 1/1000: 100 um to 100 um; default value 100 um.
+/// Manual: 4.2, 6501h.
 struct measuring_step : canopen::TypedObject<std::uint32_t, canopen::Access::ro> {
+  using type = canopen::Quantity<std::uint32_t, canopen::unit::micrometre, std::ratio<1, 1000>>;
   static constexpr std::uint16_t index = 0x6501;
   static constexpr std::uint8_t sub_index = 0x00;
   static constexpr auto name = "Measuring step";
-  static constexpr type low_limit = 100000;
-  static constexpr type high_limit = 100000;
+  static constexpr type low_limit{canopen::raw(std::uint32_t{100000})};
+  static constexpr type high_limit{canopen::raw(std::uint32_t{100000})};
 };
 
 }  // namespace od

@@ -190,7 +190,7 @@ TEST(Manual000, EventDrivenTpdosDoNotFollowSync) {
     Drive drive;
     start_with(drive, 0x1800, type);
     for (int i = 0; i < 5; ++i) EXPECT_EQ(drive.ask("080"), "");
-    drive.node.set<od::statusword>(1);
+    drive.node.set<od::statusword>(canopen::raw(1));
     EXPECT_EQ(drive.pass({}), "185 01 00");
   }
 }
@@ -224,7 +224,7 @@ TEST(Manual000, MapsFourEntriesOfDifferentLengthsInTheirOrder) {
   EXPECT_EQ(write(drive, 0x1800, 1, 4, 0x4000'0185), taken(0x1800, 1));
   drive.ask(bench::start);
   drive.ask("205 AA 0F 00 BB 04 03 02 01");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x0F);
   EXPECT_EQ(drive.node.get<od::target_velocity>(), 0x0102'0304);
   drive.node.set<od::statusword>(0x1234);
   drive.node.set<od::velocity_actual_value>(0x0A0B'0C0D);
@@ -245,7 +245,7 @@ TEST(Manual000, AnRpdoIsRemappedInBothStates) {
     drive.ask(bench::start);
     drive.ask("205 04 03 02 01 1F 00");
     EXPECT_EQ(drive.node.get<od::target_position>(), 0x0102'0304);
-    EXPECT_EQ(drive.node.get<od::controlword>(), 0x1F);
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x1F);
   }
 }
 

@@ -125,7 +125,7 @@ TEST(Manual000, TransfersNumbersLowByteFirst) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 2B 00 18 05 14 01 00 00"), "585 60 00 18 05 00 00 00 00");
   EXPECT_EQ(drive.ask("605 40 00 18 05 00 00 00 00"), "585 4B 00 18 05 14 01 00 00");
-  EXPECT_EQ(drive.node.get<od::tpdo_communication_parameter_1::event_timer>(), 276);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::tpdo_communication_parameter_1::event_timer>()), 276);
 }
 
 // shows 000.24
@@ -148,10 +148,10 @@ TEST(Manual000, DownloadsExpeditedAndInSegments) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 23 05 10 00 A0 00 00 00"), "585 60 05 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 22 05 10 00 A1 00 00 00"), "585 60 05 10 00 00 00 00 00");
-  EXPECT_EQ(drive.node.get<od::cob_id_sync>(), 0xA1u);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::cob_id_sync>()), 0xA1u);
   EXPECT_EQ(drive.ask("605 21 05 10 00 04 00 00 00"), "585 60 05 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 07 A2 00 00 00 AA AA AA"), "585 20 00 00 00 00 00 00 00");
-  EXPECT_EQ(drive.node.get<od::cob_id_sync>(), 0xA2u);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::cob_id_sync>()), 0xA2u);
 }
 
 // shows 000.47, 000.51
@@ -172,7 +172,7 @@ TEST(Manual000, ANewDownloadEndsTheOldOne) {
   EXPECT_EQ(drive.ask("605 21 06 10 00 04 00 00 00"), "585 60 06 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 07 10 27 00 00 00 00 00"), "585 20 00 00 00 00 00 00 00");
   EXPECT_EQ(drive.node.get<od::cob_id_sync>(), 0x80u);
-  EXPECT_EQ(drive.node.get<od::communication_cycle_period>(), 10000u);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::communication_cycle_period>()), 10000u);
 }
 
 // shows 000.49, 000.227
@@ -242,9 +242,9 @@ TEST(Manual000, SyncAndPdosTakeNewCanIds) {
   EXPECT_EQ(drive.ask("605 23 00 14 01 05 02 00 80"), "585 60 00 14 01 00 00 00 00");
   EXPECT_EQ(drive.ask("605 23 00 14 01 22 02 00 00"), "585 60 00 14 01 00 00 00 00");
   drive.ask("205 0F 00");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0);
   drive.ask("222 0F 00");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x0F);
 }
 
 constexpr std::uint32_t restricted[] = {0x000, 0x001, 0x07F, 0x101, 0x180, 0x581, 0x5FF, 0x601,

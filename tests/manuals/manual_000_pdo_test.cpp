@@ -25,12 +25,12 @@ constexpr std::uint32_t not_mappable = 0x0604'0041;
 TEST(Manual000, ServesPdosInOperationalOnly) {
   Drive drive;
   drive.ask("205 0F 00");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0);
-  drive.node.set<od::statusword>(0x37);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0);
+  drive.node.set<od::statusword>(canopen::raw(0x37));
   EXPECT_EQ(drive.pass(1s), "");
   drive.ask(bench::stop);
   drive.ask("205 0F 00");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0);
   EXPECT_EQ(drive.pass(1s), "");
   EXPECT_EQ(drive.ask(bench::start),
             "185 37 00 | 285 37 00 00 00 00 00 | 385 37 00 00 00 00 00 | 485 37 00 00 00 00 00");

@@ -261,7 +261,7 @@ TEST(Manual001, MapsOneObjectAsInTheFigures) {
   drive.node.set<ezd_1136::od::statusword>(0x00F3);
   EXPECT_EQ(drive.ask(bench::start).substr(0, 9), "185 F3 00");
   EXPECT_EQ(drive.ask("205 11 22"), "");
-  EXPECT_EQ(drive.node.get<ezd_1136::od::controlword>(), 0x2211);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<ezd_1136::od::controlword>()), 0x2211);
 }
 
 // shows 001.190

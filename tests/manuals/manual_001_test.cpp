@@ -112,8 +112,8 @@ TEST(Manual001, HasWriteOnlyObjects) {
 
 // shows 001.98
 TEST(Manual001, HasTheTypesOfTheParameterList) {
-  static_assert(std::is_same_v<od::home_offset::type, std::int32_t>);
-  static_assert(std::is_same_v<od::profile_acceleration::type, std::uint32_t>);
+  static_assert(std::is_same_v<canopen::RawOf<od::home_offset::type>, std::int32_t>);
+  static_assert(std::is_same_v<canopen::RawOf<od::profile_acceleration::type>, std::uint32_t>);
   Drive drive;
   drive.node.set<od::home_offset>(-2);
   EXPECT_EQ(drive.ask("605 40 7C 60 00 00 00 00 00"), "585 43 7C 60 00 FE FF FF FF");
@@ -128,7 +128,7 @@ TEST(Manual001, APdoIsValidWhileBit31Is0) {
   EXPECT_EQ(drive.ask("605 23 00 18 01 85 01 00 80"), "585 60 00 18 01 00 00 00 00");
   EXPECT_EQ(drive.ask(bench::start), std::string{started}.substr(21));
   drive.ask("205 0F 00 01 00 00 00 00 00");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0);
   drive.ask("605 23 00 14 01 05 02 00 00");
   drive.ask("205 0F 00 01 00 00 00 00 00");
   EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
@@ -221,12 +221,12 @@ TEST(Manual001, PdosCarryTheirObjectsLowByteFirst) {
   EXPECT_EQ(drive.ask(bench::start).substr(0, 18), "185 F3 00 00 00 01");
   drive.ask("205 11 22 03 11 FE FF FF FF");
   EXPECT_EQ(drive.node.get<od::controlword>(), 0x2211);
-  EXPECT_EQ(drive.node.get<od::modes_of_operation>(), 3);
-  EXPECT_EQ(drive.node.get<od::homing_method>(), 0x11);
-  EXPECT_EQ(drive.node.get<od::home_offset>(), -2);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::modes_of_operation>()), 3);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::homing_method>()), 0x11);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::home_offset>()), -2);
   drive.ask("405 E8 03 00 00 01 00 00 00");
-  EXPECT_EQ(drive.node.get<od::target_velocity>(), 1000);
-  EXPECT_EQ(drive.node.get<od::quick_stop_deceleration>(), 1u);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_velocity>()), 1000);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::quick_stop_deceleration>()), 1u);
 }
 
 // shows 001.29, 001.142
@@ -371,7 +371,7 @@ TEST(Manual001, TellsErrorsAndKeepsTheRecentOnes) {
   for (const std::uint8_t bit : bits) {
     drive.node.emergency(std::uint16_t{0x000D}, static_cast<ErrorRegister>(bit), {1, 2, 3, 4, 5});
     drive.pass(0s);
-    EXPECT_EQ(drive.node.get<od::error_register>(), bit | 1);
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::error_register>()), bit | 1);
     drive.node.emergency_over(static_cast<ErrorRegister>(bit));
     drive.pass(0s);
   }

@@ -127,7 +127,7 @@ TEST(Manual002, TellsTheKindOfAnErrorInTheErrorRegister) {
     Drive drive;
     drive.node.emergency(0x1000, static_cast<ErrorRegister>(bit));
     drive.pass(0s);
-    EXPECT_EQ(drive.node.get<od::error_register>(), bit | 1);
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::error_register>()), bit | 1);
   }
 }
 

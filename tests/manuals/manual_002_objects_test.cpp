@@ -235,7 +235,7 @@ TEST(Manual002, ChangesBit31AndTheFunctionCodeOfAPdo) {
   EXPECT_EQ(drive.ask("605 23 02 14 01 85 06 00 00"), "585 60 02 14 01 00 00 00 00");
   drive.ask(bench::start);
   drive.ask("405 0F 00 E8 03 00 00");
-  EXPECT_EQ(drive.node.get<od::target_velocity>(), 0);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_velocity>()), 0);
   drive.ask("685 0F 00 E8 03 00 00");
   EXPECT_EQ(drive.node.get<od::target_velocity>(), 1000);
 }

@@ -25,7 +25,7 @@ constexpr std::uint32_t not_mappable = 0x0604'0041;
 TEST(Manual002, EvaluatesRpdo1AtOnce) {
   Drive drive;
   drive.ask("205 0F 00");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0);
   drive.ask(bench::start);
   EXPECT_EQ(drive.ask("205 0F 00"), "");
   EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
@@ -42,7 +42,7 @@ TEST(Manual002, Rpdo2And3CarryTargetsOnceTheyAreEnabled) {
   drive.ask("305 0F 00 01 00 00 00");
   EXPECT_EQ(drive.node.get<od::target_position>(), 1);
   drive.ask("405 1F 00 FE FF FF FF");
-  EXPECT_EQ(drive.node.get<od::target_velocity>(), -2);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_velocity>()), -2);
   EXPECT_EQ(drive.node.get<od::controlword>(), 0x1F);
   EXPECT_EQ(drive.ask("305 0F 00 01 00 00"), "085 10 82 11 00 00 00 00 00");
 }

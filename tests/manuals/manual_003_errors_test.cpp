@@ -35,10 +35,11 @@ TEST(Manual003, TellsItsStateToTheGuard) {
 TEST(Manual003, TakesItsErrorValuesWhenTheMasterIsMissing) {
   namespace od = can_2057c::od;
   auto module = bench::with<can_2057c::Device>(canopen::on_life_guarding([](auto& node, bool lost) {
-    const std::uint8_t mode = node.template get<od::error_mode_output_8_bit<1>>();
-    const std::uint8_t value = node.template get<od::error_value_output_8_bit<1>>();
-    const std::uint8_t output = node.template get<Output>();
-    if (lost) (void)node.template set<Output>(static_cast<std::uint8_t>((output & ~mode) | (value & mode)));
+    const std::uint8_t mode = node.template get<od::error_mode_output_8_bit<1>>().raw();
+    const std::uint8_t value = node.template get<od::error_value_output_8_bit<1>>().raw();
+    const std::uint8_t output = node.template get<Output>().raw();
+    if (lost)
+      (void)node.template set<Output>(canopen::raw(static_cast<std::uint8_t>((output & ~mode) | (value & mode))));
   }));
   write(module, 0x100C, 0, 2, 250);
   write(module, 0x100D, 0, 1, 4);
@@ -48,7 +49,7 @@ TEST(Manual003, TakesItsErrorValuesWhenTheMasterIsMissing) {
   module.ask("205 F0 00");
   module.ask("705 R 1");
   EXPECT_EQ(module.pass(1s).substr(0, 27), "085 30 81 11 07 00 00 00 00");
-  EXPECT_EQ(module.node.get<Output>(), 0xF5);
+  EXPECT_EQ(canopen::to_raw(module.node.get<Output>()), 0xF5);
 }
 
 // shows 003.91

@@ -38,7 +38,7 @@ TEST(Manual003, ChangesACobIdWhileThePdoIsNotValid) {
   EXPECT_EQ(module.ask("605 23 00 14 01 22 02 00 00"), "585 60 00 14 01 00 00 00 00");
   module.ask(bench::start);
   module.ask("205 12 34");
-  EXPECT_EQ(module.node.get<Output>(), 0);
+  EXPECT_EQ(canopen::to_raw(module.node.get<Output>()), 0);
   module.ask("222 12 34");
   EXPECT_EQ(module.node.get<Output>(), 0x12);
   EXPECT_EQ(module.ask("605 23 00 14 01 22 02 00 80"), "585 60 00 14 01 00 00 00 00");

@@ -258,8 +258,8 @@ constexpr std::uint32_t application_codes[] = {
 // shows 000.65, 002.17, 002.23, 002.28, 002.29, 003.29, 004.40
 TEST(AbortCodes, AnApplicationAnswersWithEachOfThem) {
   std::uint32_t code = 0;
-  auto device = bench::with<can_2057c::Device>(
-      canopen::on_write<can_2057c::od::guard_time>([&](std::uint16_t) { return static_cast<AbortCode>(code); }));
+  auto device = bench::with<can_2057c::Device>(canopen::on_write<can_2057c::od::guard_time>(
+      [&](can_2057c::od::guard_time::type) { return static_cast<AbortCode>(code); }));
   for (const std::uint32_t one : application_codes) {
     code = one;
     EXPECT_EQ(device.ask("605 2B 0C 10 00 01 00 00 00"), manual::refused(0x100C, 0, one));

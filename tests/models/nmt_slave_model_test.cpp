@@ -77,7 +77,7 @@ class Pair {
   void check() {
     expect(static_cast<std::uint8_t>(node.state()) == static_cast<std::uint8_t>(expected.state()), "the NMT state");
     expect(node.get<od::byte>() == byte && node.get<od::long_word>() == long_word, "values of the application");
-    expect(node.get<od::producer_heartbeat_time>() == heartbeat, "1017h");
+    expect(canopen::to_raw(node.get<od::producer_heartbeat_time>()) == heartbeat, "1017h");
   }
 
   /// Uses each service once.

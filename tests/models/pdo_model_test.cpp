@@ -235,7 +235,7 @@ class Pair {
   /// Checks that each TPDO contains its mapped objects.
   void check_sent() {
     // The error register depends on EMCY, which the model does not include.
-    error_register->value = node.get<pdo_device::od::error_register>();
+    error_register->value = canopen::to_raw(node.get<pdo_device::od::error_register>());
     for (const Frame& frame : bus.sent) {
       if (frame.id == 0x585 || frame.id == 0x085) continue;
       bool right = false;

@@ -32,11 +32,11 @@ TEST(EightDevices, SensorAndAxisAreShownByTheOutputs) {
   Devices bench;
   bench.start();
   ASSERT_TRUE(bench.boot(20s));
-  bench.sensor.node().set(rk5c::od::speed_value<1>{}, std::int16_t{-321});
-  bench.axis.node().set(ezd_1136::od::position_actual_value{}, 40'000);
+  bench.sensor.node().set(rk5c::od::speed_value<1>{}, canopen::raw(std::int16_t{-321}));
+  bench.axis.node().set(ezd_1136::od::position_actual_value{}, canopen::raw(40'000));
   bench.bus.run_for(2s);
-  EXPECT_EQ(bench.analog_outputs.node().get(can_2024c::od::write_analogue_output_16_bit<2>{}), -321);
-  EXPECT_EQ(bench.analog_outputs.node().get(can_2024c::od::write_analogue_output_16_bit<3>{}), 32'767);
+  EXPECT_EQ(canopen::to_raw(bench.analog_outputs.node().get(can_2024c::od::write_analogue_output_16_bit<2>{})), -321);
+  EXPECT_EQ(canopen::to_raw(bench.analog_outputs.node().get(can_2024c::od::write_analogue_output_16_bit<3>{})), 32'767);
   EXPECT_EQ(bench.drive.node().state(), NmtState::operational);
   EXPECT_EQ(bench.second_drive.node().state(), NmtState::operational);
 }
@@ -52,13 +52,13 @@ TEST(EightDevices, ASensorThatLosesPowerIsBootedAgainWhileTheOthersRun) {
   ASSERT_FALSE(bench.faults.empty());
   EXPECT_EQ(bench.faults[0], "sensor: lost, last state operational");
   EXPECT_FALSE(bench.plant().sensor.speed_value_1().has_value());
-  bench.axis.node().set(ezd_1136::od::position_actual_value{}, 123);
+  bench.axis.node().set(ezd_1136::od::position_actual_value{}, canopen::raw(123));
   bench.bus.run_for(1s);
   EXPECT_EQ(bench.analog_outputs.node().get(can_2024c::od::write_analogue_output_16_bit<3>{}), 123);
 
   bench.sensor.switch_on();
   ASSERT_TRUE(bench.boot(10s));
-  bench.sensor.node().set(rk5c::od::speed_value<1>{}, std::int16_t{77});
+  bench.sensor.node().set(rk5c::od::speed_value<1>{}, canopen::raw(std::int16_t{77}));
   bench.bus.run_for(2s);
   EXPECT_EQ(bench.boots["sensor"], 2);
   EXPECT_EQ(bench.boots["axis"], 1);

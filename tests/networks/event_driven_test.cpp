@@ -38,7 +38,7 @@ TEST(EventDriven, AValueIsSentOnceWhenItChanges) {
   bench.bus.run_for(1s);
   EXPECT_EQ(bench.count(can_id), 1U);
   EXPECT_EQ(bench.last(can_id), (Bytes{0xE8, 0x03, 0, 0, 0, 0, 0, 0}));
-  EXPECT_EQ(bench.axis.node().get(od::target_position{}), 1000);
+  EXPECT_EQ(canopen::to_raw(bench.axis.node().get(od::target_position{})), 1000);
   bench.control.plant.axis.target_position(1000);
   bench.bus.run_for(1s);
   EXPECT_EQ(bench.count(can_id), 1U);
@@ -55,10 +55,10 @@ TEST(EventDriven, AValueIsSentAgainToANodeThatHasBooted) {
   bench.bus.run_for(1s);
   bench.forget();
   bench.axis.switch_on();
-  ASSERT_EQ(bench.axis.node().get(od::target_position{}), 0);
+  ASSERT_EQ(canopen::to_raw(bench.axis.node().get(od::target_position{})), 0);
   ASSERT_TRUE(bench.boot(10s));
   bench.bus.run_for(1s);
-  EXPECT_EQ(bench.axis.node().get(od::target_position{}), 1000);
+  EXPECT_EQ(canopen::to_raw(bench.axis.node().get(od::target_position{})), 1000);
   for (const canopen::Frame& frame : bench.frames) {
     if (frame.id == can_id) {
       EXPECT_EQ((Bytes{frame.data.begin(), frame.data.begin() + frame.size}), (Bytes{0xE8, 0x03, 0, 0, 0, 0, 0, 0}));

@@ -43,8 +43,10 @@ TEST(FourModules, AllNodesAreConfiguredAndStarted) {
   EXPECT_EQ(bench.plant().digital_outputs.state(), NmtState::operational);
   EXPECT_EQ(bench.plant().analog_inputs.state(), NmtState::operational);
   // The values of the network file: "heartbeat_ms", "every_ms".
-  EXPECT_EQ(bench.digital_outputs.node().get(can_2057c::od::producer_heartbeat_time{}), 500);
-  EXPECT_EQ(bench.analog_inputs.node().get(can_2017c::od::tpdo_communication_parameter_2::event_timer{}), 1000);
+  EXPECT_EQ(canopen::to_raw(bench.digital_outputs.node().get(can_2057c::od::producer_heartbeat_time{})), 500);
+  EXPECT_EQ(
+      canopen::to_raw(bench.analog_inputs.node().get(can_2017c::od::tpdo_communication_parameter_2::event_timer{})),
+      1000);
   // The master sends its heartbeat in Operational.
   EXPECT_EQ(bench.last(0x77F), Bytes{0x05});
 }
@@ -53,12 +55,12 @@ TEST(FourModules, OutputsFollowInputs) {
   Modules bench;
   bench.start();
   ASSERT_TRUE(bench.boot(10s));
-  bench.digital_inputs.node().set(can_2053c::od::read_input_8_bit<2>{}, std::uint8_t{0xA5});
-  bench.analog_inputs.node().set(can_2017c::od::read_analogue_input_16_bit<1>{}, std::int16_t{-1234});
+  bench.digital_inputs.node().set(can_2053c::od::read_input_8_bit<2>{}, canopen::raw(0xA5));
+  bench.analog_inputs.node().set(can_2017c::od::read_analogue_input_16_bit<1>{}, canopen::raw(-1234));
   bench.bus.run_for(2s);
-  EXPECT_EQ(bench.plant().digital_inputs.read_input_8_bit_2(), 0xA5);
-  EXPECT_EQ(bench.digital_outputs.node().get(can_2057c::od::write_output_8_bit<2>{}), 0xA5);
-  EXPECT_EQ(bench.analog_outputs.node().get(can_2024c::od::write_analogue_output_16_bit<1>{}), -1234);
+  EXPECT_EQ(bench.plant().digital_inputs.read_input_8_bit_2()->raw(), 0xA5);
+  EXPECT_EQ(canopen::to_raw(bench.digital_outputs.node().get(can_2057c::od::write_output_8_bit<2>{})), 0xA5);
+  EXPECT_EQ(canopen::to_raw(bench.analog_outputs.node().get(can_2024c::od::write_analogue_output_16_bit<1>{})), -1234);
   EXPECT_EQ(bench.last(0x201), (Bytes{0x00, 0xA5}));
   EXPECT_EQ(bench.last(0x303), (Bytes{0x2E, 0xFB, 0, 0, 0, 0, 0, 0}));  // -1234 is FB2Eh
 }
@@ -76,9 +78,9 @@ TEST(FourModules, ANodeThatLosesPowerIsBootedAgainWhileTheOthersRun) {
   EXPECT_EQ(bench.faults.front(), "analog_inputs: lost, last state operational");
   EXPECT_FALSE(bench.plant().analog_inputs.booted());
   EXPECT_FALSE(bench.plant().analog_inputs.read_analogue_input_16_bit_1().has_value());
-  bench.digital_inputs.node().set(can_2053c::od::read_input_8_bit<1>{}, std::uint8_t{0x3C});
+  bench.digital_inputs.node().set(can_2053c::od::read_input_8_bit<1>{}, canopen::raw(std::uint8_t{0x3C}));
   bench.bus.run_for(1s);
-  EXPECT_EQ(bench.digital_outputs.node().get(can_2057c::od::write_output_8_bit<1>{}), 0x3C);
+  EXPECT_EQ(canopen::to_raw(bench.digital_outputs.node().get(can_2057c::od::write_output_8_bit<1>{})), 0x3C);
   EXPECT_GE(bench.count(0x201), 70U);  // each 50 ms
 
   bench.analog_inputs.switch_on();

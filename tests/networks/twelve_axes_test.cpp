@@ -31,16 +31,17 @@ TEST(TwelveAxes, EachAxisFollowsTheOneBefore) {
   ASSERT_TRUE(bench.boot(20s));
   bench.control.move_to(100'000, 5'000);
   for (std::size_t i = 1; i <= 12; ++i) {
-    bench.node(i).set(od::position_actual_value{}, static_cast<std::int32_t>(1'000 * i));
+    bench.node(i).set(od::position_actual_value{}, canopen::raw(static_cast<std::int32_t>(1'000 * i)));
   }
   bench.bus.run_for(100ms);
-  EXPECT_EQ(bench.node(1).get(od::target_position{}), 100'000);
+  EXPECT_EQ(canopen::to_raw(bench.node(1).get(od::target_position{})), 100'000);
   for (std::size_t i = 2; i <= 12; ++i) {
-    EXPECT_EQ(bench.node(i).get(od::target_position{}), static_cast<std::int32_t>(1'000 * (i - 1))) << i;
-    EXPECT_EQ(bench.node(i).get(od::profile_velocity{}), 5'000U) << i;
+    EXPECT_EQ(canopen::to_raw(bench.node(i).get(od::target_position{})), static_cast<std::int32_t>(1'000 * (i - 1)))
+        << i;
+    EXPECT_EQ(canopen::to_raw(bench.node(i).get(od::profile_velocity{})), 5'000U) << i;
     EXPECT_EQ(bench.node(i).state(), NmtState::operational) << i;
   }
-  EXPECT_EQ(bench.plant().axis12.position_actual_value(), 12'000);
+  EXPECT_EQ(bench.plant().axis12.position_actual_value()->raw(), 12'000);
 }
 
 /// Of the file: "period_us": 9000, and each PDO with "every_sync": 1.
@@ -77,7 +78,7 @@ TEST(TwelveAxes, ADriveThatLosesPowerIsBootedAgainWhileTheOthersRun) {
   EXPECT_EQ(bench.boots["axis5"], 2);
   for (const char* other : {"axis1", "axis4", "axis6", "axis12"}) EXPECT_EQ(bench.boots[other], 1) << other;
   EXPECT_EQ(bench.node(5).state(), NmtState::operational);
-  bench.node(5).set(od::position_actual_value{}, 55'555);
+  bench.node(5).set(od::position_actual_value{}, canopen::raw(55'555));
   bench.bus.run_for(100ms);
   EXPECT_EQ(bench.node(6).get(od::target_position{}), 55'555);
 }

@@ -25,8 +25,8 @@ struct Servo : bench::NodeBench<cpc_tc1_node::CpcTc1> {
     for (const char* frame : {"205 06 00", "205 07 00", "205 0F 00"}) ask(frame);
     EXPECT_EQ(app->drive().state(), State::operation_enabled);
   }
-  [[nodiscard]] std::uint32_t status() { return app->node().template get<od::manufacturer_status_register>(); }
-  [[nodiscard]] std::uint16_t statusword() { return app->node().template get<od::statusword>(); }
+  [[nodiscard]] std::uint32_t status() { return app->node().template get<od::manufacturer_status_register>().raw(); }
+  [[nodiscard]] std::uint16_t statusword() { return app->node().template get<od::statusword>().raw(); }
 
   /// The four bytes of a number that is read by SDO; the whole response if it is an abort.
   [[nodiscard]] std::string read(const std::string& place) {

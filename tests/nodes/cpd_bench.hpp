@@ -22,15 +22,16 @@ struct Servo : NodeBench<cpd_node::Cpd> {
     ask("205 0F 00");
     EXPECT_EQ(app->drive().state(), canopen::cia402::State::operation_enabled);
   }
+  /// The raw numbers of objects, as in the manual.
   template <class O>
-  void set(typename O::type value) {
-    EXPECT_EQ(app->node().template set<O>(value), canopen::ok);
+  void set(canopen::RawOf<typename O::type> number) {
+    EXPECT_EQ(app->node().template set<O>(canopen::from_raw<typename O::type>(number)), canopen::ok);
     app->on_time(now);
     bus.take();
   }
   template <class O>
-  [[nodiscard]] typename O::type get() {
-    return app->node().template get<O>();
+  [[nodiscard]] canopen::RawOf<typename O::type> get() {
+    return canopen::to_raw(app->node().template get<O>());
   }
   /// Writes one to four bytes over SDO and returns the response.
   std::string write(std::uint16_t index, std::uint8_t sub_index, unsigned bytes, std::uint32_t value) {

@@ -58,15 +58,16 @@ struct Stepper : bench::NodeBench<ezd_1136_node::Ezd1136> {
     control(0x0F);
     EXPECT_EQ(state(), canopen::cia402::State::operation_enabled);
   }
+  /// The raw numbers of objects, as in the manual.
   template <class O>
-  void set(typename O::type value) {
-    EXPECT_EQ(app->node().template set<O>(value), canopen::ok);
+  void set(canopen::RawOf<typename O::type> number) {
+    EXPECT_EQ(app->node().template set<O>(canopen::from_raw<typename O::type>(number)), canopen::ok);
     app->on_time(now);
     bus.take();
   }
   template <class O>
-  [[nodiscard]] typename O::type get() {
-    return app->node().template get<O>();
+  [[nodiscard]] canopen::RawOf<typename O::type> get() {
+    return canopen::to_raw(app->node().template get<O>());
   }
   [[nodiscard]] canopen::cia402::State state() const { return app->drive().state(); }
   [[nodiscard]] std::uint16_t statusword() { return get<ezd_1136::od::statusword>(); }

@@ -155,7 +155,7 @@ TEST(Ezd1136Node, TakesNoCommandBelowPreOperational) {
   Stepper drive;
   drive.ask(bench::stop);
   EXPECT_EQ(drive.statusword() & 0x0200, 0);  // bit 9
-  EXPECT_EQ(drive.app->node().set<od::controlword>(0x06), canopen::ok);
+  EXPECT_EQ(drive.app->node().set<od::controlword>(canopen::raw(0x06)), canopen::ok);
   drive.pass(1ms);
   EXPECT_EQ(drive.state(), State::switch_on_disabled);
   drive.ask(bench::enter_pre_operational);

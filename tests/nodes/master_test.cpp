@@ -88,7 +88,7 @@ TEST_F(MasterAndPlant, StopTheOutputsWhileANodeIsLostAndGoOnWithIt) {
   EXPECT_TRUE(sent("000 02 03"));
   EXPECT_EQ(plant.digital_out().node().state(), canopen::NmtState::stopped);
   EXPECT_EQ(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>(), 0);
-  EXPECT_EQ(plant.analogue_out().node().get<can_2024c::od::write_analogue_output_16_bit<1>>(), 0);
+  EXPECT_EQ(canopen::to_raw(plant.analogue_out().node().get<can_2024c::od::write_analogue_output_16_bit<1>>()), 0);
   loses = nullptr;
   log.clear();
   run(40);
@@ -115,7 +115,7 @@ TEST_F(MasterAndPlant, GoOnWhenAllNodesAreLostAndBack) {
 
 TEST_F(MasterAndPlant, BringTheOutputsToTheirErrorValuesWhenTheMasterIsLost) {
   run(20);
-  EXPECT_NE(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>(), 0);
+  EXPECT_NE(canopen::to_raw(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>()), 0);
   bus.run_for(1s);  // no guarding
   EXPECT_EQ(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>(), 0);
   EXPECT_EQ(plant.analogue_out().node().get<can_2024c::od::write_analogue_output_16_bit<1>>(), 0);
@@ -149,14 +149,14 @@ struct MasterOfOne : testing::Test {
 
 TEST_F(MasterOfOne, ReadsAndWritesObjects) {
   namespace od = can_2053c::od;
-  EXPECT_TRUE(inputs.write<od::guard_time>(250));
-  EXPECT_EQ(inputs.read<od::guard_time>().value(), 250);
-  EXPECT_EQ(inputs.read<od::device_type>().value(), 0x0001'0191u);
+  EXPECT_TRUE(inputs.write<od::guard_time>(canopen::raw(250)));
+  EXPECT_EQ(canopen::to_raw(inputs.read<od::guard_time>().value()), 250);
+  EXPECT_EQ(canopen::to_raw(inputs.read<od::device_type>().value()), 0x0001'0191u);
 }
 
 TEST_F(MasterOfOne, TakesPdosAndAsksForThem) {
   std::vector<int> got;
-  EXPECT_TRUE(inputs.on_pdo<can_2053c::Tpdo1>([&](auto low, auto high) { got = {low, high}; }));
+  EXPECT_TRUE(inputs.on_pdo<can_2053c::Tpdo1>([&](auto low, auto high) { got = {low.raw(), high.raw()}; }));
   EXPECT_TRUE(master.command(canopen::NmtCommand::start, canopen::NodeId{5}));
   master.poll(10ms);
   EXPECT_EQ(got, (std::vector<int>{0, 0}));
@@ -173,9 +173,10 @@ TEST_F(MasterOfOne, KeepsPdosThatComeDuringATransferAndLetsHandlersTransfer) {
   namespace od = can_2053c::od;
   std::vector<unsigned> read;
   EXPECT_TRUE(inputs.on_pdo<can_2053c::Tpdo1>(
-      [&](auto, auto) { read.push_back(inputs.read<od::read_input_8_bit<1>>().value()); }));
+      [&](auto, auto) { read.push_back(inputs.read<od::read_input_8_bit<1>>().value().raw()); }));
   EXPECT_TRUE(master.command(canopen::NmtCommand::start, canopen::NodeId{5}));
-  EXPECT_TRUE(inputs.write<od::guard_time>(100));  // the TPDO that follows the start is received meanwhile
+  EXPECT_TRUE(
+      inputs.write<od::guard_time>(canopen::raw(100)));  // the TPDO that follows the start is received meanwhile
   EXPECT_TRUE(read.empty());
   module.set_digital(0, 7);
   master.poll(10ms);
@@ -184,7 +185,7 @@ TEST_F(MasterOfOne, KeepsPdosThatComeDuringATransferAndLetsHandlersTransfer) {
 
 TEST_F(MasterOfOne, HasNoPdoThatIsNotValid) {
   namespace od = can_2053c::od;
-  EXPECT_TRUE(inputs.write<od::tpdo_communication_parameter_1::cob_id_used_by_tpdo>(0x8000'0185u));
+  EXPECT_TRUE(inputs.write<od::tpdo_communication_parameter_1::cob_id_used_by_tpdo>(canopen::raw(0x8000'0185u)));
   const auto done = inputs.on_pdo<can_2053c::Tpdo1>([](auto, auto) {});
   EXPECT_EQ(done.abort_code(), canopen::AbortCode::device_state);
 }
@@ -195,9 +196,9 @@ TEST_F(MasterOfOne, FollowsACobIdThatIsWrittenThroughIt) {
   namespace od = can_2053c::od;
   using CobId = od::tpdo_communication_parameter_1::cob_id_used_by_tpdo;
   std::vector<int> got;
-  ASSERT_TRUE(inputs.on_pdo<can_2053c::Tpdo1>([&](auto low, auto high) { got = {low, high}; }));
-  EXPECT_TRUE(inputs.write<CobId>(0x8000'0185u));
-  EXPECT_TRUE(inputs.write<CobId>(0x0000'01C5u));
+  ASSERT_TRUE(inputs.on_pdo<can_2053c::Tpdo1>([&](auto low, auto high) { got = {low.raw(), high.raw()}; }));
+  EXPECT_TRUE(inputs.write<CobId>(canopen::raw(0x8000'0185u)));
+  EXPECT_TRUE(inputs.write<CobId>(canopen::raw(0x0000'01C5u)));
   EXPECT_TRUE(master.command(canopen::NmtCommand::start, canopen::NodeId{5}));
   module.set_digital(1, 0x80);
   master.poll(10ms);
@@ -212,9 +213,9 @@ TEST_F(MasterOfOne, ReadsTheCobIdsAgainWhenTheNodeHasBootedUp) {
   namespace od = can_2053c::od;
   using CobId = od::tpdo_communication_parameter_1::cob_id_used_by_tpdo;
   std::vector<int> got;
-  EXPECT_TRUE(inputs.write<CobId>(0x8000'0185u));
-  EXPECT_TRUE(inputs.write<CobId>(0x0000'01C5u));
-  ASSERT_TRUE(inputs.on_pdo<can_2053c::Tpdo1>([&](auto low, auto high) { got = {low, high}; }));
+  EXPECT_TRUE(inputs.write<CobId>(canopen::raw(0x8000'0185u)));
+  EXPECT_TRUE(inputs.write<CobId>(canopen::raw(0x0000'01C5u)));
+  ASSERT_TRUE(inputs.on_pdo<can_2053c::Tpdo1>([&](auto low, auto high) { got = {low.raw(), high.raw()}; }));
   EXPECT_TRUE(master.command(canopen::NmtCommand::reset_communication, canopen::NodeId{5}));
   master.poll(10ms);
   EXPECT_TRUE(master.command(canopen::NmtCommand::start, canopen::NodeId{5}));
@@ -256,7 +257,8 @@ struct Boot : testing::Test {
 TEST_F(Boot, ConfiguresWithSeveralTransfers) {
   namespace od = can_2053c::od;
   master->on_configure = [&](NodeId) -> canopen::Result<void> {
-    if (const auto done = inputs->write<od::tpdo_communication_parameter_1::event_timer>(500); !done) return done;
+    if (const auto done = inputs->write<od::tpdo_communication_parameter_1::event_timer>(canopen::raw(500)); !done)
+      return done;
     return inputs->write<od::guard_time>(250);
   };
   master->start();
@@ -303,10 +305,10 @@ TEST_F(Boot, ReadsTheCobIdsBeforeTheSlaveIsStarted) {
   std::vector<int> got;
   master->start();
   master->poll(50ms);
-  ASSERT_TRUE(inputs->on_pdo<can_2053c::Tpdo1>([&](auto low, auto high) { got = {low, high}; }));
+  ASSERT_TRUE(inputs->on_pdo<can_2053c::Tpdo1>([&](auto low, auto high) { got = {low.raw(), high.raw()}; }));
   master->on_configure = [&](NodeId) -> canopen::Result<void> {
-    if (const auto done = inputs->write<CobId>(0x8000'0185u); !done) return done;
-    return inputs->write<CobId>(0x0000'01C5u);
+    if (const auto done = inputs->write<CobId>(canopen::raw(0x8000'0185u)); !done) return done;
+    return inputs->write<CobId>(canopen::raw(0x0000'01C5u));
   };
   module.set_digital(1, 0x80);
   master->boot(NodeId{5});

@@ -60,7 +60,7 @@ struct Memory {
 template <std::uint8_t SubIndex>
 struct Saves {
   Memory* memory;
-  canopen::AbortCode operator()(std::uint32_t) const {
+  canopen::AbortCode operator()(typename od::store_parameters<SubIndex>::type) const {
     if (memory->motor_on) return canopen::AbortCode::device_state;
     return memory->data.save(SubIndex);
   }
@@ -69,7 +69,7 @@ struct Saves {
 template <std::uint8_t SubIndex>
 struct Loads {
   Memory* memory;
-  canopen::AbortCode operator()(std::uint32_t) const {
+  canopen::AbortCode operator()(typename od::restore_default_parameters<SubIndex>::type) const {
     if (memory->motor_on) return canopen::AbortCode::device_state;
     return memory->data.restore(SubIndex);
   }
@@ -94,17 +94,6 @@ struct BeforeNode {
   nodes::LssSettings lss;
   Memory memory;
 };
-
-/// Bits of 1002h above those of the statusword.
-namespace status {
-inline constexpr std::uint32_t external_enable = 1u << 16;
-inline constexpr std::uint32_t motor_on = 1u << 17;
-inline constexpr std::uint32_t phase_found = 1u << 18;
-inline constexpr std::uint32_t home_established = 1u << 19;
-inline constexpr std::uint32_t error_mapping = 1u << 20;
-inline constexpr std::uint32_t auxiliary_command = 1u << 21;
-inline constexpr std::uint32_t stationary = 1u << 24;
-}  // namespace status
 
 template <canopen::Bus B>
 class CpcTc1 : private BeforeNode, public Base<CpcTc1<B>, B> {
@@ -184,15 +173,16 @@ class CpcTc1 : private BeforeNode, public Base<CpcTc1<B>, B> {
     add_auxiliary_command();
     using canopen::cia402::State;
     if (drive_.state() != State::fault && drive_.state() != State::fault_reaction_active) faults_.clear();
-    std::uint32_t bits = node_.get(od::statusword{});
-    if (external_enable_) bits |= status::external_enable;
-    if (memory.motor_on) bits |= status::motor_on;
-    if (phase_found_) bits |= status::phase_found;
-    if (home_established_) bits |= status::home_established;
-    if (memory.data.values.maps_errors) bits |= status::error_mapping;
-    if (auxiliary_) bits |= status::auxiliary_command;
-    if (axis_.velocity() == 0) bits |= status::stationary;
-    static_cast<void>(node_.set(od::manufacturer_status_register{}, bits));
+    const std::uint32_t statusword = node_.get(od::statusword{}).raw();
+    od::manufacturer_status_register::type word{canopen::raw(statusword)};
+    word.external_enable_digital_input(external_enable_)
+        .motor_on(memory.motor_on)
+        .phase_find_completed(phase_found_)
+        .home_position_established(home_established_)
+        .error_mapping_active(memory.data.values.maps_errors)
+        .auxiliary_command_added(auxiliary_.has_value())
+        .motor_stationary(axis_.velocity() == 0);
+    static_cast<void>(node_.set(od::manufacturer_status_register{}, word));
   }
 
   // Inputs. Call `on_time` after them.

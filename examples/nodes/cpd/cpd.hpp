@@ -111,12 +111,13 @@ inline constexpr std::int32_t current_step = 20;         ///< turns per minute a
 
 /// Of the negative modes, which the option of the device accepts, there are four.
 struct AcceptsMode {
-  canopen::AbortCode operator()(std::int8_t wanted) const {
-    return wanted >= mode::speed ? canopen::ok : canopen::AbortCode::invalid_value;
+  canopen::AbortCode operator()(od::modes_of_operation::type wanted) const {
+    return canopen::to_raw(wanted) >= mode::speed ? canopen::ok : canopen::AbortCode::invalid_value;
   }
 };
 struct AcceptsHomingMethod {
-  canopen::AbortCode operator()(std::int8_t method) const {
+  canopen::AbortCode operator()(od::homing_method::type wanted) const {
+    const std::int8_t method = canopen::to_raw(wanted);
     return method == 0 || canopen::cia402::homing_method(method) != nullptr ? canopen::ok
                                                                             : canopen::AbortCode::invalid_value;
   }
@@ -124,8 +125,8 @@ struct AcceptsHomingMethod {
 
 /// 6086h, ProfileType: ramps are linear, 0.
 struct AcceptsProfileType {
-  canopen::AbortCode operator()(std::int16_t type) const {
-    return type == 0 ? canopen::ok : canopen::AbortCode::invalid_value;
+  canopen::AbortCode operator()(od::motion_profile_type::type type) const {
+    return canopen::to_raw(type) == 0 ? canopen::ok : canopen::AbortCode::invalid_value;
   }
 };
 
@@ -336,13 +337,14 @@ class Cpd : public Base<Cpd<B>, B> {
   }
 
  private:
+  /// The raw numbers of objects: the drive calculates with integers.
   template <class O>
-  void set(typename O::type value) {
-    static_cast<void>(node_.set(O{}, value));
+  void set(canopen::RawOf<typename O::type> number) {
+    static_cast<void>(node_.set(O{}, canopen::from_raw<typename O::type>(number)));
   }
   template <class O>
-  [[nodiscard]] typename O::type get() const {
-    return node_.get(O{});
+  [[nodiscard]] canopen::RawOf<typename O::type> get() const {
+    return canopen::to_raw(node_.get(O{}));
   }
 
   using Values = canopen::cia402::Parameters<cpd::Device, options>;
@@ -469,7 +471,7 @@ class Cpd : public Base<Cpd<B>, B> {
 
   /// The command fault reset also deletes the saved warnings.
   void watch_warnings() {
-    const bool reset = (get<od::controlword>() & canopen::cia402::controlword::fault_reset) != 0;
+    const bool reset = node_.get(od::controlword{}).fault_reset();
     if (reset && !resets_) latched_warnings_ = 0;
     resets_ = reset;
     latched_warnings_ |= warnings_;

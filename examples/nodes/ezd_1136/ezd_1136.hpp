@@ -101,7 +101,8 @@ inline constexpr std::uint16_t motor_resistance = 1'100;  ///< in 1e-3 ohm
 /// 20CEh: 2 to 4 are not supported.
 struct AcceptsControlMode {
   Control* control;
-  canopen::AbortCode operator()(std::uint16_t wanted) const {
+  canopen::AbortCode operator()(od::control_mode::type mode) const {
+    const std::uint16_t wanted = canopen::to_raw(mode);
     if (wanted >= 2 && wanted <= 4) return canopen::AbortCode::invalid_value;
     *control = static_cast<Control>(wanted);
     return canopen::ok;
@@ -109,21 +110,24 @@ struct AcceptsControlMode {
 };
 
 struct AcceptsHomingMethod {
-  canopen::AbortCode operator()(std::int8_t method) const {
+  canopen::AbortCode operator()(od::homing_method::type wanted) const {
+    const std::int8_t method = canopen::to_raw(wanted);
     return method == 0 || canopen::cia402::homing_method(method) != nullptr ? canopen::ok
                                                                             : canopen::AbortCode::invalid_value;
   }
 };
 /// 605Ah: 1, 2, 5 and 6.
 struct AcceptsQuickStopOption {
-  canopen::AbortCode operator()(std::int16_t code) const {
+  canopen::AbortCode operator()(od::quick_stop_option_code::type option) const {
+    const std::int16_t code = canopen::to_raw(option);
     return code == 1 || code == 2 || code == 5 || code == 6 ? canopen::ok : canopen::AbortCode::invalid_value;
   }
 };
 /// The other option codes, up to the highest that the drive supports.
 template <std::int16_t Highest>
 struct AcceptsOption {
-  canopen::AbortCode operator()(std::int16_t code) const {
+  canopen::AbortCode operator()(auto option) const {
+    const std::int16_t code = canopen::to_raw(option);
     return code >= 0 && code <= Highest ? canopen::ok : canopen::AbortCode::invalid_value;
   }
 };
@@ -312,18 +316,18 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
   }
 
  private:
+  /// The raw numbers of objects: the drive calculates with integers.
   template <class O>
-  void set(typename O::type value) {
-    static_cast<void>(node_.set(O{}, value));
+  void set(canopen::RawOf<typename O::type> number) {
+    static_cast<void>(node_.set(O{}, canopen::from_raw<typename O::type>(number)));
+  }
+  template <class O>
+  [[nodiscard]] canopen::RawOf<typename O::type> value() const {
+    return canopen::to_raw(node_.get(O{}));
   }
   template <class O>
   [[nodiscard]] bool is_0() const {
-    return node_.get(O{}) == 0;
-  }
-
-  template <class O>
-  [[nodiscard]] typename O::type value() const {
-    return node_.get(O{});
+    return value<O>() == 0;
   }
 
   [[nodiscard]] std::uint8_t supply_alarm() const {
@@ -440,12 +444,10 @@ class Ezd1136 : public Base<Ezd1136<B>, B> {
     const std::uint32_t inputs = axis_.inputs();
     const std::int32_t position = axis_.position();
     std::uint16_t bits = injected_;
-    if ((inputs & canopen::cia402::input::positive_limit) != 0 ||
-        position >= node_.get(od::software_position_limit<2>{})) {
+    if ((inputs & canopen::cia402::input::positive_limit) != 0 || position >= value<od::software_position_limit<2>>()) {
       bits |= warning::positive_limit;
     }
-    if ((inputs & canopen::cia402::input::negative_limit) != 0 ||
-        position <= node_.get(od::software_position_limit<1>{})) {
+    if ((inputs & canopen::cia402::input::negative_limit) != 0 || position <= value<od::software_position_limit<1>>()) {
       bits |= warning::negative_limit;
     }
     if (drive_.homing().failed()) bits |= warning::homing_failed;

@@ -116,15 +116,19 @@ class Rk5c {
   };
   struct PresetWriter {
     Rk5c* sensor;
-    canopen::AbortCode operator()(std::int32_t value) const { return sensor->preset(value); }
+    canopen::AbortCode operator()(rk5c::od::preset_values_for_multi_sensor_devices<1>::type value) const {
+      return sensor->preset(value.raw());
+    }
   };
   struct Saver {
     Rk5c* sensor;
-    canopen::AbortCode operator()(std::uint32_t) const { return sensor->store_offset(sensor->encoder_.offset()); }
+    canopen::AbortCode operator()(rk5c::od::store_parameters<1>::type) const {
+      return sensor->store_offset(sensor->encoder_.offset());
+    }
   };
   struct Loader {
     Rk5c* sensor;
-    canopen::AbortCode operator()(std::uint32_t) const {
+    canopen::AbortCode operator()(rk5c::od::restore_default_parameters<1>::type) const {
       sensor->check_flash();
       sensor->restored_ = true;
       return sensor->store_offset(0);
@@ -216,8 +220,8 @@ class Rk5c {
   }
   /// Sets position and speed without a measurement.
   void show(std::int32_t position, std::int16_t speed) {
-    static_cast<void>(node_.set(rk5c::od::position_values_for_multi_sensor_devices<1>{}, position));
-    static_cast<void>(node_.set(rk5c::od::speed_value<1>{}, speed));
+    static_cast<void>(node_.set(rk5c::od::position_values_for_multi_sensor_devices<1>{}, canopen::raw(position)));
+    static_cast<void>(node_.set(rk5c::od::speed_value<1>{}, canopen::raw(speed)));
   }
 
   [[nodiscard]] bool in_range() const { return position_ >= 0 && position_ <= range; }
@@ -234,10 +238,10 @@ class Rk5c {
     return static_cast<std::uint8_t>(bits);
   }
   void show_status() {
-    const std::uint32_t before = node_.get(rk5c::od::manufacturer_status_register{});
+    const std::uint32_t before = canopen::to_raw(node_.get(rk5c::od::manufacturer_status_register{}));
     const std::uint32_t after = status();
     if (after == before) return;
-    static_cast<void>(node_.set(rk5c::od::manufacturer_status_register{}, after));
+    static_cast<void>(node_.set(rk5c::od::manufacturer_status_register{}, canopen::raw(after)));
     char line[32];
     std::snprintf(line, sizeof line, "status 0x%02X", static_cast<unsigned>(after));
     around_.log(line);

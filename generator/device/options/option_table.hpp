@@ -84,7 +84,9 @@ inline constexpr OptionRow rows[] = {
     {meaning, "meaning", "", structured,
      "units, scales, names of values and bits, by object or entry, and names of error codes, [see below](#meaning-of-values)"},
     {meaning, "typed_values", "", structured,
-     "`true`: values with a meaning have a type of their own in C++, [see node.md](node.md#typed-values)", "false"},
+     "values with a meaning have a type of their own in C++, [see node.md](node.md#typed-values); `false`: they are numbers. "
+     "`false` will be removed in the next version",
+     "true"},
     {check, "silence", "", structured,
      "ids of rules whose warnings and notes are not reported; errors are silenced for `edsc check` only"},
     {check, "allow", "", structured,

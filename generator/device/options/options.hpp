@@ -112,7 +112,7 @@ struct Options {
   /// What values mean: units, names of values and bits, error codes.
   MeaningDescriptions meaning;
   /// Values with a meaning have a type of their own in C++.
-  bool typed_values = false;
+  bool typed_values = true;
 
   [[nodiscard]] bool is_settable(std::uint16_t index, std::uint8_t sub_index) const {
     return std::ranges::binary_search(settable, EntryKey{index, sub_index});

@@ -18,7 +18,7 @@ TEST(Emcy, TellsAnErrorOnce) {
   device.node.emergency(0x4210, ErrorRegister::temperature, {1, 2, 3, 4, 5});
   EXPECT_EQ(device.node.next_deadline(), device.now);
   EXPECT_EQ(device.pass(1s), "085 10 42 09 01 02 03 04 05");
-  EXPECT_EQ(device.node.get<od::error_register>(), 0x09);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::error_register>()), 0x09);
 }
 
 TEST(Emcy, TellsWhatIsLeftWhenAnErrorGoes) {
@@ -30,7 +30,7 @@ TEST(Emcy, TellsWhatIsLeftWhenAnErrorGoes) {
   EXPECT_EQ(device.pass(0s), "085 00 00 05 00 00 00 00 00");
   device.node.emergency_over(ErrorRegister::voltage);
   EXPECT_EQ(device.pass(0s), "085 00 00 00 00 00 00 00 00");
-  EXPECT_EQ(device.node.get<od::error_register>(), 0);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::error_register>()), 0);
 }
 
 TEST(Emcy, KeepsAHistoryWithTheNewestFirst) {
@@ -61,13 +61,13 @@ TEST(Emcy, HistoryStaysInItsMemoryWhateverTheApplicationSets) {
   Bench device;
   const std::uint8_t count[] = {200};
   EXPECT_EQ(device.node.set(0x1003, 0, count), canopen::ok);
-  EXPECT_EQ(device.node.set<od::inhibit_time_emcy>(5), canopen::ok);
+  EXPECT_EQ(device.node.set<od::inhibit_time_emcy>(canopen::raw(5)), canopen::ok);
   device.node.set<od::byte>(9);
   device.node.emergency(0x4210, ErrorRegister::temperature);
   device.pass(0s);
   EXPECT_EQ(device.ask("605 40 03 10 00 00 00 00 00"), "585 4F 03 10 00 03 00 00 00");
   EXPECT_EQ(device.ask("605 40 03 10 01 00 00 00 00"), "585 43 03 10 01 10 42 00 00");
-  EXPECT_EQ(device.node.get<od::inhibit_time_emcy>(), 5);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::inhibit_time_emcy>()), 5);
   EXPECT_EQ(device.node.get<od::byte>(), 9);
 }
 
@@ -146,7 +146,7 @@ TEST(Emcy, AResetForgetsAllErrors) {
   device.node.emergency(0x1000, ErrorRegister::current);
   device.pass(0s);
   EXPECT_EQ(device.ask(bench::reset_communication), "705 00");
-  EXPECT_EQ(device.node.get<od::error_register>(), 0);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::error_register>()), 0);
   device.node.emergency(0x1000, ErrorRegister::voltage);
   EXPECT_EQ(device.pass(0s), "085 00 10 05 00 00 00 00 00");
 }

@@ -118,10 +118,10 @@ TEST(SlcanPort, CarriesSdoOverAPseudoTerminal) {
     EXPECT_EQ(text_of(bus.receive(60s)), "705 00") << "the node starts with its channel";
     canopen::BlockingSdo master{bus, {.timeout = 60s}};
     auto node = master.remote<sample::Device>(canopen::NodeId{5});
-    EXPECT_TRUE(node.write<sample::od::producer_heartbeat_time>(std::uint16_t{20}));
+    EXPECT_TRUE(node.write<sample::od::producer_heartbeat_time>(canopen::raw(std::uint16_t{20})));
     const auto time = node.read<sample::od::producer_heartbeat_time>();
     ASSERT_TRUE(time);
-    EXPECT_EQ(*time, 20);
+    EXPECT_EQ(canopen::to_raw(*time), 20);
     EXPECT_EQ(text_of(bus.receive(60s)), "705 7F");
   }
   for (int i = 0; i < 30'000 && device.closed == 0; ++i) device.work();

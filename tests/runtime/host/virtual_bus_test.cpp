@@ -118,7 +118,7 @@ TEST(VirtualBus, TimeGoesFromDeadlineToDeadline) {
   auto node = bench::make_node<sample::Device>(endpoint, canopen::NodeId{5});
   VirtualBus::connect(endpoint, node);
   node.start(bus.now());
-  EXPECT_EQ(node.set<od::producer_heartbeat_time>(100), canopen::ok);
+  EXPECT_EQ(node.set<od::producer_heartbeat_time>(canopen::raw(100)), canopen::ok);
   bus.run_for(250ms);
   EXPECT_EQ(log.lines, (Lines{"0: 705 00", "0: 705 7F", "100000: 705 7F", "200000: 705 7F"}));
   EXPECT_EQ(bus.now(), TimePoint{250ms});
@@ -153,7 +153,7 @@ TEST(VirtualBus, ANodeWhoseQueueIsFullSendsLater) {
   auto node = bench::make_node<sample::Device>(endpoint, canopen::NodeId{5});
   VirtualBus::connect(endpoint, node);
   node.start(bus.now());
-  EXPECT_EQ(node.set<od::producer_heartbeat_time>(100), canopen::ok);
+  EXPECT_EQ(node.set<od::producer_heartbeat_time>(canopen::raw(100)), canopen::ok);
   bus.run_for(10ms);
   EXPECT_EQ(log.lines, (Lines{"55: 705 00", "110: 705 7F"}));
 }

@@ -252,8 +252,10 @@ TEST(HeartbeatConsumer, HasAnEntryForEachOf1016h) {
   static_assert(canopen::consumer_heartbeat_times(cpc_tc1::Device::dictionary) == 4);
   static_assert(canopen::consumer_heartbeat_times(can_2057c::Device::dictionary) == 0);
   canopen::ObjectStore<cpc_tc1::Device> store;
-  store.set<cpc_tc1::od::consumer_heartbeat_time<1>>(0x0005'0064);
-  store.set<cpc_tc1::od::consumer_heartbeat_time<4>>(0x0006'00C8);
+  store.set<cpc_tc1::od::consumer_heartbeat_time<1>>(
+      canopen::from_raw<cpc_tc1::od::consumer_heartbeat_time<1>::type>(0x0005'0064));
+  store.set<cpc_tc1::od::consumer_heartbeat_time<4>>(
+      canopen::from_raw<cpc_tc1::od::consumer_heartbeat_time<4>::type>(0x0006'00C8));
   Listener<4> listener;
   listener.consumer.configure(store.entries());
   EXPECT_EQ(listener.hear("705 05"), "5 started 05");

@@ -46,13 +46,13 @@ TEST(Heartbeat, EndsWhenZeroIsWritten) {
 
 TEST(Heartbeat, StartsWhenTheApplicationSetsThePeriod) {
   Bench device;
-  EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(50), canopen::ok);
+  EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(canopen::raw(50)), canopen::ok);
   EXPECT_EQ(device.pass(100ms), "705 7F | 705 7F | 705 7F");
 }
 
 TEST(Heartbeat, CarriesTheState) {
   Bench device;
-  EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(100), canopen::ok);
+  EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(canopen::raw(100)), canopen::ok);
   device.pass(0ms);
   device.ask(bench::stop);
   EXPECT_EQ(device.pass(100ms), "705 04");

@@ -117,7 +117,7 @@ TEST(Nmt, ResetNodeTakesAllDefaultValues) {
   EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(100), canopen::ok);
   device.ask(bench::reset_node);
   EXPECT_EQ(device.node.get<od::profile_acceleration>(), 1000u);
-  EXPECT_EQ(device.node.get<od::producer_heartbeat_time>(), 0);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::producer_heartbeat_time>()), 0);
 }
 
 TEST(Nmt, ResetCommunicationKeepsTheValuesOfTheApplication) {
@@ -126,7 +126,7 @@ TEST(Nmt, ResetCommunicationKeepsTheValuesOfTheApplication) {
   EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(100), canopen::ok);
   device.ask(bench::reset_communication);
   EXPECT_EQ(device.node.get<od::profile_acceleration>(), 5u);
-  EXPECT_EQ(device.node.get<od::producer_heartbeat_time>(), 0);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::producer_heartbeat_time>()), 0);
 }
 
 TEST(Nmt, TellsTheApplicationEachStateOnce) {
@@ -158,7 +158,7 @@ TEST(Nmt, ANodeIdReadAtStartUpCountsForAllIdentifiers) {
   auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{});
   node.start(canopen::NodeId{0x7F}, canopen::TimePoint{});
   EXPECT_EQ(bus.take(), "77F 00");
-  EXPECT_EQ(node.get<od::tpdo_communication_parameter_1::cob_id_used_by_tpdo>(), 0x400001FFu);
+  EXPECT_EQ(canopen::to_raw(node.get<od::tpdo_communication_parameter_1::cob_id_used_by_tpdo>()), 0x400001FFu);
   node.on_frame(bench::frame("67F 40 00 12 01 00 00 00 00"), canopen::TimePoint{});
   EXPECT_EQ(bus.take(), "5FF 43 00 12 01 7F 06 00 00");
 }

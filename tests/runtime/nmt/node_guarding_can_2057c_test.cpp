@@ -29,8 +29,8 @@ struct Module {
     const canopen::Frame request = frame(text);
     if (!canopen::is_guarding_request(request, NodeId{1})) {
       node.on_frame(request, now);
-    } else if (node.get<od::producer_heartbeat_time>() == 0) {
-      guarding.on_request(node.get<od::guard_time>(), node.get<od::life_time_factor>(), now);
+    } else if (node.get<od::producer_heartbeat_time>().raw() == 0) {
+      guarding.on_request(node.get<od::guard_time>().raw(), node.get<od::life_time_factor>(), now);
       EXPECT_TRUE(guarding.serve(bus, NodeId{1}, node.state()));
     }
     return bus.take();
@@ -44,7 +44,7 @@ struct Module {
       const auto next = guard && (!beat || *guard < *beat) ? guard : beat;
       if (!next || *next > end) break;
       now = *next;
-      if (guarding.on_time(node.get<od::guard_time>(), now)) {
+      if (guarding.on_time(node.get<od::guard_time>().raw(), now)) {
         node.emergency(0x8130, canopen::ErrorRegister::communication, {0x07});
       }
       node.on_time(now);

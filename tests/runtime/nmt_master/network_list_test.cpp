@@ -62,7 +62,7 @@ TEST(NetworkList, HasStartUpAndBootTime) {
   EXPECT_TRUE(start_up.has(canopen::nmt_start_up::stop_all));
   EXPECT_FALSE(start_up.has(canopen::nmt_start_up::reset_all));
   EXPECT_EQ(start_up.boot_time, canopen::Duration{5s});
-  store.set<nmt_master::od::boot_time>(0xFFFF'FFFF);
+  store.set<nmt_master::od::boot_time>(canopen::from_raw<nmt_master::od::boot_time::type>(0xFFFF'FFFF));
   EXPECT_EQ(canopen::read_start_up(store.entries()).boot_time, canopen::Duration{30min});
 }
 

@@ -231,8 +231,8 @@ struct Remaps {
   template <std::uint16_t Number, class Layout, class Node, class CobId>
   void map(Node& node, CobId cob_id) {
     while_valid = node.template map<Number, Layout>();
-    const std::uint32_t valid = node.get(cob_id);
-    ASSERT_EQ(node.set(cob_id, valid | 0x8000'0000u), canopen::ok);
+    const auto valid = node.get(cob_id);
+    ASSERT_EQ(node.modify(cob_id, [](auto& word) { word.not_valid(true); }), canopen::ok);
     mapped = node.template map<Number, Layout>();
     ASSERT_EQ(node.set(cob_id, valid), canopen::ok);
   }
@@ -318,10 +318,11 @@ TEST(ObjectValues, TakeAnElementByItsNumberAtRunTime) {
 
 TEST(ObjectValues, AskTheServiceOfAnElement) {
   bench::Bench<every_service::Device> device;
-  EXPECT_EQ(device.node.set(od::consumer_heartbeat_time{}, 1, 0x000A'0064), canopen::ok);
-  EXPECT_EQ(device.node.set(od::consumer_heartbeat_time{}, 2, 0x000A'0064), AbortCode::parameter_incompatible)
+  EXPECT_EQ(device.node.set(od::consumer_heartbeat_time{}, canopen::raw(1), 0x000A'0064), canopen::ok);
+  EXPECT_EQ(device.node.set(od::consumer_heartbeat_time{}, canopen::raw(2), 0x000A'0064),
+            AbortCode::parameter_incompatible)
       << "1016h:01 consumes node 10";
-  EXPECT_EQ(device.node.get(od::consumer_heartbeat_time<2>{}), 0u);
+  EXPECT_EQ(canopen::to_raw(device.node.get(od::consumer_heartbeat_time<2>{})), 0u);
 }
 
 TEST(ObjectValues, CheckAValueOfTheRunningProgram) {

@@ -91,10 +91,10 @@ TEST(SetOfAParameter, ObeysTheRulesOfItsService) {
   EXPECT_EQ(device.node.set<tpdo1>(0x8000'0185), canopen::ok);
   EXPECT_EQ(device.node.set<tpdo1>(0x601), AbortCode::invalid_value) << "restricted";
   EXPECT_EQ(device.node.set<tpdo1>(0x190), canopen::ok);
-  EXPECT_EQ(device.node.get<tpdo1>(), 0x190u);
-  EXPECT_EQ(device.node.set<od::synchronous_counter_overflow_value>(1), AbortCode::invalid_value);
-  EXPECT_EQ(device.node.set<od::cob_id_emcy>(0x8000'0085), canopen::ok);
-  EXPECT_EQ(device.node.set<od::cob_id_emcy>(0x585), AbortCode::invalid_value);
+  EXPECT_EQ(canopen::to_raw(device.node.get<tpdo1>()), 0x190u);
+  EXPECT_EQ(device.node.set<od::synchronous_counter_overflow_value>(canopen::raw(1)), AbortCode::invalid_value);
+  EXPECT_EQ(device.node.set<od::cob_id_emcy>(canopen::raw(0x8000'0085)), canopen::ok);
+  EXPECT_EQ(device.node.set<od::cob_id_emcy>(canopen::raw(0x585)), AbortCode::invalid_value);
 }
 
 // NMT commands from handlers

@@ -66,7 +66,7 @@ TEST(LateHeartbeat, GoesOutOnceAndThenEveryPeriod) {
 
 TEST(LateEmcy, GoesOutWhoseInhibitTimeEnded40MinutesAgo) {
   Bench device;
-  EXPECT_EQ(device.node.set<od::inhibit_time_emcy>(100), canopen::ok);  // 10 ms
+  EXPECT_EQ(device.node.set<od::inhibit_time_emcy>(canopen::raw(100)), canopen::ok);  // 10 ms
   device.node.emergency(0x1000, canopen::ErrorRegister::generic);
   device.node.emergency(0x2000, canopen::ErrorRegister::generic);
   EXPECT_EQ(serve(device), "085 00 10 01 00 00 00 00 00");

@@ -46,7 +46,7 @@ TEST(Node, SetsAndGetsObjectsWhateverTheirAccessOnTheBus) {
   EXPECT_EQ(device.node.set<od::statusword>(0x0237), canopen::ok);
   EXPECT_EQ(device.node.get<od::statusword>(), 0x0237);
   EXPECT_EQ(device.node.set<od::password>(1), canopen::ok);
-  EXPECT_EQ(device.node.get<od::device_type>(), 0x000F0191u);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::device_type>()), 0x000F0191u);
   EXPECT_EQ(device.node.get<od::lowest_temperature>(), -5);
 }
 
@@ -152,7 +152,7 @@ TEST(Node, TellsTheNearestDeadline) {
   Bench device;
   EXPECT_FALSE(device.node.next_deadline());
   EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(100), canopen::ok);
-  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(30), canopen::ok);
+  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(canopen::raw(30)), canopen::ok);
   EXPECT_EQ(device.pass(0ms), "705 7F");
   device.ask(bench::start);
   EXPECT_EQ(device.node.next_deadline(), device.now + 30ms);

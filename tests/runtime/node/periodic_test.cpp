@@ -36,7 +36,7 @@ using Calls = std::vector<std::string>;
 struct Sensor {
   void start(auto& node) {
     calls.push_back("start, state " + std::to_string(static_cast<int>(node.state())));
-    node.set(od::cyclic_timer{}, 7);
+    node.set(od::cyclic_timer{}, canopen::raw(7));
   }
   void on_state(NmtState state) { calls.push_back("state " + std::to_string(static_cast<int>(state))); }
   void every(Milliseconds<10>, auto& node) { calls.push_back("10 ms at " + at(node.now())); }
@@ -54,7 +54,7 @@ TEST(Start, IsTheFirstCallAfterTheDefaultValuesHaveBeenSet) {
   EXPECT_EQ(node.application<Sensor>().calls, Calls{});
   node.start(TimePoint{});
   EXPECT_EQ(node.application<Sensor>().calls, (Calls{"start, state 0", "state 0", "state 127"}));
-  EXPECT_EQ(node.get(od::cyclic_timer{}), 7) << "default values do not replace it";
+  EXPECT_EQ(canopen::to_raw(node.get(od::cyclic_timer{})), 7) << "default values do not replace it";
   EXPECT_EQ(bus.take(), "705 00");
 }
 
@@ -88,7 +88,8 @@ TEST(Start, MayReportAnErrorAndConfigureTheNode) {
   bench::RecordingBus bus;
   auto node = bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::on_start([](auto& starting) {
                                                starting.emergency(0x5000, ErrorRegister::manufacturer);
-                                               EXPECT_EQ(starting.set(od::producer_heartbeat_time{}, 100), canopen::ok);
+                                               EXPECT_EQ(starting.set(od::producer_heartbeat_time{}, canopen::raw(100)),
+                                                         canopen::ok);
                                                starting.request(NmtCommand::start, starting.now());
                                              }));
   node.start(TimePoint{});
@@ -104,13 +105,13 @@ TEST(Start, SeesStoredValues) {
   {
     auto node = bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::stored_in(storage));
     node.start(TimePoint{});
-    node.set(od::cyclic_timer{}, 9);
+    node.set(od::cyclic_timer{}, canopen::raw(9));
     ASSERT_EQ(node.save(), canopen::ok);
   }
   std::uint16_t seen = 0;
   auto node = bench::make_node<rk5c::Device>(bus, NodeId{5}, canopen::stored_in(storage),
                                              canopen::on_start([&](auto& starting) {
-                                               seen = starting.get(od::cyclic_timer{});
+                                               seen = canopen::to_raw(starting.get(od::cyclic_timer{}));
                                                EXPECT_EQ(starting.save(), canopen::ok);
                                              }));
   node.start(TimePoint{});
@@ -336,9 +337,9 @@ TEST(Periodic, SeesPostedValues) {
   canopen::Mailbox<od::speed_value<1>> mailbox;
   int seen = 0;
   auto device = bench::with<rk5c::Device>(
-      canopen::every<Milliseconds<10>>([&](auto& node) { seen = node.get(od::speed_value<1>{}); }),
+      canopen::every<Milliseconds<10>>([&](auto& node) { seen = canopen::to_raw(node.get(od::speed_value<1>{})); }),
       canopen::values_from(mailbox));
-  mailbox.post<od::speed_value<1>>(33);
+  mailbox.post<od::speed_value<1>>(canopen::raw(33));
   EXPECT_TRUE(device.node.next_deadline() <= device.now);
   device.node.on_time(TimePoint{10ms});
   EXPECT_EQ(seen, 33);

@@ -68,9 +68,9 @@ TEST(ObjectStore, EqualValuesAreEqualWhateverTheirPadding) {
 
 TEST(ObjectStore, AddsTheNodeIdToCobIds) {
   Store store = fresh();
-  EXPECT_EQ(store.get<od::rpdo_communication_parameter_1::cob_id_used_by_rpdo>(), 0x205u);
-  EXPECT_EQ(store.get<od::tpdo_communication_parameter_2::cob_id_used_by_tpdo>(), 0xC0000285u);
-  EXPECT_EQ((store.get<od::sdo_server_parameter::cob_id_client_to_server>()), 0x605u);
+  EXPECT_EQ(canopen::to_raw(store.get<od::rpdo_communication_parameter_1::cob_id_used_by_rpdo>()), 0x205u);
+  EXPECT_EQ(canopen::to_raw(store.get<od::tpdo_communication_parameter_2::cob_id_used_by_tpdo>()), 0xC0000285u);
+  EXPECT_EQ(canopen::to_raw((store.get<od::sdo_server_parameter::cob_id_client_to_server>())), 0x605u);
 }
 
 /// 1018h has its product code in flash and its serial number, which the application sets, in RAM.
@@ -154,10 +154,10 @@ TEST(ObjectStore, ChecksRealLimits) {
 TEST(ObjectStore, ResetOfCommunicationLeavesTheApplicationAlone) {
   Store store = fresh();
   store.set<od::profile_acceleration>(7);
-  store.set<od::producer_heartbeat_time>(7);
+  store.set<od::producer_heartbeat_time>(canopen::from_raw<od::producer_heartbeat_time::type>(7));
   store.reset_communication(NodeId{6});
   EXPECT_EQ(store.get<od::profile_acceleration>(), 7u);
-  EXPECT_EQ(store.get<od::producer_heartbeat_time>(), 0);
+  EXPECT_EQ(canopen::to_raw(store.get<od::producer_heartbeat_time>()), 0);
   EXPECT_EQ(store.get<od::rpdo_communication_parameter_1::cob_id_used_by_rpdo>(), 0x206u);
 }
 

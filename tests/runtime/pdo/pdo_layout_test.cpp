@@ -34,9 +34,10 @@ TEST(PdoLayout, IsKnownWhileTheProgramIsCompiled) {
 }
 
 TEST(PdoLayout, UnpacksWhatItPacks) {
-  const auto data = sample::Tpdo2::pack(true, false, -2, 0x81);
+  const auto data = sample::Tpdo2::pack(true, false, -2, canopen::raw(0x81));
   EXPECT_EQ(data, (Data{0xF9, 0xFF, 0xFF, 0xFF, 0xFF, 0x07, 0x02}));
-  EXPECT_EQ(sample::Tpdo2::unpack(data), std::make_tuple(true, false, std::int64_t{-2}, std::uint8_t{0x81}));
+  EXPECT_EQ(sample::Tpdo2::unpack(data),
+            std::make_tuple(true, false, std::int64_t{-2}, od::error_register::type{canopen::raw(std::uint8_t{0x81})}));
 }
 
 TEST(PdoLayout, TellsWhichObjectsItMaps) {
@@ -159,7 +160,7 @@ TEST(PdoLayout, SetsOneEntryAndNoOther) {
   EXPECT_EQ(data, (Data{0x03, 0x00, 0x00, 0x00, 0x00, 0xFC, 0xFF, 0xFF}));
   sample::Tpdo2::set<od::inputs::input_1>(data, false);
   EXPECT_EQ(data, (Data{0x02, 0x00, 0x00, 0x00, 0x00, 0xFC, 0xFF, 0xFF}));
-  sample::Tpdo2::set<3>(data, 0x81);
+  sample::Tpdo2::set<3>(data, canopen::raw(0x81));
   EXPECT_EQ(data, (Data{0x02, 0x00, 0x00, 0x00, 0x00, 0x04, 0xFE, 0xFF}));
 }
 
@@ -176,12 +177,12 @@ TEST(PdoLayout, WorksOnAFrameAsOnItsData) {
 
 TEST(PdoLayout, IsCodedWhileTheProgramIsCompiled) {
   constexpr Data data = [] {
-    Data bytes = sample::Tpdo2::pack(true, true, -1, 0xFF);
+    Data bytes = sample::Tpdo2::pack(true, true, -1, canopen::raw(0xFF));
     sample::Tpdo2::set<od::integer40_value>(bytes, 1);
     return bytes;
   }();
   static_assert(data == Data{0x07, 0x00, 0x00, 0x00, 0x00, 0xFC, 0x03});
-  static_assert(sample::Tpdo2::get<od::error_register>(data) == 0xFF);
+  static_assert(sample::Tpdo2::get<od::error_register>(data).raw() == 0xFF);
   using Layout = canopen::PdoLayout<canopen::FixedString<Octets, 2>>;
   static_assert(Layout::pack({1, 2}) == Data{1, 2});
   static_assert(Layout::get<0>(Data{3, 4}).bytes[1] == 4);

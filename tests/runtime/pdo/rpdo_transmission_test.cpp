@@ -146,11 +146,11 @@ TEST(RpdoLength, TooShortIsNotTakenAndTold) {
   Running device;
   EXPECT_EQ(device.ask("205 01 02 03 04 05"), "085 10 82 11 00 00 00 00 00");
   EXPECT_EQ(device.node.get<od::output_word>(), 0);
-  EXPECT_EQ(device.node.get<od::error_register>(), 0x11);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::error_register>()), 0x11);
   EXPECT_EQ(device.ask("205 01 02 03 04 05"), "");  // reported once
   EXPECT_EQ(device.ask("205 01 02 03 04 05 06"), "085 00 00 00 00 00 00 00 00 | 185 00 00 03 04 05 06");
   EXPECT_EQ(device.node.get<od::output_word>(), 0x0201);
-  EXPECT_EQ(device.node.get<od::error_register>(), 0);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::error_register>()), 0);
 }
 
 TEST(RpdoLength, ErrorsOfTwoRpdosEndWithTheLast) {

@@ -101,7 +101,7 @@ TEST(Tpdo, MayHaveA29BitCanId) {
 
 TEST(Tpdo, IsSentEachTimeTheEventTimerRunsOut) {
   Bench device;
-  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(10), canopen::ok);
+  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(canopen::raw(10)), canopen::ok);
   device.ask(bench::start);
   EXPECT_EQ(device.node.next_deadline(), device.now + 10ms);
   EXPECT_EQ(device.pass(9ms), "");
@@ -111,7 +111,7 @@ TEST(Tpdo, IsSentEachTimeTheEventTimerRunsOut) {
 
 TEST(Tpdo, ItsEventTimerDoesNotDriftWhenServedLate) {
   Bench device;
-  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(10), canopen::ok);
+  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(canopen::raw(10)), canopen::ok);
   device.ask(bench::start);
   device.now = device.now + 13ms;
   device.node.on_time(device.now);
@@ -127,7 +127,7 @@ TEST(Tpdo, ItsEventTimerDoesNotDriftWhenServedLate) {
 
 TEST(Tpdo, EveryTransmissionRestartsTheEventTimer) {
   Bench device;
-  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(10), canopen::ok);
+  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(canopen::raw(10)), canopen::ok);
   device.ask(bench::start);
   device.pass(6ms);
   device.node.set<od::statusword>(1);
@@ -161,7 +161,7 @@ TEST(Tpdo, IsNotSentAgainBeforeTheInhibitTimeIsOver) {
 TEST(Tpdo, TheInhibitTimeHoldsTheEventTimerBackToo) {
   Bench device;
   EXPECT_EQ(device.node.set(0x1800, 3, ten_milliseconds), canopen::ok);
-  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(3), canopen::ok);
+  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(canopen::raw(3)), canopen::ok);
   device.ask(bench::start);
   EXPECT_EQ(device.node.next_deadline(), device.now + 10ms);
   EXPECT_EQ(device.pass(9ms), "");
@@ -249,7 +249,7 @@ struct TimerOnly : sample::Device {
 
 TEST(Tpdo, AnOptionLeavesSendingToTheEventTimerAlone) {
   Bench<TimerOnly> device;
-  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(1), canopen::ok);
+  EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(canopen::raw(1)), canopen::ok);
   EXPECT_EQ(device.ask(bench::start), "");
   device.node.set<od::statusword>(1);
   EXPECT_EQ(device.pass(999us), "");
@@ -263,7 +263,7 @@ struct MaskedCobId : sample::Device {
 TEST(Tpdo, AnOptionKeepsBitsOfTheCobIdAsTheyAre) {
   Bench<MaskedCobId> device;
   EXPECT_EQ(device.ask("605 23 01 18 01 81 02 00 04"), "585 60 01 18 01 00 00 00 00");
-  EXPECT_EQ(device.node.get<od::tpdo_communication_parameter_2::cob_id_used_by_tpdo>(), 0x40000285u);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::tpdo_communication_parameter_2::cob_id_used_by_tpdo>()), 0x40000285u);
 }
 
 struct PlainCanIds : sample::Device {

@@ -162,7 +162,7 @@ class OwnReaction : public nodes::DriveNode<OwnReaction<B>, cia402_drive::Device
 TEST(Cia402AbortConnection, LeavesTheManufacturersCodesToTheApplication) {
   bench::NodeBench<OwnReaction> drive;
   drive.ask(bench::start);
-  ASSERT_EQ(drive.app->node().set<od::abort_connection_option_code>(-7), canopen::ok);
+  ASSERT_EQ(drive.app->node().set<od::abort_connection_option_code>(canopen::raw(-7)), canopen::ok);
   for (const char* word : {"205 06 00", "205 07 00", "205 0F 00"}) drive.ask(word);
   ASSERT_EQ(drive.app->drive().state(), State::operation_enabled);
   drive.ask(bench::stop);

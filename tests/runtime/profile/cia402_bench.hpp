@@ -46,16 +46,16 @@ struct DriveBench : NodeBench<PlainDrive> {
       frame.data[2 + i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(target) >> (8 * i));
     return ask(text(frame));
   }
-  /// Sets an object as the application does.
+  /// Sets an object by its raw number.
   template <class O>
-  void set(typename O::type value) {
-    EXPECT_EQ(app->node().template set<O>(value), canopen::ok);
+  void set(canopen::RawOf<typename O::type> number) {
+    EXPECT_EQ(app->node().template set<O>(canopen::from_raw<typename O::type>(number)), canopen::ok);
     app->on_time(now);
     bus.take();
   }
   template <class O>
-  [[nodiscard]] typename O::type get() {
-    return app->node().template get<O>();
+  [[nodiscard]] canopen::RawOf<typename O::type> get() {
+    return canopen::to_raw(app->node().template get<O>());
   }
   [[nodiscard]] std::uint16_t statusword() { return get<od::statusword>(); }
   [[nodiscard]] State state() const { return app->drive().state(); }

@@ -167,7 +167,7 @@ void expect_modes(std::uint32_t supported_modes) {
     const bool is_supported = ((supported_modes >> (wanted - 1)) & 1) != 0;
     EXPECT_EQ(drive.write(0x6060, 0, wanted, 1), is_supported ? 0u : 0x0609'0030u) << wanted;
     if (is_supported) {
-      EXPECT_EQ(drive.drive.node().get(od::modes_of_operation_display{}), wanted);
+      EXPECT_EQ(canopen::to_raw(drive.drive.node().get(od::modes_of_operation_display{})), wanted);
     }
   }
 }
@@ -208,9 +208,9 @@ TEST(SecondAxis, HasItsOwnObjectsAndModes) {
     drive.on_time(node, now);
   }
   EXPECT_EQ(motor.velocity(), 1'000);
-  EXPECT_EQ(node.get<od::statusword_of_axis_2>() & 0x6F, 0x27);
-  EXPECT_EQ(node.get<od::modes_of_operation_display_of_axis_2>(), 3);
-  EXPECT_EQ(node.get<od::statusword>(), 0) << "the first axis has none of it";
+  EXPECT_EQ(node.get<od::statusword_of_axis_2>().raw() & 0x6F, 0x27);
+  EXPECT_EQ(canopen::to_raw(node.get<od::modes_of_operation_display_of_axis_2>()), 3);
+  EXPECT_EQ(node.get<od::statusword>().raw(), 0) << "the first axis has none of it";
 }
 
 // Sequences of commands, modes and set-points

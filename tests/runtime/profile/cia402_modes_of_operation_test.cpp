@@ -79,9 +79,10 @@ void expect_rpdo(std::int8_t (*present)(BareNode<Device>&)) {
 }
 
 TEST(ModesOfOperation, AreThoseOf6502hByRpdo) {
-  expect_rpdo<every_mode::Device>([](auto& device) { return device.node.get(every_mode::od::modes_of_operation{}); });
+  expect_rpdo<every_mode::Device>(
+      [](auto& device) { return canopen::to_raw(device.node.get(every_mode::od::modes_of_operation{})); });
   expect_rpdo<every_mode_static::Device>(
-      [](auto& device) { return device.node.get(every_mode_static::od::modes_of_operation{}); });
+      [](auto& device) { return canopen::to_raw(device.node.get(every_mode_static::od::modes_of_operation{})); });
 }
 
 TEST(ModesOfOperation, AreThoseOf6502hByAMappedRpdoThatRepeatsThem) {
@@ -91,15 +92,15 @@ TEST(ModesOfOperation, AreThoseOf6502hByAMappedRpdoThatRepeatsThem) {
         "605 23 01 16 01 08 00 60 60", "605 23 01 16 02 20 00 7A 60", "605 2F 01 16 00 02 00 00 00",
         "605 23 01 14 01 05 03 00 00"})
     EXPECT_EQ(device.ask(request).substr(0, 6), "585 60") << request;
-  std::int8_t expected = device.node.get(cia402_drive::od::modes_of_operation{});
+  std::int8_t expected = canopen::to_raw(device.node.get(cia402_drive::od::modes_of_operation{}));
   std::int32_t position = 0;
   for (int mode = -128; mode <= 127; ++mode) {
     if (is_supported(mode, four)) expected = static_cast<std::int8_t>(mode);
     for (int time = 0; time < 2; ++time) {
       ++position;
       device.ask("305 " + byte(mode) + " " + byte(position) + " " + byte(position >> 8) + " 00 00");
-      EXPECT_EQ(device.node.get(cia402_drive::od::modes_of_operation{}), expected) << mode;
-      EXPECT_EQ(device.node.get(cia402_drive::od::target_position{}), position) << mode;
+      EXPECT_EQ(canopen::to_raw(device.node.get(cia402_drive::od::modes_of_operation{})), expected) << mode;
+      EXPECT_EQ(canopen::to_raw(device.node.get(cia402_drive::od::target_position{})), position) << mode;
     }
   }
 }
@@ -111,10 +112,10 @@ TEST(ModesOfOperation, AreThoseOf6502hByTheApplication) {
   for (int mode = -128; mode <= 127; ++mode) {
     const auto value = static_cast<std::int8_t>(mode);
     const AbortCode expected = is_supported(mode, every) ? canopen::ok : AbortCode::invalid_value;
-    EXPECT_EQ(device.node.set<Mode>(value), expected) << mode;
+    EXPECT_EQ(device.node.set<Mode>(canopen::from_raw<Mode::type>(value)), expected) << mode;
     const std::uint8_t bytes[] = {static_cast<std::uint8_t>(mode)};
     EXPECT_EQ(device.node.set(0x6060, 0, bytes), expected) << mode;
-    EXPECT_EQ(canopen::check_value<Mode>(mode), expected) << mode;
+    EXPECT_EQ(canopen::check_value<canopen::NumbersOf<Mode>>(mode), expected) << mode;
   }
 }
 

@@ -25,7 +25,7 @@ struct DriveNode : testing::Test {
     return bus.take();
   }
   /// The bits of the statusword that are the state (CiA 402-2, table 30).
-  unsigned state() { return drive.node().get(od::statusword{}) & 0x6Fu; }
+  unsigned state() { return drive.node().get(od::statusword{}).raw() & 0x6Fu; }
 
   bench::RecordingBus bus;
   canopen::TimePoint now{};

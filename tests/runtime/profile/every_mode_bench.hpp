@@ -78,8 +78,8 @@ struct EveryMode {
   }
 
   template <class O>
-  [[nodiscard]] typename O::type get() {
-    return drive.node().template get<O>();
+  [[nodiscard]] canopen::RawOf<typename O::type> get() {
+    return canopen::to_raw(drive.node().template get<O>());
   }
   [[nodiscard]] unsigned status() { return get<every_mode::od::statusword>(); }
   [[nodiscard]] bool bit(unsigned number) { return (status() >> number & 1) != 0; }

@@ -235,7 +235,7 @@ TEST(ProfileOutputs, TakeTheirErrorValuesInTheStateThat1029hLeadsTo) {
   set_up(module);
   module.node.on_bus_status({canopen::BusState::off}, module.now);
   EXPECT_EQ(module.node.state(), canopen::NmtState::stopped);
-  EXPECT_EQ(module.node.get<io_device::od::write_output_8_bit<1>>(), 0xA5);
+  EXPECT_EQ(canopen::to_raw(module.node.get<io_device::od::write_output_8_bit<1>>()), 0xA5);
   EXPECT_EQ(module.node.get<io_device::od::write_analogue_output_16_bit<1>>(), -16384);
 }
 
@@ -247,7 +247,7 @@ TEST(ProfileOutputs, TakeTheirErrorValuesAfterALifeGuardingEvent) {
   set_up(module);
   EXPECT_EQ(module.ask("705 R 1"), "705 05");
   EXPECT_EQ(module.pass(200ms), "085 30 81 11 00 00 00 00 00");
-  EXPECT_EQ(module.node.get<io_device::od::write_output_8_bit<1>>(), 0xA5);
+  EXPECT_EQ(canopen::to_raw(module.node.get<io_device::od::write_output_8_bit<1>>()), 0xA5);
 }
 
 struct ProfileAnalogueInputs : testing::Test {

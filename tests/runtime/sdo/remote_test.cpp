@@ -222,7 +222,7 @@ TEST(BlockingSdo, CompletesATransferInsideOfWhichAnotherOneHasRun) {
 
 TEST(BlockingSdo, RefusesATransferToTheNodeThatItWaitsFor) {
   Plant plant;
-  EXPECT_EQ(plant.device.set<od::producer_heartbeat_time>(10), canopen::ok);
+  EXPECT_EQ(plant.device.set<od::producer_heartbeat_time>(canopen::raw(10)), canopen::ok);
   AbortCode nested = canopen::ok;
   plant.master.on_frame = [&](const canopen::Frame&, TimePoint) {
     if (nested == canopen::ok) nested = plant.master.upload(NodeId{6}, 0x1000, 0).abort_code();
@@ -249,7 +249,7 @@ TEST(BlockingSdo, EndsOnABusThatIsNeverSilent) {
 
 TEST(BlockingSdo, HandsOtherFramesOnWhileItWaits) {
   Plant plant;
-  EXPECT_EQ(plant.device.set<od::producer_heartbeat_time>(10), canopen::ok);
+  EXPECT_EQ(plant.device.set<od::producer_heartbeat_time>(canopen::raw(10)), canopen::ok);
   int heartbeats = 0;
   plant.master.on_frame = [&](const canopen::Frame& frame, TimePoint) { heartbeats += frame.id == 0x705 ? 1 : 0; };
   (void)plant.master.upload(NodeId{6}, 0x1000, 0);

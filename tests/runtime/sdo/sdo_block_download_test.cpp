@@ -38,7 +38,7 @@ TEST(SdoBlockDownload, TakesNumbers) {
   device.ask("C2 17 10 00 02 00 00 00");
   device.ask("81 E8 03 00 00 00 00 00");
   EXPECT_EQ(device.ask("D5 00 00 00 00 00 00 00"), "A1 00 00 00 00 00 00 00");
-  EXPECT_EQ(device.store.get<od::producer_heartbeat_time>(), 1000);
+  EXPECT_EQ(canopen::to_raw(device.store.get<od::producer_heartbeat_time>()), 1000);
   device.ask("C2 07 20 00 08 00 00 00");
   device.ask("01 FE FF FF FF FF FF FF");
   device.ask("82 FF 00 00 00 00 00 00");

@@ -82,7 +82,7 @@ TEST(SdoClient, AsksForTheSameEntryAgainWhenTheLateAnswerHasCome) {
   EXPECT_TRUE(one.client.busy());
   EXPECT_EQ(one.client.next_deadline(), TimePoint{220ms});
   one.client.on_frame(frame("585 43 00 10 00 02 00 00 00"), TimePoint{130ms});
-  EXPECT_EQ(one.client.value<od::device_type>(), 2u);
+  EXPECT_EQ(one.client.value<od::device_type>()->raw(), 2u);
 }
 
 TEST(SdoClient, AsksForTheSameEntryAgainWhenNoAnswerHasComeForAnotherTimeout) {
@@ -104,7 +104,7 @@ TEST(SdoClient, DoesNotWaitWhenTheLateAnswerHasComeBefore) {
 
 TEST(SdoClient, DoesNotWaitForAnotherEntry) {
   Unanswered one;
-  EXPECT_TRUE(one.client.write<od::producer_heartbeat_time>(50, TimePoint{110ms}));
+  EXPECT_TRUE(one.client.write<od::producer_heartbeat_time>(canopen::raw(50), TimePoint{110ms}));
   EXPECT_EQ(one.bus.take(), "605 2B 17 10 00 32 00 00 00");
   one.client.on_frame(frame("585 43 00 10 00 01 00 00 00"), TimePoint{111ms});
   one.client.on_frame(frame("585 60 17 10 00 00 00 00 00"), TimePoint{112ms});
@@ -150,10 +150,10 @@ TEST(SdoClient, WaitsWhenSeveralRequestsAreNotAnswered) {
 TEST(SdoClient, TheLateRefusalOfAWriteIsNotThatOfTheNextOne) {
   bench::RecordingBus bus;
   SdoClient client{bus, NodeId{5}, 100ms};
-  client.write<od::producer_heartbeat_time>(50, TimePoint{});
+  client.write<od::producer_heartbeat_time>(canopen::raw(50), TimePoint{});
   client.on_time(TimePoint{100ms});
   bus.take();
-  client.write<od::producer_heartbeat_time>(60, TimePoint{100ms});
+  client.write<od::producer_heartbeat_time>(canopen::raw(60), TimePoint{100ms});
   client.on_frame(frame("585 80 17 10 00 22 00 00 08"), TimePoint{110ms});
   EXPECT_TRUE(client.busy());
   EXPECT_EQ(bus.take(), "605 2B 17 10 00 3C 00 00 00");

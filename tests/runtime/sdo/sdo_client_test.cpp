@@ -236,7 +236,7 @@ TEST(SdoClient, TakesAnAnswerWithoutASizeAsLongAsTheObject) {
   SdoClient client{bus, NodeId{5}, 100ms};
   client.read<od::producer_heartbeat_time>(TimePoint{});
   client.on_frame(frame("585 42 17 10 00 64 00 00 00"), TimePoint{});
-  EXPECT_EQ(client.value<od::producer_heartbeat_time>(), 100);
+  EXPECT_EQ(client.value<od::producer_heartbeat_time>()->raw(), 100);
 }
 
 TEST(SdoClient, IgnoresAnswersForOtherEntriesAndOtherNodes) {

@@ -88,7 +88,7 @@ TEST(SdoServer, DownloadsShortNumbersInSegmentsAsWell) {
   Bench device;
   EXPECT_EQ(device.ask("605 21 17 10 00 02 00 00 00"), "585 60 17 10 00 00 00 00 00");
   EXPECT_EQ(device.ask("605 0B E8 03 00 00 00 00 00"), "585 20 00 00 00 00 00 00 00 | 705 7F");
-  EXPECT_EQ(device.node.get<od::producer_heartbeat_time>(), 1000);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::producer_heartbeat_time>()), 1000);
 }
 
 TEST(SdoServer, DownloadsNumbersOfFiveToEightBytes) {

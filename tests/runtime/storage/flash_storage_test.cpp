@@ -296,7 +296,8 @@ void set(Device& device, const Values& values) {
 }
 
 Values values(const Device& device) {
-  return {device.node.get<od::profile_acceleration>(), device.node.get<InhibitTime>(), device.node.get<od::gain>()};
+  return {device.node.get<od::profile_acceleration>(), device.node.get<InhibitTime>().raw(),
+          device.node.get<od::gain>()};
 }
 
 /// More steps than any save takes.

@@ -158,9 +158,9 @@ TEST(StoreParameters, KeepsACobIdThatEqualsTheDefaultOfANewNodeId) {
   device.ask("605 23 00 14 01 09 02 00 00");
   device.ask(save_all);
   device.node.start(NodeId{9}, device.now);
-  EXPECT_EQ(device.node.get<od::rpdo_communication_parameter_1::cob_id_used_by_rpdo>(), 0x209u);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::rpdo_communication_parameter_1::cob_id_used_by_rpdo>()), 0x209u);
   device.node.start(NodeId{5}, device.now);
-  EXPECT_EQ(device.node.get<od::rpdo_communication_parameter_1::cob_id_used_by_rpdo>(), 0x209u);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::rpdo_communication_parameter_1::cob_id_used_by_rpdo>()), 0x209u);
 }
 
 TEST(StoreParameters, RemembersTheNodeIdOfEachRange) {
@@ -171,7 +171,7 @@ TEST(StoreParameters, RemembersTheNodeIdOfEachRange) {
   device.ask("609 23 10 10 02 73 61 76 65");
   device.node.start(NodeId{7}, device.now);
   EXPECT_EQ(device.node.get<od::station_address>(), 0x17);
-  EXPECT_EQ(device.node.get<od::cob_id_emcy>(), 0x87u);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::cob_id_emcy>()), 0x87u);
 }
 
 struct BoundToNodeId : stored_device::Device {

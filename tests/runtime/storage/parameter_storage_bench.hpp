@@ -39,7 +39,7 @@ inline constexpr Ranges defaults{0, -5, 1000, 0};
 
 template <class Bench>
 Ranges ranges(const Bench& device) {
-  return {device.node.template get<stored_device::od::producer_heartbeat_time>(),
+  return {device.node.template get<stored_device::od::producer_heartbeat_time>().raw(),
           device.node.template get<stored_device::od::gain>(),
           static_cast<int>(device.node.template get<stored_device::od::profile_acceleration>()),
           device.node.template get<stored_device::od::network_variable>()};

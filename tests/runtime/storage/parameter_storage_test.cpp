@@ -121,8 +121,9 @@ TEST(StoreParameters, TakesTheSignatureInSegments) {
 TEST(StoreParameters, AsksTheApplicationFirst) {
   MemoryStorage storage;
   bool motor_on = true;
-  auto device = powered(storage, canopen::on_write<od::store_parameters<1>>(
-                                     [&](std::uint32_t) { return motor_on ? AbortCode::device_state : canopen::ok; }));
+  auto device = powered(storage, canopen::on_write<od::store_parameters<1>>([&](od::store_parameters<1>::type) {
+                          return motor_on ? AbortCode::device_state : canopen::ok;
+                        }));
   EXPECT_EQ(device.ask(save_all), "585 80 10 10 01 22 00 00 08");
   EXPECT_EQ(storage.commits, 0);
   motor_on = false;
@@ -133,7 +134,8 @@ TEST(StoreParameters, AsksTheApplicationFirst) {
 TEST(StoreParameters, LeavesOtherSubIndicesToTheApplication) {
   MemoryStorage storage;
   int calls = 0;
-  auto device = powered(storage, canopen::on_write<od::store_parameters<5>>([&](std::uint32_t) { ++calls; }));
+  auto device =
+      powered(storage, canopen::on_write<od::store_parameters<5>>([&](od::store_parameters<5>::type) { ++calls; }));
   EXPECT_EQ(device.ask("605 23 10 10 05 00 00 00 00"), "585 80 10 10 05 20 00 00 08");
   EXPECT_EQ(calls, 0);
   EXPECT_EQ(device.ask("605 23 10 10 05 73 61 76 65"), "585 60 10 10 05 00 00 00 00");

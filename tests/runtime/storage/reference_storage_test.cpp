@@ -80,7 +80,8 @@ TEST(StorageOfManual000, TellsThatStoringFailed) {
 TEST(StorageOfManual000, LeavesTheVirtualMachineToTheApplication) {
   MemoryStorage storage;
   bool program_stored = false;
-  auto store = canopen::on_write<cpc_tc1::od::store_parameters<5>>([&](std::uint32_t) { program_stored = true; });
+  auto store = canopen::on_write<cpc_tc1::od::store_parameters<5>>(
+      [&](cpc_tc1::od::store_parameters<5>::type) { program_stored = true; });
   Powered<cpc_tc1::Device, decltype(store)> drive{canopen::stored_in(storage), store};
   EXPECT_EQ(drive.ask("605 23 10 10 05 73 61 76 65"), "585 60 10 10 05 00 00 00 00");
   EXPECT_TRUE(program_stored);

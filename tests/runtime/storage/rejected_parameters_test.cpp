@@ -47,7 +47,7 @@ TEST(StoreParameters, TellsThatStoredValuesAreLost) {
   auto node = bench::make_node<stored_device::Device>(bus, NodeId{5}, canopen::stored_in(storage));
   node.start(canopen::TimePoint{});
   EXPECT_EQ(bus.take(), "705 00 | 085 00 63 01 00 00 00 00 00");
-  EXPECT_EQ(node.get<od::error_register>(), 0x01);
+  EXPECT_EQ(canopen::to_raw(node.get<od::error_register>()), 0x01);
   node.on_frame(bench::frame(bench::reset_communication), canopen::TimePoint{});
   EXPECT_EQ(bus.take(), "705 00 | 085 00 63 01 00 00 00 00 00") << "until the next power-on";
 }
@@ -73,7 +73,7 @@ TEST(StoreParameters, StartsWithDefaultsWhereTheStorageCannotBeRead) {
   storage.fails_to_read = true;
   auto device = powered(storage);
   EXPECT_EQ(ranges(device), defaults);
-  EXPECT_EQ(device.node.get<od::error_register>(), 0x01);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::error_register>()), 0x01);
   EXPECT_EQ(device.ask(save_all), "585 80 10 10 01 00 00 06 06");
 }
 

@@ -108,7 +108,8 @@ TEST(SyncProducer, HasAPeriodOf35MinutesAtMost) {
   EXPECT_EQ(write(device, "605 23 06 10 00 FF FF FF 7F"), ok);
   EXPECT_EQ(device.pass(20min), "");
   EXPECT_EQ(device.pass(16min), "080");
-  EXPECT_EQ(device.node.set<od::communication_cycle_period>(0x8000'0000), canopen::AbortCode::value_too_high);
+  EXPECT_EQ(device.node.set<od::communication_cycle_period>(canopen::raw(0x8000'0000)),
+            canopen::AbortCode::value_too_high);
 }
 
 TEST(SyncWindow, OfMoreThan35MinutesIsNone) {
@@ -202,7 +203,7 @@ TEST(HighResolutionTimeStamp, GoesOnFromWhatIsWritten) {
   EXPECT_EQ(write(device, "605 23 13 10 00 00 10 00 00"), ok);  // 4096 us
   device.pass(5us);
   device.ask("080");
-  EXPECT_EQ(device.node.get<od::high_resolution_time_stamp>(), 4101u);
+  EXPECT_EQ(canopen::to_raw(device.node.get<od::high_resolution_time_stamp>()), 4101u);
 }
 
 TEST(Time, IsGivenToTheApplication) {
@@ -229,8 +230,8 @@ TEST(Time, IsSentByAProducer) {
 
 TEST(Time, HasACanIdOf11BitsWhateverTheApplicationSets) {
   Bench device;
-  EXPECT_EQ(device.node.set<od::cob_id_time>(0x4000'0900), canopen::AbortCode::invalid_value);
-  EXPECT_EQ(device.node.set<od::cob_id_time>(0x4000'0100), canopen::ok);
+  EXPECT_EQ(device.node.set<od::cob_id_time>(canopen::raw(0x4000'0900)), canopen::AbortCode::invalid_value);
+  EXPECT_EQ(device.node.set<od::cob_id_time>(canopen::raw(0x4000'0100)), canopen::ok);
   EXPECT_TRUE(device.node.send_time({1000, 10}));
   EXPECT_EQ(device.pass(0s), "100 E8 03 00 00 0A 00");
 }

@@ -291,6 +291,15 @@ class ValueOf {
   type value_;
 };
 
+namespace value_for_detail {
+
+/// A constant with a unit for a quantity, or a value that is not one of an object of this type.
+template <class ValueType, class Type>
+concept ConstantOrOther = (is_quantity<Type> && is_constant<ValueType>) ||
+                          (!FitsInto<ValueType, Type> && !is_raw_number<ValueType>);
+
+}  // namespace value_for_detail
+
 /// A constant with a unit for an object with a meaning, as the parameter of a function.
 template <NumberObject ObjectType>
 class ConstantOf {
@@ -354,8 +363,11 @@ requires Meaningful<typename ObjectType::type>
 class CheckedValue<ObjectType> : public ConstantOf<ObjectType> {
  public:
   using type = typename ObjectType::type;
-  using ConstantOf<ObjectType>::ConstantOf;
 
+  /// Not inherited: the compiler's message then has the line of the call.
+  template <value_for_detail::ConstantOrOther<type> ValueType>
+  constexpr CheckedValue(const ValueType& value)  // NOLINT(google-explicit-constructor)
+      : ConstantOf<ObjectType>{value} {}
   /// Returns value_too_high, value_too_low or invalid_value for a value that the object does not accept.
   [[nodiscard]] static constexpr Result<CheckedValue> from(type value) {
     if (const AbortCode code = check_value<ObjectType>(value); code != ok) return code;
@@ -404,8 +416,11 @@ requires Meaningful<typename ObjectType::type>
 class ValueOf<ObjectType> : public ConstantOf<ObjectType> {
  public:
   using type = typename ObjectType::type;
-  using ConstantOf<ObjectType>::ConstantOf;
 
+  /// Not inherited: the compiler's message then has the line of the call.
+  template <value_for_detail::ConstantOrOther<type> ValueType>
+  constexpr ValueOf(const ValueType& value)  // NOLINT(google-explicit-constructor)
+      : ConstantOf<ObjectType>{value} {}
   constexpr ValueOf(const type& value) { this->value_ = value; }  // NOLINT(google-explicit-constructor)
   /// A raw number of the type of the object, which every value of it may be.
   constexpr ValueOf(RawNumber<RawOf<type>> raw) {  // NOLINT(google-explicit-constructor)

@@ -12,6 +12,7 @@
 #include <optional>
 #include <utility>
 
+#include "canopen/od/typed_value.hpp"
 #include "canopen/profile/cia402_state_machine.hpp"
 #include "canopen/profile/cia402_words.hpp"
 
@@ -27,6 +28,11 @@ namespace canopen::cia402 {
     if ((statusword & mask) == (bits_of(state) & mask)) return state;
   }
   return std::nullopt;
+}
+/// The same of the word of a device.
+template <FieldWord Statusword>
+[[nodiscard]] constexpr std::optional<State> state_of(const Statusword& statusword) {
+  return state_of(statusword.raw());
 }
 
 /// Where a master wants a drive to be.
@@ -92,6 +98,11 @@ class DriveCommander {
     }
     return static_cast<std::uint16_t>(command | mode_bits_ | set_point_bits(statusword) |
                                       (halted_ ? controlword::halt : 0));
+  }
+  /// The same with the word of a device, for its object 6040h.
+  template <FieldWord Statusword>
+  [[nodiscard]] RawNumber<std::uint16_t> next(const Statusword& statusword) {
+    return canopen::raw(next(statusword.raw()));
   }
 
  private:

@@ -64,12 +64,12 @@ class EncoderNode : public ProfileNode<EncoderNode<Parts, BusType, Sensor, Handl
     template <DictionaryObject Object>
     requires(has_timers&& Object::index == 0x6200) void written(Object, const typename Object::type& value,
                                                                 auto& node) {
-      cia406_detail::Copy<0x1800, 5>{}(node, value);
+      cia406_detail::Copy<0x1800, 5>{}(node, to_raw(value));
     }
     template <DictionaryObject Object>
     requires(has_timers&& Object::index == 0x1800 &&
              Object::sub_index == 5) void written(Object, const typename Object::type& value, auto& node) {
-      cia406_detail::Copy<0x6200, 0>{}(node, value);
+      cia406_detail::Copy<0x6200, 0>{}(node, to_raw(value));
     }
   };
 

@@ -6,13 +6,16 @@
 #include <cstring>
 #include <optional>
 #include <span>
+#include <type_traits>
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/can/node_id.hpp"
 #include "canopen/od/object.hpp"
+#include "canopen/od/typed_value.hpp"
 #include "canopen/od/value_bits.hpp"
+#include "canopen/od/value_for.hpp"
 #include "canopen/sdo/sdo_client_transfer.hpp"
 #include "canopen/sdo/sdo_client_value.hpp"
 #include "canopen/sdo/sdo_late_response.hpp"
@@ -98,11 +101,18 @@ class SdoClient {
 
   /// Starts to write an object of a generated dictionary.
   template <DictionaryObject Object>
-  requires(Object::bits > 0) bool write(const typename Object::type& value, TimePoint now) {
+  requires(Object::bits > 0 && !Meaningful<typename Object::type>) bool write(const typename Object::type& value,
+                                                                              TimePoint now) {
     if (busy()) return false;
     const std::uint64_t raw = value_detail::to_bits(value);
     std::memcpy(number_.data(), &raw, sizeof raw);
     return download(Object::index, Object::sub_index, std::span{number_}.first((Object::bits + 7u) / 8u), now);
+  }
+  /// The same with a meaning: a value, a constant with a unit, or a raw number.
+  template <NumberObject Object>
+  requires Meaningful<typename Object::type>
+  bool write(std::type_identity_t<ValueOf<Object>> value, TimePoint now) {
+    return write<NumbersOf<Object>>(to_raw(value.value()), now);
   }
 
   /// Ends the transfer with an abort code, which is sent to the server unless the first request has not been sent yet.
