@@ -279,7 +279,6 @@ def main() -> int:
         (folder / "rate_100.eds").write_text(sheet_with("1017", "0").replace("BaudRate_125=1", "BaudRate_100=1"))
         for name, units in UNITS.items():
             (folder / f"{name}.eds").write_text(sheet_in_units(*units))
-        (folder / "short.eds").write_text(re.sub(r"(\[1017\][^\[]*DataType=)0x0006", r"\g<1>0x0005", sheet_with("1017", "0")))
         for name, (text, code, expected) in TEXTS.items():
             got_code, found = check(edsc, folder, name, text)
             places = [(one["severity"], one["rule"], one["line"], one["column"]) for one in found
