@@ -241,6 +241,16 @@ class OptionsFile(CommandLine):
         self.expect(INPUT_HAS_ERRORS, self.edsc("generate", sheet, "-o", self.output), "small.options.json:2:3: error:")
         self.assertFalse(self.output.exists())
 
+    def test_with_an_option_that_will_be_removed_has_a_note(self) -> None:
+        note = '"typed_values": false will be removed'
+        sheet = self.write("small.eds", SMALL)
+        self.write("small.options.json", '{"typed_values": false}')
+        result = self.edsc("generate", sheet, "-o", self.output)
+        self.expect(FINE, result, "small.options.json: note: " + note)
+        self.assertNotIn(note, self.edsc("generate", sheet, "-o", self.output, "--target", "c").stderr)
+        self.write("small.options.json", '{"typed_values": true}')
+        self.assertNotIn(note, self.edsc("generate", sheet, "-o", self.output).stderr)
+
     def test_that_is_named_and_missing_is_wrong_usage(self) -> None:
         result = self.edsc("generate", self.write("small.eds", SMALL), "--options", "none.json", "-o", self.output)
         self.expect(WRONG_USAGE, result, "none.json")

@@ -258,7 +258,7 @@ TEST(Manual001, MapsOneObjectAsInTheFigures) {
     EXPECT_EQ(drive.ask(sdo("605", 0x40, mapping, 1, 0)), sdo("585", 0x43, mapping, 1, object));
     EXPECT_EQ(drive.ask(sdo("605", 0x40, mapping, 4, 0)), sdo("585", 0x43, mapping, 4, 0));
   }
-  drive.node.set<ezd_1136::od::statusword>(0x00F3);
+  drive.node.set<ezd_1136::od::statusword>(canopen::raw(0x00F3));
   EXPECT_EQ(drive.ask(bench::start).substr(0, 9), "185 F3 00");
   EXPECT_EQ(drive.ask("205 11 22"), "");
   EXPECT_EQ(canopen::to_raw(drive.node.get<ezd_1136::od::controlword>()), 0x2211);

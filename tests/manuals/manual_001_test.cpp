@@ -115,7 +115,7 @@ TEST(Manual001, HasTheTypesOfTheParameterList) {
   static_assert(std::is_same_v<canopen::RawOf<od::home_offset::type>, std::int32_t>);
   static_assert(std::is_same_v<canopen::RawOf<od::profile_acceleration::type>, std::uint32_t>);
   Drive drive;
-  drive.node.set<od::home_offset>(-2);
+  drive.node.set<od::home_offset>(canopen::raw(-2));
   EXPECT_EQ(drive.ask("605 40 7C 60 00 00 00 00 00"), "585 43 7C 60 00 FE FF FF FF");
 }
 
@@ -131,7 +131,7 @@ TEST(Manual001, APdoIsValidWhileBit31Is0) {
   EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0);
   drive.ask("605 23 00 14 01 05 02 00 00");
   drive.ask("205 0F 00 01 00 00 00 00 00");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x0F);
 }
 
 // shows 001.28
@@ -188,8 +188,8 @@ TEST(Manual001, AMappingEntryIsIndexSubIndexAndLength) {
   EXPECT_EQ(drive.ask("605 23 03 1A 04 08 00 41 60"), "585 80 03 1A 04 41 00 04 06");
   EXPECT_EQ(drive.ask("605 2F 03 1A 00 03 00 00 00"), "585 60 03 1A 00 00 00 00 00");
   write(drive, 0x1803, 1, 4, 0x0000'0485);
-  drive.node.set<od::position_actual_value>(0x01020304);
-  drive.node.set<od::statusword>(0x0250);
+  drive.node.set<od::position_actual_value>(canopen::raw(0x01020304));
+  drive.node.set<od::statusword>(canopen::raw(0x0250));
   EXPECT_EQ(drive.ask(bench::start),
             "185 50 02 00 00 01 | 285 04 03 02 01 00 00 00 00 | 385 00 00 00 00 00 00 | 485 04 03 02 01 50 02 01");
 }
@@ -281,7 +281,7 @@ TEST(Manual001, TakesTheNewestRpdoAtTheNextSyncOrAtOnce) {
     write(drive, 0x1401, 2, 1, type);
     drive.ask("305 01 00 00 00 00 00 00 00");
     drive.ask("305 02 00 00 00 00 00 00 00");
-    EXPECT_EQ(drive.node.get<od::target_position>(), type > 240 ? 2 : 0) << type;
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_position>()), type > 240 ? 2 : 0) << type;
     drive.ask("080");
     EXPECT_EQ(drive.node.get<od::target_position>(), 2) << type;
   }

@@ -237,7 +237,7 @@ TEST(Manual002, ChangesBit31AndTheFunctionCodeOfAPdo) {
   drive.ask("405 0F 00 E8 03 00 00");
   EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_velocity>()), 0);
   drive.ask("685 0F 00 E8 03 00 00");
-  EXPECT_EQ(drive.node.get<od::target_velocity>(), 1000);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_velocity>()), 1000);
 }
 
 // shows 002.218, 002.219

@@ -28,7 +28,7 @@ TEST(Manual002, EvaluatesRpdo1AtOnce) {
   EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0);
   drive.ask(bench::start);
   EXPECT_EQ(drive.ask("205 0F 00"), "");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x0F);
 }
 
 // shows 002.77, 002.78, 002.84
@@ -50,7 +50,7 @@ TEST(Manual002, Rpdo2And3CarryTargetsOnceTheyAreEnabled) {
 // shows 002.80, 002.84, 002.217, 002.225, 002.501
 TEST(Manual002, SendsTpdo1AfterTheStartAndAtEveryChange) {
   Drive drive;
-  drive.node.set<od::statusword>(0x6631);
+  drive.node.set<od::statusword>(canopen::raw(0x6631));
   EXPECT_EQ(drive.ask(bench::start), "185 31 66");
   drive.node.set<od::statusword>(0x4637);
   EXPECT_EQ(drive.pass(1s), "185 37 46");
@@ -61,7 +61,7 @@ TEST(Manual002, SendsTpdo2And3AtEachSyncOnceTheyAreEnabled) {
   Drive drive;
   drive.node.set<od::statusword>(0x4637);
   drive.node.set<od::position_actual_value>(30000);
-  drive.node.set<od::velocity_actual_value>(-1);
+  drive.node.set<od::velocity_actual_value>(canopen::raw(-1));
   EXPECT_EQ(drive.ask(bench::start), "185 37 46");
   EXPECT_EQ(drive.ask("080"), "");
   write(drive, 0x1801, 1, 4, 0x285);
@@ -222,7 +222,7 @@ TEST(Manual002, TakesRpdo2And3WithSyncOrAtOnceByTheirType) {
     drive.ask("305 0F 00 01 00 00 00");
     drive.ask("405 0F 00 02 00 00 00");
     EXPECT_EQ(drive.node.get<od::target_position>(), type == 255 ? 1 : 0);
-    EXPECT_EQ(drive.node.get<od::target_velocity>(), type == 255 ? 2 : 0);
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_velocity>()), type == 255 ? 2 : 0);
     drive.ask("080");
     EXPECT_EQ(drive.node.get<od::target_position>(), 1);
     EXPECT_EQ(drive.node.get<od::target_velocity>(), 2);

@@ -97,7 +97,7 @@ TEST(Manual003, TellsAPdoLengthErrorOnceAndItsEnd) {
   module.ask(bench::start);
   EXPECT_EQ(module.ask("205 12"), "085 10 82 11 09 00 00 00 00");
   EXPECT_EQ(module.ask("205 12"), "");
-  EXPECT_EQ(module.node.get<Output>(), 0);
+  EXPECT_EQ(canopen::to_raw(module.node.get<Output>()), 0);
   EXPECT_EQ(module.ask("205 12 34"), "085 00 00 00 00 00 00 00 00");
   EXPECT_EQ(module.ask("205"), "085 10 82 11 09 00 00 00 00");
 }

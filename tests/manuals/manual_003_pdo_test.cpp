@@ -40,7 +40,7 @@ TEST(Manual003, ChangesACobIdWhileThePdoIsNotValid) {
   module.ask("205 12 34");
   EXPECT_EQ(canopen::to_raw(module.node.get<Output>()), 0);
   module.ask("222 12 34");
-  EXPECT_EQ(module.node.get<Output>(), 0x12);
+  EXPECT_EQ(canopen::to_raw(module.node.get<Output>()), 0x12);
   EXPECT_EQ(module.ask("605 23 00 14 01 22 02 00 80"), "585 60 00 14 01 00 00 00 00");
   module.ask("222 56 78");
   EXPECT_EQ(module.node.get<Output>(), 0x12);
@@ -163,7 +163,7 @@ TEST(Manual003, ServesPdosInOperationalOnly) {
     EXPECT_EQ(outputs.node.get<Output>(), 0);
     DigitalInputs inputs;
     inputs.ask(command);
-    inputs.node.set<Input>(1);
+    inputs.node.set<Input>(canopen::raw(1));
     EXPECT_EQ(inputs.pass(1s), "");
     EXPECT_EQ(inputs.ask("185 R 0"), "");
     EXPECT_EQ(inputs.ask(bench::start), "185 01 00");
@@ -270,7 +270,7 @@ TEST(Manual003, SdoAndPdoReachTheSameObjects) {
   EXPECT_EQ(inputs.ask(bench::start), "185 AB 00");
 
   AnalogInputs analog_inputs;
-  analog_inputs.node.set<can_2017c::od::read_analogue_input_16_bit<8>>(-2);
+  analog_inputs.node.set<can_2017c::od::read_analogue_input_16_bit<8>>(canopen::raw(-2));
   EXPECT_EQ(analog_inputs.ask("605 40 01 64 08 00 00 00 00"), "585 4B 01 64 08 FE FF 00 00");
   EXPECT_EQ(analog_inputs.ask(bench::start), "285 00 00 00 00 00 00 00 00 | 385 00 00 00 00 00 00 FE FF");
 }

@@ -300,7 +300,7 @@ TEST(Manual004, SendsType0AtTheSyncAfterAChange) {
   write(sensor, 0x1800, 2, 1, 0);
   sensor.ask(bench::start);
   EXPECT_EQ(sensor.ask("080"), "");
-  sensor.node.set<Position>(1);
+  sensor.node.set<Position>(canopen::raw(1));
   EXPECT_EQ(sensor.pass(1s), "");
   EXPECT_EQ(sensor.ask("080"), "185 01 00 00 00 00 00");
   EXPECT_EQ(sensor.ask("080"), "");
@@ -354,7 +354,7 @@ TEST(Manual004, HasAFixedMapping) {
 TEST(Manual004, SdoAndTpdo1CarryTheSameValues) {
   Sensor sensor;
   sensor.node.set<Position>(-200);
-  sensor.node.set<Speed>(-300);
+  sensor.node.set<Speed>(canopen::raw(-300));
   EXPECT_EQ(sensor.ask("605 40 20 60 01 00 00 00 00"), "585 42 20 60 01 38 FF FF FF");
   EXPECT_EQ(sensor.ask("605 40 30 60 01 00 00 00 00"), "585 42 30 60 01 D4 FE 00 00");
   sensor.ask(bench::start);

@@ -54,7 +54,7 @@ TEST(EightDevices, ASensorThatLosesPowerIsBootedAgainWhileTheOthersRun) {
   EXPECT_FALSE(bench.plant().sensor.speed_value_1().has_value());
   bench.axis.node().set(ezd_1136::od::position_actual_value{}, canopen::raw(123));
   bench.bus.run_for(1s);
-  EXPECT_EQ(bench.analog_outputs.node().get(can_2024c::od::write_analogue_output_16_bit<3>{}), 123);
+  EXPECT_EQ(canopen::to_raw(bench.analog_outputs.node().get(can_2024c::od::write_analogue_output_16_bit<3>{})), 123);
 
   bench.sensor.switch_on();
   ASSERT_TRUE(bench.boot(10s));

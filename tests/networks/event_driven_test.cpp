@@ -34,7 +34,7 @@ TEST(EventDriven, AValueIsSentOnceWhenItChanges) {
   ASSERT_TRUE(bench.boot(10s));
   bench.bus.run_for(1s);
   bench.forget();
-  bench.control.plant.axis.target_position(1000);
+  bench.control.plant.axis.target_position(canopen::raw(1000));
   bench.bus.run_for(1s);
   EXPECT_EQ(bench.count(can_id), 1U);
   EXPECT_EQ(bench.last(can_id), (Bytes{0xE8, 0x03, 0, 0, 0, 0, 0, 0}));

@@ -91,7 +91,9 @@ TEST(FourModules, ANodeThatLosesPowerIsBootedAgainWhileTheOthersRun) {
   EXPECT_EQ(bench.boots["digital_outputs"], 1);
   EXPECT_EQ(bench.count_boot_ups(1) + bench.count_boot_ups(2) + bench.count_boot_ups(3), 0U);
   EXPECT_EQ(bench.analog_inputs.node().state(), NmtState::operational);
-  EXPECT_EQ(bench.analog_inputs.node().get(can_2017c::od::tpdo_communication_parameter_2::event_timer{}), 1000);
+  EXPECT_EQ(
+      canopen::to_raw(bench.analog_inputs.node().get(can_2017c::od::tpdo_communication_parameter_2::event_timer{})),
+      1000);
   EXPECT_TRUE(bench.plant().analog_inputs.read_analogue_input_16_bit_1().has_value());
 }
 

@@ -80,7 +80,7 @@ TEST(TwelveAxes, ADriveThatLosesPowerIsBootedAgainWhileTheOthersRun) {
   EXPECT_EQ(bench.node(5).state(), NmtState::operational);
   bench.node(5).set(od::position_actual_value{}, canopen::raw(55'555));
   bench.bus.run_for(100ms);
-  EXPECT_EQ(bench.node(6).get(od::target_position{}), 55'555);
+  EXPECT_EQ(canopen::to_raw(bench.node(6).get(od::target_position{})), 55'555);
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ TEST_F(MasterAndPlant, StopTheOutputsWhileANodeIsLostAndGoOnWithIt) {
   EXPECT_TRUE(sent("000 02 01"));
   EXPECT_TRUE(sent("000 02 03"));
   EXPECT_EQ(plant.digital_out().node().state(), canopen::NmtState::stopped);
-  EXPECT_EQ(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>(), 0);
+  EXPECT_EQ(canopen::to_raw(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>()), 0);
   EXPECT_EQ(canopen::to_raw(plant.analogue_out().node().get<can_2024c::od::write_analogue_output_16_bit<1>>()), 0);
   loses = nullptr;
   log.clear();
@@ -118,7 +118,7 @@ TEST_F(MasterAndPlant, BringTheOutputsToTheirErrorValuesWhenTheMasterIsLost) {
   EXPECT_NE(canopen::to_raw(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>()), 0);
   bus.run_for(1s);  // no guarding
   EXPECT_EQ(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>(), 0);
-  EXPECT_EQ(plant.analogue_out().node().get<can_2024c::od::write_analogue_output_16_bit<1>>(), 0);
+  EXPECT_EQ(canopen::to_raw(plant.analogue_out().node().get<can_2024c::od::write_analogue_output_16_bit<1>>()), 0);
   EXPECT_TRUE(sent("081 30 81 11 07 00 00 00 00"));
 }
 
@@ -259,11 +259,11 @@ TEST_F(Boot, ConfiguresWithSeveralTransfers) {
   master->on_configure = [&](NodeId) -> canopen::Result<void> {
     if (const auto done = inputs->write<od::tpdo_communication_parameter_1::event_timer>(canopen::raw(500)); !done)
       return done;
-    return inputs->write<od::guard_time>(250);
+    return inputs->write<od::guard_time>(canopen::raw(250));
   };
   master->start();
   master->poll(50ms);
-  EXPECT_EQ(module.node().get<od::guard_time>(), 250);
+  EXPECT_EQ(canopen::to_raw(module.node().get<od::guard_time>()), 250);
   EXPECT_EQ(module.node().state(), canopen::NmtState::operational);
   EXPECT_EQ(log.back(), "node 5: not watched: no heartbeat time and no guard time in the network list");
 }

@@ -64,24 +64,24 @@ def data_sheets(source_dir: Path, scratch: Path) -> list[Path]:
     return sorted((source_dir / "eds").glob("*.eds")) + sorted([*fixtures, names_eds(scratch)], key=lambda path: path.name)
 
 
-def typed_options(sheet: Path, scratch: Path) -> Path:
-    """The options of a device with the option typed_values."""
+def options_with_numbers(sheet: Path, scratch: Path) -> Path:
+    """The options of a device without typed values."""
     options = json.loads(sheet.with_suffix(".options.json").read_text(encoding="utf-8"))
-    path = scratch / f"typed_{sheet.stem}.options.json"
-    path.write_text(json.dumps({**options, "typed_values": True}), encoding="utf-8")
+    path = scratch / f"numbers_{sheet.stem}.options.json"
+    path.write_text(json.dumps({**options, "typed_values": False}), encoding="utf-8")
     return path
 
 
 def generate(edsc: Path, sheets: list[Path], output: Path, scratch: Path) -> list[Path]:
-    """Returns the folder of each device; the reference devices have one more, with typed values."""
+    """Returns the folder of each device; the reference devices have one more, without typed values."""
     def run(sheet: Path, *extra: str | Path) -> None:
         subprocess.run([edsc, "generate", sheet, "-o", output, "--color", "never", *extra], check=True, capture_output=True)
 
     for sheet in sheets:
         run(sheet)
         if sheet.parent.name == "eds":
-            name = f"typed_{sheet.stem.replace('-', '_')}"
-            run(sheet, "--name", name, "--options", typed_options(sheet, scratch))
+            name = sheet.stem.replace("-", "_")
+            run(sheet, "--name", f"numbers_{name}", "--options", options_with_numbers(sheet, scratch))
             if not (output / name / "meaning.hpp").is_file():
                 raise FileNotFoundError(f"{name} does not have meaning.hpp")
     run(sheets[-1], "--name", NAMED_LIKE_STD)

@@ -16,6 +16,7 @@ namespace {
 /// Bits that a name sets, and their value.
 struct SetBits {
   std::uint64_t mask = 0, value = 0;
+  bool is_also_field = false;  ///< the name of a masked value is that of a field, too
 };
 
 RawNumber failed(std::string problem) { return {0, std::move(problem)}; }
@@ -41,25 +42,27 @@ class PartNames {
  public:
   explicit PartNames(const Meaning& meaning) : meaning_{meaning} {}
 
-  /// The bits of `remote`, `gear=3` or `profile_position.halt`; or a problem.
-  [[nodiscard]] std::string find(std::string_view text, SetBits& bits) const {
+  /// The bits of `remote`, `gear=3` or `profile_position.halt`; or a problem. A name of both a masked value and a
+  /// field, such as `quick_stop`, is the masked value at the start of a list, and otherwise the field.
+  [[nodiscard]] std::string find(std::string_view text, bool is_first, SetBits& bits) const {
     const std::size_t equals = text.find('=');
     const std::string_view name = trim(text.substr(0, equals));
     const auto value = equals == std::string_view::npos ? std::nullopt : std::optional{trim(text.substr(equals + 1))};
+    const BitField* const field = find_field(name);
     for (const MaskedGroup& group : meaning_.masked) {
       for (const MaskedValue& one : group.values) {
         const bool is_this = value ? name == group.name && *value == one.name : name == one.name;
-        if (!is_this) continue;
-        bits = {one.mask, one.value};
+        const bool is_field_too = is_this && !value && field != nullptr && field->is_flag();
+        if (!is_this || (is_field_too && !is_first)) continue;
+        bits = {one.mask, one.value, is_field_too};
         return "";
       }
     }
-    const BitField* const field = find_field(name);
     if (field == nullptr) return unknown(name);
     if (!value && !field->is_flag()) return fmt::format("{} needs a value, such as {}=1", name, name);
     const RawNumber number = value ? field_number(*field, *value) : RawNumber{1, ""};
     if (!number.ok()) return number.problem;
-    bits = {field->mask(), number.bits << field->first_bit & field->mask()};
+    bits = {field->mask(), number.bits << field->first_bit & field->mask(), false};
     if (field->of(bits.value) != static_cast<std::int64_t>(number.bits)) {
       return fmt::format("{} does not fit into {}, which has {} bit{}", *value, name, field->bits,
                          field->bits == 1 ? "" : "s");
@@ -161,12 +164,20 @@ void append_parts(std::string& text, const Meaning& meaning, std::uint64_t raw, 
 
 RawNumber parse_parts(const Meaning& meaning, std::string_view text) {
   const PartNames names{meaning};
-  SetBits all;
-  while (true) {
+  SetBits all, first;
+  std::string_view first_name;
+  for (bool is_first = true;; is_first = false) {
     const std::size_t end = text.find_first_of(",|");
     const std::string_view name = trim(text.substr(0, end));
     SetBits bits;
-    if (std::string problem = names.find(name, bits); !problem.empty()) return failed(std::move(problem));
+    if (std::string problem = names.find(name, is_first, bits); !problem.empty()) return failed(std::move(problem));
+    if (is_first) {
+      first = bits;
+      first_name = name;
+    } else if (first.is_also_field && (bits.mask & first.mask) != 0) {
+      return failed(fmt::format("{} is a value of bits {:X}h, which include {}; {}=1 is the bit alone", first_name,
+                                first.mask, name, first_name));
+    }
     if (((all.value ^ bits.value) & all.mask & bits.mask) != 0) {
       return failed(fmt::format("{} contradicts what is before it: both have bits {:X}h", name, all.mask & bits.mask));
     }

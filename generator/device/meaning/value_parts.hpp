@@ -64,8 +64,9 @@ void append_parts(std::string& text, const Meaning& meaning, std::uint64_t raw,
 
 /// The raw number of a text such as `operation_enabled, remote, gear=3`, separated by commas or `|`: names of masked
 /// values, of flags, and of fields with their values. Bits that are not named are 0. A field of a case can have the
-/// name of its case before it: `profile_position.halt`. Fails for an unknown name, and for two names that need other
-/// values of one bit.
+/// name of its case before it: `profile_position.halt`. A name of both a masked value and a
+/// flag is the masked value at the start of the text, and otherwise the flag. Fails for an unknown name, for two names
+/// that need other values of one bit, and for a flag that is a part of such a masked value.
 [[nodiscard]] RawNumber parse_parts(const Meaning& meaning, std::string_view text);
 
 }  // namespace edsc

@@ -12,13 +12,13 @@ namespace {
 
 class Pump {
  public:
-  void written(od::speed_setpoint, std::uint16_t speed, auto& node) {
-    pressure_ = static_cast<std::uint16_t>(speed / 4);
-    node.set(od::pressure{}, pressure_);
+  void written(od::speed_setpoint, od::speed_setpoint::type speed, auto& node) {
+    pressure_ = static_cast<std::uint16_t>(speed.raw() / 4);
+    node.set(od::pressure{}, canopen::raw(pressure_));
   }
   void every(canopen::Milliseconds<10>, auto& node) {
     ripple_ = static_cast<std::uint16_t>((ripple_ + 3) % 17);
-    node.set(od::pressure{}, static_cast<std::uint16_t>(pressure_ + ripple_));
+    node.set(od::pressure{}, canopen::raw(static_cast<std::uint16_t>(pressure_ + ripple_)));
   }
 
  private:

@@ -72,7 +72,7 @@ void run(const std::string& address, NodeId node_id, std::uint32_t serial_number
           [&](std::uint32_t offset, std::span<const std::uint8_t> piece, bool) { return memory.write(offset, piece); }),
       canopen::on_domain_read<od::log>(
           [&](std::uint32_t offset, std::span<std::uint8_t> to) { return memory.read(offset, to); }),
-      canopen::on_write<od::speed>([](auto& device, std::uint16_t speed) {
+      canopen::on_write<od::speed>([](auto& device, od::speed::type speed) {
         return speed > device.template get<od::maximum_speed>() ? AbortCode::value_too_high : canopen::ok;
       }),
       canopen::on_read<od::rounded_value>(

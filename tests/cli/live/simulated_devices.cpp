@@ -14,17 +14,21 @@ namespace {
 /// Moves with the target velocity, in increments per millisecond, up to the maximum speed.
 class Motor {
  public:
-  void start(auto& node) { static_cast<void>(node.set(od::producer_heartbeat_time{}, 500)); }
-  canopen::AbortCode write(od::target_velocity, std::int32_t velocity, auto& node) {
-    if (velocity > node.get(od::maximum_speed{})) return canopen::AbortCode::value_too_high;
-    std::printf("velocity %d\n", static_cast<int>(velocity));  // not on the standard output of the protocol
-    velocity_ = velocity;
+  void start(auto& node) {
+    using namespace canopen::literals;
+    static_cast<void>(node.set(od::producer_heartbeat_time{}, 500_ms));
+  }
+  canopen::AbortCode write(od::target_velocity, od::target_velocity::type velocity, auto& node) {
+    if (velocity.raw() > node.get(od::maximum_speed{}).raw()) return canopen::AbortCode::value_too_high;
+    std::printf("velocity %d\n", static_cast<int>(velocity.raw()));  // not on the standard output of the protocol
+    velocity_ = velocity.raw();
     return canopen::ok;
   }
   void every(canopen::Milliseconds<1>, auto& node) {
     if (node.now().since_start().count() % 1000 != 0)
       std::printf("call at %u\n", static_cast<unsigned>(node.now().since_start().count()));
-    static_cast<void>(node.set(od::position_actual_value{}, node.get(od::position_actual_value{}) + velocity_));
+    const std::int32_t position = node.get(od::position_actual_value{}).raw() + velocity_;
+    static_cast<void>(node.set(od::position_actual_value{}, canopen::raw(position)));
   }
 
  private:

@@ -73,6 +73,21 @@ TEST_F(MeaningOfText, ANumberWithAUnitIsThePhysicalValue) {
   EXPECT_EQ(limits_text(device.entry(0x2000)), "..9 s");
 }
 
+/// CiA 402-2, 6040h: quick_stop is the command 0002h with bits 1, 2 and 7, and bit 2 alone.
+TEST(MeaningOfWords, ANameOfACommandAndABitIsTheCommandAtTheStartOnly) {
+  const DeviceFromText device("[1000]\nParameterName=Device type\nDataType=7\nAccessType=ro\nDefaultValue=0x20192\n" +
+                              var("6040", "Controlword", "6"));
+  const auto parsed = [&](std::string_view text) { return parse_value_text(device.entry(0x6040), text); };
+  const auto raw = [&](std::string_view text) { return number_of(parsed(text).bytes); };
+  EXPECT_EQ(raw("quick_stop"), 0x0002U);
+  EXPECT_EQ(raw("quick_stop=1"), 0x0004U);
+  EXPECT_EQ(raw("enable_voltage, quick_stop"), 0x0006U);
+  EXPECT_EQ(raw("enable_operation, halt"), 0x010FU);
+  EXPECT_EQ(parsed("quick_stop, enable_voltage").problem,
+            "quick_stop is a value of bits 86h, which include enable_voltage; quick_stop=1 is the bit alone: 6040h:00 "
+            "\"Controlword\"");
+}
+
 TEST_F(MeaningOfText, AQuantityHasItsDimensionStepsAndLimits) {
   EXPECT_EQ(problem(0x2000, "5 V"), "V cannot be converted to s: 2000h:00 \"Delay\"");
   EXPECT_EQ(problem(0x2000, "1.0005 s"), "1.0005 s is between 1 s and 1.001 s: 2000h:00 \"Delay\"");
