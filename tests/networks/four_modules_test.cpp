@@ -35,9 +35,9 @@ TEST(FourModules, AllNodesAreConfiguredAndStarted) {
   std::ranges::sort(bench.faults);
   EXPECT_EQ(bench.faults,
             (std::vector<std::string>{"analog_inputs: EMCY FF00h: request to reset node or communication",
-                                      "analog_outputs: EMCY FF00h: device specific",
+                                      "analog_outputs: EMCY FF00h: request to reset node or communication",
                                       "digital_inputs: EMCY FF00h: request to reset node or communication",
-                                      "digital_outputs: EMCY FF00h: device specific"}));
+                                      "digital_outputs: EMCY FF00h: request to reset node or communication"}));
   for (const char* name : {"digital_outputs", "digital_inputs", "analog_outputs", "analog_inputs"}) {
     EXPECT_EQ(bench.boots[name], 1) << name;
   }

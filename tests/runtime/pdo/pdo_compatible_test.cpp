@@ -74,11 +74,11 @@ TEST(CompatiblePdos, HaveTheSameRawNumbersInAnyUnitOfADimension) {
   using Celsius = canopen::Quantity<std::int16_t, unit::degree_celsius, std::ratio<1>, std::ratio<0>>;
   using Kelvin = canopen::Quantity<std::int16_t, unit::kelvin, std::ratio<1>, std::ratio<27315, 100>>;
   using AbsoluteKelvin = canopen::Quantity<std::int16_t, unit::kelvin, std::ratio<1>, std::ratio<0>>;
-  EXPECT_TRUE((compatible<Tpdo<Sent<1, Volts>>, Rpdo<Received<1, TensOfMillivolts>>>));
-  EXPECT_FALSE((compatible<Tpdo<Sent<1, Volts>>, Rpdo<Received<1, Millivolts>>>));
-  EXPECT_TRUE((compatible<Tpdo<Sent<1, Celsius>>, Rpdo<Received<1, Kelvin>>>));
-  EXPECT_FALSE((compatible<Tpdo<Sent<1, Celsius>>, Rpdo<Received<1, AbsoluteKelvin>>>));
-  EXPECT_FALSE((compatible<Tpdo<Sent<1, Celsius>>, Rpdo<Received<1, Volts>>>));
+  EXPECT_TRUE((compatible<Tpdo<Sent<1, Volts, 16>>, Rpdo<Received<1, TensOfMillivolts, 16>>>));
+  EXPECT_FALSE((compatible<Tpdo<Sent<1, Volts, 16>>, Rpdo<Received<1, Millivolts, 16>>>));
+  EXPECT_TRUE((compatible<Tpdo<Sent<1, Celsius, 16>>, Rpdo<Received<1, Kelvin, 16>>>));
+  EXPECT_FALSE((compatible<Tpdo<Sent<1, Celsius, 16>>, Rpdo<Received<1, AbsoluteKelvin, 16>>>));
+  EXPECT_FALSE((compatible<Tpdo<Sent<1, Celsius, 16>>, Rpdo<Received<1, Volts, 16>>>));
 }
 
 TEST(CompatiblePdos, MayDifferWhereTheConsumerHasADummy) {
