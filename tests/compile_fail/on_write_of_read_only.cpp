@@ -17,5 +17,5 @@ auto make(Bus& bus) {
 #else
   using object = od::error_register;
 #endif
-  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_write<object>([](std::uint8_t) {}));
+  return bench::make_node<every_type::Device>(bus, canopen::NodeId{5}, canopen::on_write<object>([](object::type) {}));
 }
