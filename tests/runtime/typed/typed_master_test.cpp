@@ -87,6 +87,10 @@ TEST_F(TypedMaster, SendsAndTakesPdos) {
   EXPECT_EQ(node.get(od::heater_state{}), heater::cooling);
   EXPECT_TRUE(node.get(od::setpoint{}) == 40_degC);
   EXPECT_TRUE(node.get(od::controlword{}).halt());
+  EXPECT_TRUE(drive.send<typed_drive::Rpdo2>(heater::off, 21.5_degC, raw(std::uint16_t{0x0F})));
+  master.poll(10ms);
+  EXPECT_EQ(node.get(od::setpoint{}).raw(), 215);
+  EXPECT_EQ(node.get(od::controlword{}).raw(), 0x0F);
 }
 
 TEST(TypedSdoClient, WritesAndReadsValues) {

@@ -202,9 +202,17 @@ class MasterRemote {
     static_cast<void>(((code = checked_value<typename Layout::template Entry<Position>>(values), code == ok) && ...));
     return code;
   }
+  /// The value of a constant with a unit, which is a part of its type.
+  template <class Object, class ValueType>
+  [[nodiscard]] static constexpr typename Object::type constant() {
+    constexpr CheckedValue<Object> checked{ValueType{}};
+    return checked.value();
+  }
   template <class Object, class ValueType>
   [[nodiscard]] static AbortCode checked_value([[maybe_unused]] const ValueType& value) {
-    if constexpr (NumberObject<Object> && std::is_arithmetic_v<RawOf<typename Object::type>>) {
+    if constexpr (is_constant<ValueType>) {
+      static_cast<void>(constant<Object, ValueType>());  // checked by the compiler
+    } else if constexpr (NumberObject<Object> && std::is_arithmetic_v<RawOf<typename Object::type>>) {
       static_assert(remote_detail::has_the_type_of<Object, ValueType>,
                     "send: this value is not of the type of the object");
       if constexpr (remote_detail::has_the_type_of<Object, ValueType>) return remote_detail::check<Object>(value);
@@ -214,8 +222,10 @@ class MasterRemote {
     return ok;
   }
   template <class Object, class ValueType>
-  [[nodiscard]] static typename Object::type converted(const ValueType& value) {
-    if constexpr (remote_detail::is_text_for<Object, ValueType>) {
+  [[nodiscard]] static typename Object::type converted([[maybe_unused]] const ValueType& value) {
+    if constexpr (is_constant<ValueType>) {
+      return constant<Object, ValueType>();
+    } else if constexpr (remote_detail::is_text_for<Object, ValueType>) {
       return Object::type::truncated(value);
     } else {
       return remote_detail::converted<Object>(value);
