@@ -226,7 +226,7 @@ TEST(Manual000, MapsFourEntriesOfDifferentLengthsInTheirOrder) {
   drive.ask("205 AA 0F 00 BB 04 03 02 01");
   EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x0F);
   EXPECT_EQ(drive.node.get<od::target_velocity>(), 0x0102'0304);
-  drive.node.set<od::statusword>(0x1234);
+  drive.node.set<od::statusword>(canopen::raw(0x1234));
   drive.node.set<od::velocity_actual_value>(0x0A0B'0C0D);
   EXPECT_EQ(drive.ask("080"), "185 34 12 0D 0C 0B 0A 34 12");
 }

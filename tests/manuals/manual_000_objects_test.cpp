@@ -159,9 +159,9 @@ TEST(Manual000, ASegmentedDownloadCountsWhenItsLastSegmentHasCome) {
   Drive drive;
   drive.ask("605 21 05 10 00 04 00 00 00");
   EXPECT_EQ(drive.ask("605 0A A2 00 00 00 00 00 00"), "585 20 00 00 00 00 00 00 00");
-  EXPECT_EQ(drive.node.get<od::cob_id_sync>(), 0x80u);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::cob_id_sync>()), 0x80u);
   EXPECT_EQ(drive.ask("605 1B 00 00 00 00 00 00 00"), "585 30 00 00 00 00 00 00 00");
-  EXPECT_EQ(drive.node.get<od::cob_id_sync>(), 0xA2u);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::cob_id_sync>()), 0xA2u);
 }
 
 // shows 000.48
@@ -171,7 +171,7 @@ TEST(Manual000, ANewDownloadEndsTheOldOne) {
   drive.ask("605 0A A2 00 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 21 06 10 00 04 00 00 00"), "585 60 06 10 00 00 00 00 00");
   EXPECT_EQ(drive.ask("605 07 10 27 00 00 00 00 00"), "585 20 00 00 00 00 00 00 00");
-  EXPECT_EQ(drive.node.get<od::cob_id_sync>(), 0x80u);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::cob_id_sync>()), 0x80u);
   EXPECT_EQ(canopen::to_raw(drive.node.get<od::communication_cycle_period>()), 10000u);
 }
 
@@ -193,7 +193,7 @@ TEST(Manual000, AnAbortEndsATransferAndIsNotAnswered) {
   drive.ask("605 21 05 10 00 04 00 00 00");
   EXPECT_EQ(drive.ask("605 80 05 10 00 00 00 00 08"), "");
   EXPECT_EQ(drive.ask("605 07 A2 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
-  EXPECT_EQ(drive.node.get<od::cob_id_sync>(), 0x80u);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::cob_id_sync>()), 0x80u);
 }
 
 // shows 000.52, 000.231, 000.351
@@ -202,7 +202,7 @@ TEST(Manual000, AToggleBitThatDoesNotAlternateEndsTheTransfer) {
   drive.ask("605 21 05 10 00 04 00 00 00");
   EXPECT_EQ(drive.ask("605 17 A2 00 00 00 00 00 00"), "585 80 05 10 00 00 00 03 05");
   EXPECT_EQ(drive.ask("605 07 A2 00 00 00 00 00 00"), "585 80 00 00 00 01 00 04 05");
-  EXPECT_EQ(drive.node.get<od::cob_id_sync>(), 0x80u);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::cob_id_sync>()), 0x80u);
 }
 
 // shows 000.62, 000.223

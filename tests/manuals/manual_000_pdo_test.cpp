@@ -44,7 +44,7 @@ TEST(Manual000, PdosHaveTheLengthAndOrderOfTheirMapping) {
   write(drive, 0x1401, 1, 4, 0x305);
   write(drive, 0x1402, 1, 4, 0x405);
   write(drive, 0x1403, 1, 4, 0x505);
-  drive.node.set<od::statusword>(0x1234);
+  drive.node.set<od::statusword>(canopen::raw(0x1234));
   drive.node.set<od::position_actual_value>(0x0A0B0C0D);
   drive.node.set<od::velocity_actual_value>(-2);
   EXPECT_EQ(drive.ask(bench::start),
@@ -106,9 +106,9 @@ TEST(Manual000, SendsTypes0And1AtEverySync) {
 TEST(Manual000, SamplesAtTheSync) {
   Drive drive;
   start_with(drive, 0x1800, 1);
-  drive.node.set<od::statusword>(1);
+  drive.node.set<od::statusword>(canopen::raw(1));
   EXPECT_EQ(drive.pass(1s), "");
-  drive.node.set<od::statusword>(2);
+  drive.node.set<od::statusword>(canopen::raw(2));
   EXPECT_EQ(drive.ask("080"), "185 02 00");
 }
 
@@ -117,7 +117,7 @@ TEST(Manual000, SendsEventDrivenTpdosAtAChangeAndByTheirTimer) {
   for (const std::uint32_t type : {254u, 255u}) {
     Drive drive;
     start_with(drive, 0x1800, type, 100);
-    drive.node.set<od::statusword>(0x37);
+    drive.node.set<od::statusword>(canopen::raw(0x37));
     EXPECT_EQ(drive.pass(0s), "185 37 00");
     EXPECT_EQ(drive.pass(99ms), "");
     EXPECT_EQ(drive.pass(1ms), "185 37 00");
@@ -139,7 +139,7 @@ TEST(Manual000, KeepsTheInhibitTimeAndItsParameterWhileThePdoIsValid) {
   EXPECT_EQ(drive.ask("605 2B 00 18 03 64 00 00 00"), "585 60 00 18 03 00 00 00 00");  // 10 ms
   write(drive, 0x1800, 1, 4, 0x4000'0185);
   start_with(drive, 0x1800, 255);
-  drive.node.set<od::statusword>(1);
+  drive.node.set<od::statusword>(canopen::raw(1));
   EXPECT_EQ(drive.pass(9999us), "");
   EXPECT_EQ(drive.pass(1us), "185 01 00");
 }
@@ -169,7 +169,7 @@ TEST(Manual000, IsRemappedInFiveSteps) {
     drive.ask("605 23 01 18 01 85 02 00 40");
     start_with(drive, 0x1801, 1);
     drive.node.set<od::position_actual_value>(0x01020304);
-    drive.node.set<od::statusword>(0x0605);
+    drive.node.set<od::statusword>(canopen::raw(0x0605));
     EXPECT_EQ(drive.ask("080"), "285 04 03 02 01 05 06");
   }
 }

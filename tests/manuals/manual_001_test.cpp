@@ -217,7 +217,7 @@ TEST(Manual001, MapsTheObjectsOfTheModeTableAndServesThemBySdo) {
 // shows 001.38, 001.39, 001.89, 001.126, 001.136
 TEST(Manual001, PdosCarryTheirObjectsLowByteFirst) {
   Drive drive;
-  drive.node.set<od::statusword>(0x00F3);
+  drive.node.set<od::statusword>(canopen::raw(0x00F3));
   EXPECT_EQ(drive.ask(bench::start).substr(0, 18), "185 F3 00 00 00 01");
   drive.ask("205 11 22 03 11 FE FF FF FF");
   EXPECT_EQ(drive.node.get<od::controlword>(), 0x2211);
@@ -236,7 +236,7 @@ TEST(Manual001, SendsType0AtTheSyncAfterAChange) {
   write(drive, 0x1800, 2, 1, 0);
   drive.ask("080");
   EXPECT_EQ(drive.ask("080"), "");
-  drive.node.set<od::statusword>(1);
+  drive.node.set<od::statusword>(canopen::raw(1));
   EXPECT_EQ(drive.pass(1s), "");
   EXPECT_EQ(drive.ask("080"), "185 01 00 00 00 01");
   EXPECT_EQ(drive.ask("080"), "");
@@ -265,7 +265,7 @@ TEST(Manual001, SendsTypes254And255AtAChangeAndByTheirTimer) {
     write(drive, 0x1800, 5, 2, 100);
     EXPECT_EQ(drive.ask(bench::start), started);
     EXPECT_EQ(drive.pass(60ms), "");
-    drive.node.set<od::statusword>(1);
+    drive.node.set<od::statusword>(canopen::raw(1));
     EXPECT_EQ(drive.pass(0s), "185 01 00 00 00 01");
     EXPECT_EQ(drive.pass(99ms), "");
     EXPECT_EQ(drive.pass(1ms), "185 01 00 00 00 01");
@@ -292,7 +292,7 @@ TEST(Manual001, AnInhibitTimeOf300Is30Milliseconds) {
   Drive drive;
   EXPECT_EQ(drive.ask("605 2B 00 18 03 2C 01 00 00"), "585 60 00 18 03 00 00 00 00");
   EXPECT_EQ(drive.ask(bench::start), started);
-  drive.node.set<od::statusword>(1);
+  drive.node.set<od::statusword>(canopen::raw(1));
   EXPECT_EQ(drive.pass(29'999us), "");
   EXPECT_EQ(drive.pass(1us), "185 01 00 00 00 01");
 }

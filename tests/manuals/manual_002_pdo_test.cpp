@@ -52,14 +52,14 @@ TEST(Manual002, SendsTpdo1AfterTheStartAndAtEveryChange) {
   Drive drive;
   drive.node.set<od::statusword>(canopen::raw(0x6631));
   EXPECT_EQ(drive.ask(bench::start), "185 31 66");
-  drive.node.set<od::statusword>(0x4637);
+  drive.node.set<od::statusword>(canopen::raw(0x4637));
   EXPECT_EQ(drive.pass(1s), "185 37 46");
 }
 
 // shows 002.81, 002.82, 002.149, 002.150, 002.217, 002.225, 002.234
 TEST(Manual002, SendsTpdo2And3AtEachSyncOnceTheyAreEnabled) {
   Drive drive;
-  drive.node.set<od::statusword>(0x4637);
+  drive.node.set<od::statusword>(canopen::raw(0x4637));
   drive.node.set<od::position_actual_value>(30000);
   drive.node.set<od::velocity_actual_value>(canopen::raw(-1));
   EXPECT_EQ(drive.ask(bench::start), "185 37 46");
@@ -118,7 +118,7 @@ TEST(Manual002, KeepsTheInhibitTime) {
   EXPECT_EQ(drive.ask("605 2B 00 18 03 64 00 00 00"), "585 60 00 18 03 00 00 00 00");  // 10 ms
   write(drive, 0x1800, 1, 4, 0x185);
   EXPECT_EQ(drive.ask(bench::start), "185 00 00");
-  drive.node.set<od::statusword>(1);
+  drive.node.set<od::statusword>(canopen::raw(1));
   EXPECT_EQ(drive.pass(9999us), "");
   EXPECT_EQ(drive.pass(1us), "185 01 00");
 }
@@ -144,7 +144,7 @@ TEST(Manual002, HasTheTransmissionTypesOf9421) {
   drive.ask(bench::start);
   drive.ask("080");
   EXPECT_EQ(drive.ask("080"), "");
-  drive.node.set<od::statusword>(1);
+  drive.node.set<od::statusword>(canopen::raw(1));
   EXPECT_EQ(drive.pass(1s), "");
   EXPECT_EQ(drive.ask("080"), "185 01 00");
   write(drive, 0x1800, 2, 1, 2);
@@ -157,12 +157,12 @@ TEST(Manual002, UpdatesType252AtSyncAndType253WhenAsked) {
   Drive drive;
   drive.ask(bench::start);
   write(drive, 0x1800, 2, 1, 252);
-  drive.node.set<od::statusword>(1);
+  drive.node.set<od::statusword>(canopen::raw(1));
   EXPECT_EQ(drive.ask("185 R 0"), "185 00 00");
   EXPECT_EQ(drive.ask("080"), "");
   EXPECT_EQ(drive.ask("185 R 0"), "185 01 00");
   write(drive, 0x1800, 2, 1, 253);
-  drive.node.set<od::statusword>(2);
+  drive.node.set<od::statusword>(canopen::raw(2));
   EXPECT_EQ(drive.pass(1s), "");
   EXPECT_EQ(drive.ask("185 R 0"), "185 02 00");
 }
