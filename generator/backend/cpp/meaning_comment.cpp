@@ -95,7 +95,7 @@ void add_fields(std::string title, const std::vector<BitField>& fields, ordered_
 
 }  // namespace
 
-ordered_json meaning_lines(const Device& device, const Entry& entry) {
+ordered_json meaning_lines(const Entry& entry) {
   ordered_json lines = ordered_json::array();
   if (!entry.meaning) return lines;
   const Meaning& meaning = *entry.meaning;
@@ -105,7 +105,7 @@ ordered_json meaning_lines(const Device& device, const Entry& entry) {
   if (meaning.values) add_values(*meaning.values, lines);
   add_fields("Bits:", meaning.fields, lines);
   for (const FieldCase& one : meaning.cases)
-    add_fields(fmt::format("Bits for {}:", name_of_case(device, meaning, one)), one.fields, lines);
+    add_fields(fmt::format("Bits for {}:", name_of_case(one)), one.fields, lines);
   for (const MaskedGroup& group : meaning.masked) {
     ListLines list{fmt::format("Values of {}:", group.name)};
     for (const MaskedValue& one : group.values) list.add(one.name);

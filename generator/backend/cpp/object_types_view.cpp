@@ -111,7 +111,7 @@ class ObjectTypes {
 
   /// What the values of an entry mean, as lines of its comment.
   [[nodiscard]] ordered_json lines_of(const Entry& entry) const {
-    return options_.typed_values ? meaning_lines(device_, entry) : ordered_json::array();
+    return options_.typed_values ? meaning_lines(entry) : ordered_json::array();
   }
 
   /// The type of values with a meaning; null for raw numbers.

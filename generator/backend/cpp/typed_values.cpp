@@ -93,7 +93,7 @@ TypedValue TypedValues::type_of(const NamedDevice& named, const Object& object, 
     if (enumeration["values"].empty()) return {};
     for (const ordered_json& one : enumeration["values"]) value.enumerators.push_back(one["identifier"]);
   } else if (meaning->has_fields() && !is_signed(entry)) {
-    word = word_view(named.device, entry, "");
+    word = word_view(entry, "");
     if (word["fields"].empty() && word["masked"].empty() && word["cases"].empty()) return {};
   } else {
     return {};
@@ -112,7 +112,7 @@ TypedValue TypedValues::type_of(const NamedDevice& named, const Object& object, 
       enumeration["identifier"] = identifier;
       names_of_values_.push_back(json_object("type", identifier, "values", enumeration["values"]));
     } else {
-      word = word_view(named.device, entry, identifier);
+      word = word_view(entry, identifier);
       word["identifier"] = identifier;
       for (const ordered_json& one : enumerations_of(word)) {
         names_of_values_.push_back(

@@ -32,9 +32,8 @@ std::string bits_text(const BitField& field) {
 /// The parts of a struct, with names that are unique in it.
 class WordBuilder {
  public:
-  WordBuilder(const Device& device, const Entry& entry, const std::string& identifier)
-      : device_{device},
-        meaning_{*entry.meaning},
+  WordBuilder(const Entry& entry, const std::string& identifier)
+      : meaning_{*entry.meaning},
         bits_{entry.type->bits},
         number_{entry.type->cpp_type},
         self_{identifier} {
@@ -143,7 +142,7 @@ class WordBuilder {
   ordered_json case_rows() {
     ordered_json rows = json_array(meaning_.cases.size());
     for (const FieldCase& one : meaning_.cases) {
-      const std::string of_case = name_of_case(device_, meaning_, one);
+      const std::string of_case = name_of_case(one);
       std::string name = scope_.take(without_keyword(of_case), "_case");
       std::string view = scope_.take(of_case + "_fields", "_of_case");
       std::string reference = scope_.take(of_case + "_reference", "_of_case");
@@ -171,7 +170,6 @@ class WordBuilder {
     return comment.empty() ? "" : "  ///<" + comment.substr(1);
   }
 
-  const Device& device_;
   const Meaning& meaning_;
   unsigned bits_;
   std::string number_;
@@ -228,22 +226,15 @@ std::string comment_of(const MeaningText& meaning) {
   return text;
 }
 
-std::string name_of_case(const Device& device, const Meaning& meaning, const FieldCase& one) {
+std::string name_of_case(const FieldCase& one) {
   if (!one.name.empty()) return one.name;
-  const std::int64_t value = one.values.empty() ? 0 : one.values.front();
-  if (meaning.depends_on) {
-    const Entry* const other = device.find(meaning.depends_on->first, meaning.depends_on->second);
-    const bool has_values = other != nullptr && other->meaning && other->meaning->values;
-    const NamedValue* const named = has_values ? other->meaning->values->find(value) : nullptr;
-    if (named != nullptr) return named->name;
-  }
-  std::string name = fmt::format("case_{}", value);
+  std::string name = fmt::format("case_{}", one.values.empty() ? 0 : one.values.front());
   std::ranges::replace(name, '-', '_');
   return name;
 }
 
-ordered_json word_view(const Device& device, const Entry& entry, const std::string& identifier) {
-  return WordBuilder{device, entry, identifier}.build();
+ordered_json word_view(const Entry& entry, const std::string& identifier) {
+  return WordBuilder{entry, identifier}.build();
 }
 
 std::vector<ordered_json> enumerations_of(const ordered_json& word) {

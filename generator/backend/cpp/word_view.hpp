@@ -26,12 +26,11 @@ namespace edsc {
 /// `; 4.3.2, table 12`: text and place behind a name in a comment.
 [[nodiscard]] std::string comment_of(const MeaningText& meaning);
 
-/// The name of the fields of a case; without one, that of the first value of the other object for which they are, or
-/// `case_5`.
-[[nodiscard]] std::string name_of_case(const Device& device, const Meaning& meaning, const FieldCase& one);
+/// The name of the fields of a case, or `case_5` with the first value of the other object for which they are.
+[[nodiscard]] std::string name_of_case(const FieldCase& one);
 
 /// The struct for the fields of an entry.
-[[nodiscard]] nlohmann::ordered_json word_view(const Device& device, const Entry& entry, const std::string& identifier);
+[[nodiscard]] nlohmann::ordered_json word_view(const Entry& entry, const std::string& identifier);
 
 /// The enumerations in it, for the names of their values.
 [[nodiscard]] std::vector<nlohmann::ordered_json> enumerations_of(const nlohmann::ordered_json& word);
