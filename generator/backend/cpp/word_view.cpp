@@ -33,10 +33,7 @@ std::string bits_text(const BitField& field) {
 class WordBuilder {
  public:
   WordBuilder(const Entry& entry, const std::string& identifier)
-      : meaning_{*entry.meaning},
-        bits_{entry.type->bits},
-        number_{entry.type->cpp_type},
-        self_{identifier} {
+      : meaning_{*entry.meaning}, bits_{entry.type->bits}, number_{entry.type->cpp_type}, self_{identifier} {
     for (const char* name : {"raw", "raw_type", "all", "any", "is", "number_", "has_", "assign_", "part_", "word"}) {
       static_cast<void>(scope_.take(name, ""));
     }

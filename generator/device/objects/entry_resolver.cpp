@@ -73,6 +73,10 @@ const StandardEntry* standard_entry(const EntryPlace& place) {
   return find_standard_entry(place.index, place.sub_index);
 }
 
+bool is_small_integer(const DataTypeRow& type) {
+  return (type.kind == DataClass::unsigned_integer || type.kind == DataClass::signed_integer) && type.bits <= 32;
+}
+
 bool has_limits(const DataTypeRow& type) {
   return type.kind == DataClass::signed_integer || type.kind == DataClass::unsigned_integer ||
          type.kind == DataClass::real;
@@ -209,7 +213,10 @@ std::optional<ValueType> EntryResolver::type_of_service(const EntryDescription& 
   const StandardObject* const object = find_standard_object(place.index);
   const bool has_its_form = object != nullptr && place.in_object_with_sub_indices == (object->type != ObjectType::var);
   const StandardEntry* const entry = has_its_form ? standard_entry(place) : nullptr;
-  if (entry == nullptr || entry->is_only_reported || found.row->type == entry->type) return std::nullopt;
+  if (entry == nullptr || found.row->type == entry->type) return std::nullopt;
+  if (entry->may_differ &&
+      (is_small_integer(*found.row) || !is_small_integer(*types_.find(static_cast<std::uint64_t>(entry->type)).row)))
+    return std::nullopt;
   const ValueType needed = types_.find(static_cast<std::uint64_t>(entry->type));
   diagnostics_.error(
       "standard-data-type", description.data_type.position,

@@ -49,8 +49,8 @@ struct StandardEntry {
   std::uint8_t last;
   canopen::DataType type;
   AccessSet access;
-  bool required = false;          ///< `first` is mandatory
-  bool is_only_reported = false;  ///< no service of the device uses the value: it may have another type
+  bool required = false;    ///< `first` is mandatory
+  bool may_differ = false;  ///< services work with any integer of at most 32 bits, or do not use it
 };
 
 struct StandardObject {
@@ -69,19 +69,19 @@ using enum canopen::DataType;
 using namespace access_sets;
 
 constexpr StandardEntry value(DataType type, AccessSet access) { return {0, 0, type, access}; }
-/// A value that no service of the device uses.
-constexpr StandardEntry only_reported(DataType type, AccessSet access) { return {0, 0, type, access, false, true}; }
+/// A value that no service of the device uses by its type.
+constexpr StandardEntry of_any_type(DataType type, AccessSet access) { return {0, 0, type, access, false, true}; }
 
 inline constexpr StandardEntry read_only_u32[] = {value(unsigned32, read_only)};
-inline constexpr StandardEntry status_u32[] = {only_reported(unsigned32, read_only)};
+inline constexpr StandardEntry status_u32[] = {of_any_type(unsigned32, read_only)};
 inline constexpr StandardEntry read_only_u8[] = {value(unsigned8, read_only)};
-inline constexpr StandardEntry read_only_text[] = {only_reported(visible_string, read_only)};
-inline constexpr StandardEntry read_only_domain[] = {only_reported(domain, read_only)};
+inline constexpr StandardEntry read_only_text[] = {of_any_type(visible_string, read_only)};
+inline constexpr StandardEntry read_only_domain[] = {of_any_type(domain, read_only)};
 inline constexpr StandardEntry set_u8[] = {value(unsigned8, settable)};
 inline constexpr StandardEntry set_u16[] = {value(unsigned16, settable)};
 inline constexpr StandardEntry set_u32[] = {value(unsigned32, settable)};
-inline constexpr StandardEntry clock_u32[] = {only_reported(unsigned32, settable)};
-inline constexpr StandardEntry command_mode[] = {only_reported(unsigned8, write_only)};
+inline constexpr StandardEntry clock_u32[] = {of_any_type(unsigned32, settable)};
+inline constexpr StandardEntry command_mode[] = {of_any_type(unsigned8, write_only)};
 inline constexpr StandardEntry error_field[] = {{0x01, 0xFE, unsigned32, read_only, true}};
 inline constexpr StandardEntry store[] = {{0x01, 0x7F, unsigned32, settable, true}};
 inline constexpr StandardEntry heartbeat_consumer[] = {{0x01, 0x7F, unsigned32, settable, true}};
@@ -91,7 +91,7 @@ inline constexpr StandardEntry verify_configuration[] = {{0x01, 0x01, unsigned32
                                                          {0x02, 0x02, unsigned32, read_write, true}};
 inline constexpr StandardEntry module_list[] = {{0x01, 0xFE, unsigned16, read_only, true, true}};
 inline constexpr StandardEntry emergency_consumer[] = {{0x01, 0x7F, unsigned32, settable, true}};
-inline constexpr StandardEntry error_behavior[] = {{0x01, 0xFE, unsigned8, settable, true}};
+inline constexpr StandardEntry error_behavior[] = {{0x01, 0xFE, unsigned8, settable, true, true}};
 inline constexpr StandardEntry default_sdo[] = {{0x01, 0x01, unsigned32, read_only, true},
                                                 {0x02, 0x02, unsigned32, read_only, true},
                                                 {0x03, 0x03, unsigned8, settable}};

@@ -74,6 +74,11 @@ TEST(Resolve, TakesTheTypeThatAServiceNeeds) {
   }
   const DeviceFromText version(var("100A", "Software version", "0x6", "ro"));
   EXPECT_EQ(version.entry(0x100A).type->type, DataType::unsigned16);
+  for (const auto& [code, errors] : {std::pair{"0x6", 0U}, std::pair{"0x1B", 1U}}) {
+    const DeviceFromText behavior(group("1029", "Error behavior", "0x8", 2) + var("1029sub0", "Count", "5", "ro") +
+                                  var("1029sub1", "Communication error", code));
+    EXPECT_EQ(behavior.diagnostics.errors(), errors) << code;
+  }
   const DeviceFromText pdo(group("1800", "TPDO", "0x9", 3) + var("1800sub0", "Count", "5", "ro") +
                            var("1800sub1", "COB-ID", "0x6") + var("1800sub4", "Reserved", "0x7"));
   EXPECT_EQ(pdo.entry(0x1800, 1).type->type, DataType::unsigned32);
