@@ -82,6 +82,7 @@ void DictionaryReader::read_object(Readings& readings, const Object& object) {
     if (lost()) return;
     Reading reading;
     reading.entry = live_entry(sheet_, object, entry);
+    if (entry.stated_type != nullptr) reading.entry.type = entry.stated_type;  // the file is compared as it is
     if ((conform::flags_of(sheet_, reading.entry) & conform::refuse_read_flag) != 0) {
       reading.why_not = "ObjFlags exclude it from reads";
     } else {

@@ -41,6 +41,7 @@ struct Entry {
   std::string name;           ///< for texts: the one that the options give, else ParameterName
   std::string replaced_name;  ///< ParameterName if the options give another name; else empty
   const canopen::DataTypeRow* type = nullptr;
+  const canopen::DataTypeRow* stated_type = nullptr;  ///< of the file, if a service of the device needs `type` instead
   std::uint32_t octets = 0;  ///< of a string: the length that its DEFTYPE states, in bytes; 0 where none does
   canopen::Access access = canopen::Access::rw;
   bool pdo_mapping = false;

@@ -27,6 +27,7 @@ GOOD = FIXTURES / "every_type.eds"
 CLEAN = SOURCE_DIR / "eds/rk5c.eds"
 WRONG = FIXTURES / "wrong_mapping_over_64_bits.eds"
 HEADERS = re.search(r"set\(EDSC_HEADERS ([^)]*)\)", (SOURCE_DIR / "cmake/EdscHeaders.cmake").read_text(encoding="utf-8"))[1].split()
+MEANING_HEADERS = ["meaning.hpp", "meaning_text.hpp"]  # CiA 301 gives each device values with a meaning
 ESCAPE = "\x1b["
 NOBODY = 65534
 
@@ -193,10 +194,13 @@ class BadInput(CommandLine):
 
     def test_a_data_type_by_name(self) -> None:
         for name, hint in (("float", ": REAL32 is 0x0008"), ("uint16_t", ": UNSIGNED16 is 0x0006"),
-                           ("Visible_String", ": VISIBLE_STRING is 0x0009"), ("thing", "")):
+                           ("thing", "")):
             text = SMALL + f"[2000]\nParameterName=Value\nObjectType=7\nDataType={name}\nAccessType=rw\n"
             self.expect(INPUT_HAS_ERRORS, self.edsc("check", self.write("type.eds", text)),
                         f'DataType "{name}" is not a number{hint} [data-type]')
+        text = SMALL + "[2000]\nParameterName=Value\nObjectType=7\nDataType=Visible_String\nAccessType=rw\n"
+        self.expect(FINE, self.edsc("check", self.write("type.eds", text)),
+                    "warning: DataType must be a number; that of VISIBLE_STRING is 0x0009 [data-type]")
 
     def test_a_section_that_stands_twice(self) -> None:
         text = SMALL + "[1000]\nParameterName=Another\nObjectType=7\nDataType=5\nAccessType=rw\n"
@@ -314,7 +318,7 @@ class Generate(CommandLine):
         result = self.edsc("generate", CLEAN, "-o", self.output)
         self.expect(FINE, result)
         self.assertEqual((result.stdout, result.stderr), ("", ""))
-        self.assertEqual(set(snapshot(self.output)), {f"rk5c/{header}" for header in HEADERS})
+        self.assertEqual(set(snapshot(self.output)), {f"rk5c/{header}" for header in HEADERS + MEANING_HEADERS})
 
     def test_keeps_the_data_sheet_in_the_device(self) -> None:
         sheet = FIXTURES / "stored_eds.eds"
@@ -377,7 +381,7 @@ class Generate(CommandLine):
 
     def test_verbose_names_the_files(self) -> None:
         result = self.edsc("generate", GOOD, "-o", "out", "--verbose")
-        self.assertEqual(result.stdout.split(), [f"out/every_type/{header}" for header in HEADERS])
+        self.assertEqual(result.stdout.split(), [f"out/every_type/{header}" for header in HEADERS + MEANING_HEADERS])
 
     def test_keep_going_leaves_out_what_is_wrong(self) -> None:
         result = self.edsc("generate", WRONG, "-o", self.output, "--keep-going", "--name", "wrong")
@@ -474,7 +478,7 @@ class Generate(CommandLine):
         self.expect(FINE, self.edsc("generate", sheet, "-o", "out", "--depfile", "out/small.d"))
         text = (self.output / "small.d").read_text()
         escaped = str(folder).replace(" ", "\\ ").replace("$", "$$").replace("#", "\\#")
-        self.assertEqual(text, " ".join(f"out/small/{header}" for header in HEADERS) +
+        self.assertEqual(text, " ".join(f"out/small/{header}" for header in HEADERS + MEANING_HEADERS) +
                          f": \\\n  {escaped}/small.eds \\\n  {escaped}/small.options.json\n")
 
     def test_templates_of_ones_own_replace_the_built_in_ones(self) -> None:

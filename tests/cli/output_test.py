@@ -70,7 +70,7 @@ class NotRegularFiles(Output):
         self.expect(FINE, self.edsc("format", SHEET, "-o", null))
         self.expect(FINE, self.edsc("generate", SHEET, "-o", "out", "--depfile", null))
         self.assertTrue(null.is_char_device())
-        self.assertEqual(len(contents(self.folder / "out")), 4)
+        self.assertEqual(len(contents(self.folder / "out")), 6)
 
     def test_a_device_that_takes_nothing_is_an_error_and_no_file_is_written(self) -> None:
         full = self.device("full", FULL_DEVICE)
@@ -294,7 +294,7 @@ class StandardOutput(Output):
         result = self.edsc("generate", SHEET, "-o", "out", preexec_fn=lambda: os.close(1), stdout=None,
                            stderr=subprocess.PIPE, capture_output=False)
         self.expect(FINE, result)
-        self.assertEqual(len(contents(self.folder / "out")), 4)
+        self.assertEqual(len(contents(self.folder / "out")), 6)
 
 
 if __name__ == "__main__":

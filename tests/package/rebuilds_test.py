@@ -27,7 +27,7 @@ MAIN = """#include <canopen/od/object_store.hpp>
 int main() {
   canopen::ObjectStore<sensor::Device> store;
   store.reset_communication(canopen::NodeId{5});
-  return store.get<sensor::od::cob_id_emcy>() == 0x85 ? 0 : 1;
+  return store.get<sensor::od::cob_id_emcy>().can_id() == 0x85 ? 0 : 1;
 }
 """
 LINE = """

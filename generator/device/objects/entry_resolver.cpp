@@ -91,8 +91,9 @@ std::optional<Entry> EntryResolver::resolve(const EntryDescription& description,
   if (!found) return std::nullopt;
   const bool is_opaque = found->row == nullptr;
   if (is_opaque && !may_be_opaque(place)) return std::nullopt;
-  const ValueType type = is_opaque ? types_.find(static_cast<std::uint64_t>(DataType::domain))
-                                   : type_of_service(description, place, *found).value_or(*found);
+  const auto needed = is_opaque ? std::nullopt : type_of_service(description, place, *found);
+  const ValueType type =
+      is_opaque ? types_.find(static_cast<std::uint64_t>(DataType::domain)) : needed.value_or(*found);
   std::optional<Entry> result{std::in_place};
   Entry& entry = *result;
   entry.index = place.index;
@@ -102,6 +103,7 @@ std::optional<Entry> EntryResolver::resolve(const EntryDescription& description,
   entry.access_position = description.access_type.present ? description.access_type.position : description.position;
   entry.mapping_position = description.pdo_mapping.present ? description.pdo_mapping.position : description.position;
   entry.type = type.row;
+  if (needed) entry.stated_type = found->row;
   entry.octets = type.octets;
   entry.access = access(description, place);
   entry.pdo_mapping = pdo_mapping(description);

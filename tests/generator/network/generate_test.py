@@ -94,7 +94,7 @@ class Generate(unittest.TestCase):
                           "network-devices.hpp", "node", "plant.dbc", "plant.dot", "plant.hpp", "plant.svg", "plant_cycle.svg"])
         for device in ("master", "node"):
             self.assertEqual(sorted(path.name for path in (self.out / device).iterdir()),
-                             ["description.hpp", "device.hpp", "dictionary.hpp", "pdo.hpp"])
+                             ["description.hpp", "device.hpp", "dictionary.hpp", "meaning.hpp", "meaning_text.hpp", "pdo.hpp"])
 
     def test_a_dcf_has_the_values_of_the_network_file_and_a_mapping_as_a_whole(self) -> None:
         self.generate()
