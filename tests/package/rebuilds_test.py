@@ -178,7 +178,7 @@ class SameBytes(PackageTest):
                                   f"-DCMAKE_TOOLCHAIN_FILE={prefix / 'share/cmake/edsc' / TOOLCHAIN}")
                 project.build()
                 made.append(self.outputs(project.build_dir, kinds))
-            self.assertEqual(len(made[0]), len(kinds) + 4)
+            self.assertEqual(len(made[0]), len(kinds) + 6)
             for path, content in made[0].items():
                 self.assertEqual(made[1].get(path), content, f"{path} depends on the folder ({build_type})")
 
