@@ -57,6 +57,11 @@ struct Field {
   [[nodiscard]] bool empty() const { return text.empty(); }
 };
 
+/// A name for a value, from an enumeration or the allowed values of an XDD.
+struct ValueName {
+  Field value, name;
+};
+
 /// The keys of an object or sub-object section (CiA 306-1, clause 4.6.2).
 struct EntryDescription {
   Position position;  ///< of the section's name
@@ -75,6 +80,7 @@ struct EntryDescription {
   Field download_file;
   Field param_refd;
   Field unit, factor, offset, description;  ///< not of CiA 306, but widely used
+  std::vector<ValueName> value_names;       ///< of an XDD
 };
 
 struct SubObjectDescription : EntryDescription {

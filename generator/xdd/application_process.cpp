@@ -6,6 +6,8 @@
 
 #include "diagnostics/quote.hpp"
 #include "eds/ini.hpp"
+#include "eds/number.hpp"
+#include "text/ascii.hpp"
 #include "xdd/attributes.hpp"
 
 namespace edsc {
@@ -36,9 +38,9 @@ constexpr ValueElement value_elements[] = {
     {"actualValue", &EntryDescription::parameter_value},
 };
 
-/// Children of a parameter without effect on the dictionary: texts, units, behaviour of the application.
+/// Children of a parameter without effect on the dictionary: texts, behaviour of the application.
 constexpr std::string_view silent_elements[] = {
-    "description", "labelRef",           "descriptionRef", "unit",          "substituteValue",
+    "description", "labelRef",           "descriptionRef", "substituteValue",
     "variableRef", "conditionalSupport", "dataTypeIDRef",  "allowedValues",
 };
 
@@ -93,8 +95,10 @@ pugi::xml_node ApplicationProcess::find(std::string_view unique_id) const {
 /// Resolves enums and derived types to their simple type, array or struct.
 ResolvedType ApplicationProcess::resolve_type(pugi::xml_node element) const {
   ResolvedType result;
+  pugi::xml_node enumeration;
   for (int length = 0; length < longest_chain && element; ++length) {
     pugi::xml_node next;
+    if (!enumeration && local_name(element) == "enum") enumeration = element;
     for_each_element(element, [&](pugi::xml_node child) {
       if (const SimpleType* simple = find_simple_type(local_name(child))) {
         if (result.simple == nullptr) result = {simple, xml_.position(child), {}};
@@ -102,11 +106,29 @@ ResolvedType ApplicationProcess::resolve_type(pugi::xml_node element) const {
         next = find(find_attribute(child, "uniqueIDRef").value());
       }
     });
-    if (result.simple != nullptr) return result;
+    if (result.simple != nullptr) {
+      result.enumeration = enumeration;
+      return result;
+    }
     if (is_array_or_struct(next)) return {nullptr, xml_.position(element), next};
     element = next;
   }
   return result;
+}
+
+/// The elements with a number in the attribute `value` and a label.
+std::vector<ValueName> ApplicationProcess::names_in(pugi::xml_node list, std::string_view element) const {
+  std::vector<ValueName> names;
+  for_each_element(list, [&](pugi::xml_node child) {
+    if (local_name(child) != element) return;
+    const ValueName one{xml_.value(find_attribute(child, "value")), xml_.text(find_label(child))};
+    if (!one.value.empty() && !one.name.empty()) names.push_back(one);
+  });
+  return names;
+}
+
+std::vector<ValueName> ApplicationProcess::value_names(const ResolvedType& type) const {
+  return names_in(type.enumeration, "enumValue");
 }
 
 ResolvedType ApplicationProcess::member_type(pugi::xml_node array_or_struct, std::string_view name) const {
@@ -149,10 +171,33 @@ void ApplicationProcess::read_part(pugi::xml_node element, Parameter& parameter)
   if (!element) return;
   read_access(element, parameter);
   if (parameter.type.simple == nullptr && !parameter.type.array_or_struct) parameter.type = resolve_type(element);
+  if (parameter.entry.value_names.empty()) parameter.entry.value_names = value_names(parameter.type);
   set_if_missing(parameter.entry.parameter_name, xml_.text(find_label(element)));
   set_if_missing(parameter.entry.parameter_name, xml_.value(find_attribute(element, "name")));
   if (const pugi::xml_node allowed = find_child(element, "allowedValues")) read_allowed_values(allowed, parameter);
+  if (const pugi::xml_node unit = find_child(element, "unit")) read_unit(element, unit, parameter.entry);
   for_each_element(element, [&](pugi::xml_node child) { read_child(child, parameter); });
+}
+
+/// The unit by its label. The multiplier of the unit or that of the parameter is the scale; both together, or an
+/// offset, are not read: their order is not certain.
+void ApplicationProcess::read_unit(pugi::xml_node element, pugi::xml_node unit, EntryDescription& entry) {
+  if (entry.unit.present) return;
+  const auto differs_from = [](const Field& field, double neutral) {
+    const auto number = parse_real(trim(field.text));
+    return !field.empty() && (!number || *number != neutral);
+  };
+  const Field of_unit = xml_.value(find_attribute(unit, "multiplier"));
+  const Field of_parameter = xml_.value(find_attribute(element, "multiplier"));
+  const Field offset = xml_.value(find_attribute(element, "offset"));
+  const bool is_of_parameter = differs_from(of_parameter, 1);
+  if (differs_from(offset, 0) || (is_of_parameter && differs_from(of_unit, 1))) {
+    xml_.note_once("xml-element", "unit", xml_.position(unit),
+                   "a unit with an offset or with two multipliers is not read, here and elsewhere");
+    return;
+  }
+  entry.unit = xml_.text(find_label(unit));
+  if (entry.unit.present) entry.factor = is_of_parameter ? of_parameter : of_unit;
 }
 
 void ApplicationProcess::read_access(pugi::xml_node element, Parameter& parameter) {
@@ -176,6 +221,7 @@ void ApplicationProcess::read_child(pugi::xml_node child, Parameter& parameter) 
     set_if_missing(parameter.entry.*row.field, xml_.value(find_attribute(child, "value")));
     return;
   }
+  if (name == "unit") return;
   for (const std::string_view silent : silent_elements) {
     if (name != silent) continue;
     if (name != "dataTypeIDRef" && name != "allowedValues") note_silent(xml_, child);
@@ -205,6 +251,7 @@ void ApplicationProcess::read_allowed_values(pugi::xml_node element, Parameter& 
   if (const pugi::xml_attribute id = find_attribute(element, "templateIDRef")) {
     if (const pugi::xml_node found = find(id.value())) element = found;
   }
+  if (parameter.entry.value_names.empty()) parameter.entry.value_names = names_in(element, "value");
   pugi::xml_node range;
   int others = 0;
   for_each_element(element, [&](pugi::xml_node child) {

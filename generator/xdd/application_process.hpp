@@ -3,6 +3,7 @@
 
 #include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include "eds/data_sheet.hpp"
 #include "xdd/simple_type.hpp"
@@ -13,8 +14,9 @@ namespace edsc {
 /// The resolved type of a parameter, array or struct member.
 struct ResolvedType {
   const SimpleType* simple = nullptr;
-  Position position;               ///< of the reference
-  pugi::xml_node array_or_struct;  ///< null for a simple type
+  Position position;                ///< of the reference
+  pugi::xml_node array_or_struct;   ///< null for a simple type
+  pugi::xml_node enumeration = {};  ///< null for another type
 };
 
 /// The properties of the object that refers to a parameter. Fields that the parameter does not define are not present.
@@ -37,6 +39,9 @@ class ApplicationProcess {
   /// with this name.
   [[nodiscard]] ResolvedType member_type(pugi::xml_node array_or_struct, std::string_view name) const;
 
+  /// The names of values in an enumeration; empty for another type.
+  [[nodiscard]] std::vector<ValueName> value_names(const ResolvedType& type) const;
+
  private:
   void add(pugi::xml_node element);
   [[nodiscard]] pugi::xml_node find(std::string_view unique_id) const;
@@ -44,6 +49,8 @@ class ApplicationProcess {
   void read_part(pugi::xml_node element, Parameter& parameter);
   void read_child(pugi::xml_node child, Parameter& parameter);
   void read_access(pugi::xml_node element, Parameter& parameter);
+  void read_unit(pugi::xml_node element, pugi::xml_node unit, EntryDescription& entry);
+  [[nodiscard]] std::vector<ValueName> names_in(pugi::xml_node list, std::string_view element) const;
   void read_property(pugi::xml_node property, Parameter& parameter);
   void read_allowed_values(pugi::xml_node element, Parameter& parameter);
   void read_range(pugi::xml_node range, EntryDescription& entry);

@@ -47,7 +47,7 @@ constexpr std::span<const AttributeRow<EntryDescription>> entry_attributes = ent
 constexpr Field EntryDescription::*parameter_fields[] = {
     &EntryDescription::data_type,  &EntryDescription::access_type,   &EntryDescription::low_limit,
     &EntryDescription::high_limit, &EntryDescription::default_value, &EntryDescription::parameter_value,
-    &EntryDescription::denotation,
+    &EntryDescription::denotation, &EntryDescription::unit,          &EntryDescription::factor,
 };
 
 /// Values that may be true or false for a BOOLEAN.
@@ -178,6 +178,7 @@ class ObjectListReader {
     for (Field EntryDescription::*const field : parameter_fields) {
       if ((parameter.entry.*field).present) entry.*field = parameter.entry.*field;
     }
+    entry.value_names = parameter.entry.value_names;
     take_if_missing(parameter.entry.access_type, entry.access_type);
     take_if_missing(parameter.entry.parameter_name, entry.parameter_name);
     return parameter;
@@ -197,6 +198,7 @@ class ObjectListReader {
     const ResolvedType member = process_.member_type(type, sub_object.parameter_name.text);
     if (member.simple == nullptr) return;
     sub_object.data_type = {member.simple->data_type, member.position, true};
+    sub_object.value_names = process_.value_names(member);
     take_if_missing(of_object.entry.access_type, sub_object.access_type);
   }
 

@@ -12,7 +12,9 @@
 
 #include "device/meaning/profiles.hpp"
 #include "diagnostics/quote.hpp"
+#include "eds/number.hpp"
 #include "text/ascii.hpp"
+#include "text/snake_case.hpp"
 
 namespace edsc {
 namespace {
@@ -370,7 +372,7 @@ class Resolver {
 }  // namespace
 
 std::optional<Quantity> quantity_of_keys(const EntryDescription& description, Diagnostics& diagnostics) {
-  const std::string_view unit = trim(description.unit.text);
+  const std::string_view unit = without_quotes(trim(description.unit.text));
   const auto has_number = [](const Field& field) { return !trim(field.text).empty(); };
   if (unit.empty() && !has_number(description.factor) && !has_number(description.offset)) return std::nullopt;
   Quantity quantity;
@@ -393,6 +395,30 @@ std::optional<Quantity> quantity_of_keys(const EntryDescription& description, Di
   const bool is_scale = read(description.factor, "Factor", quantity.scale, false);
   const bool is_offset = read(description.offset, "Offset", quantity.offset, true);
   return is_scale && is_offset ? std::optional{quantity} : std::nullopt;
+}
+
+std::optional<Enumeration> names_of_values(const EntryDescription& description, const canopen::DataTypeRow& type) {
+  const bool is_signed = type.kind == canopen::DataClass::signed_integer;
+  if (!is_signed && type.kind != canopen::DataClass::unsigned_integer) return std::nullopt;
+  Enumeration names;
+  names.source = MeaningSource::eds;
+  names.position = description.position;
+  for (const ValueName& one : description.value_names) {
+    const std::string_view digits = trim(one.value.text);
+    const bool is_negative = digits.starts_with('-');
+    const auto magnitude = parse_unsigned(is_negative ? digits.substr(1) : digits);
+    NamedValue named;
+    named.name = to_snake_case(one.name.text);
+    if (!magnitude || named.name.empty() || (is_negative && !is_signed)) continue;
+    named.value = static_cast<std::int64_t>(is_negative ? 0 - *magnitude : *magnitude);
+    named.source = MeaningSource::eds;
+    named.position = one.value.position;
+    const bool is_new = std::ranges::none_of(
+        names.values, [&](const NamedValue& other) { return other.value == named.value || other.name == named.name; });
+    if (is_new) names.values.push_back(std::move(named));
+  }
+  std::ranges::sort(names.values, {}, &NamedValue::value);
+  return names.values.empty() ? std::nullopt : std::optional{std::move(names)};
 }
 
 void resolve_meaning(Device& device, const Options& options, Diagnostics& diagnostics) {

@@ -114,9 +114,12 @@ std::optional<Entry> EntryResolver::resolve(const EntryDescription& description,
   entry.factor = description.factor.text;
   entry.offset = description.offset.text;
   entry.description = description.description.text;
-  if (auto quantity = quantity_of_keys(description, diagnostics_)) {
+  auto quantity = quantity_of_keys(description, diagnostics_);
+  auto names = description.value_names.empty() ? std::nullopt : names_of_values(description, *type.row);
+  if (quantity || names) {
     Meaning meaning;
     meaning.quantity = std::move(quantity);
+    meaning.values = std::move(names);
     entry.meaning = std::make_shared<const Meaning>(std::move(meaning));
   }
   if (!is_opaque) resolve_default(description, entry);

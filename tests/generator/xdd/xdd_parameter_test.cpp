@@ -1,4 +1,5 @@
 /// The parameters of an XDD that objects refer to.
+#include "device/meaning/resolve_meaning.hpp"
 #include "xdd/read_xdd.hpp"
 
 #include <gtest/gtest.h>
@@ -107,6 +108,49 @@ TEST(XddParameter, FollowsEnumsAndDerivedTypes) {
                              "", ""});
   EXPECT_EQ(findings(read.diagnostics), Findings{});
   EXPECT_EQ(read.object().data_type.text, "0x0005");
+}
+
+TEST(XddParameter, NamesTheValuesOfAnEnum) {
+  const ReadXdd read(
+      Profile{referring_object,
+              "<dataTypeList><enum uniqueID='e'><SINT/><enumValue value='-1'><label lang='en'>Homing run"
+              "</label></enumValue><enumValue value='3'><label lang='de'>Drehzahl</label><label lang='en'>"
+              "Velocity</label></enumValue><enumValue value='4'/></enum></dataTypeList>" +
+                  parameter("<dataTypeIDRef uniqueIDRef='e'/>"),
+              "", ""});
+  EXPECT_EQ(findings(read.diagnostics), Findings{});
+  const auto names = names_of_values(read.object(), *canopen::find_data_type(2));
+  ASSERT_TRUE(names.has_value());
+  ASSERT_EQ(names->values.size(), 2U);
+  EXPECT_EQ(names->values[0].value, -1);
+  EXPECT_EQ(names->values[0].name, "homing_run");
+  EXPECT_EQ(names->values[1].value, 3);
+  EXPECT_EQ(names->values[1].name, "velocity");
+}
+
+TEST(XddParameter, NamesTheAllowedValues) {
+  const ReadXdd read(Profile{referring_object,
+                             parameter("<USINT/><allowedValues><value value='0'><label lang='en'>Off</label></value>"
+                                       "<value value='1'><label lang='en'>On</label></value></allowedValues>"),
+                             "", ""});
+  const auto names = names_of_values(read.object(), *canopen::find_data_type(5));
+  ASSERT_TRUE(names.has_value());
+  EXPECT_EQ(names->values.at(1).name, "on");
+}
+
+TEST(XddParameter, HasAUnitWithOneMultiplier) {
+  const auto unit = [](const std::string& attributes, const std::string& multiplier) {
+    const ReadXdd read(Profile{referring_object,
+                               "<parameterList><parameter uniqueID='p' " + attributes + "><INT/><unit multiplier='" +
+                                   multiplier + "'><label lang='en'>°C</label></unit></parameter></parameterList>",
+                               "", ""});
+    return std::string{read.object().unit.text} + " " + std::string{read.object().factor.text};
+  };
+  EXPECT_EQ(unit("", "0.1"), "°C 0.1");
+  EXPECT_EQ(unit("multiplier='0.5'", "1"), "°C 0.5");
+  EXPECT_EQ(unit("offset='0' multiplier='1'", "0.1"), "°C 0.1");
+  EXPECT_EQ(unit("offset='20'", "0.1"), " ") << "the order of offset and multiplier is not certain";
+  EXPECT_EQ(unit("multiplier='0.5'", "0.1"), " ");
 }
 
 TEST(XddParameter, EndsAtATypeThatIsDerivedFromItself) {
