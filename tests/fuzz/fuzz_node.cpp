@@ -345,7 +345,7 @@ void run(const std::uint8_t* data, std::size_t size, std::array<std::vector<std:
       }),
       canopen::on_state([&](NmtState state) { bus.state = state; }),
       canopen::on_sync([&](auto& self, std::uint8_t counter) {
-        require(counter == 0 || self.template get<od::synchronous_counter_overflow_value>() != 0,
+        require(counter == 0 || canopen::to_raw(self.template get<od::synchronous_counter_overflow_value>()) != 0,
                 "only a counted SYNC has a counter");
         (void)self.template set<od::measured_value>(static_cast<std::int16_t>(++syncs));
       }),

@@ -269,7 +269,7 @@ TEST(Manual000, AnRpdoIgnoresBit30AndHasNoBit29) {
   EXPECT_EQ(drive.ask("605 23 00 14 01 05 02 00 A0"), "585 80 00 14 01 30 00 09 06");
   drive.ask(bench::start);
   drive.ask("205 0F 00");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x0F);
 }
 
 // shows 000.83, 000.173, 000.341

@@ -35,7 +35,7 @@ TEST(Manual000, ServesPdosInOperationalOnly) {
   EXPECT_EQ(drive.ask(bench::start),
             "185 37 00 | 285 37 00 00 00 00 00 | 385 37 00 00 00 00 00 | 485 37 00 00 00 00 00");
   drive.ask("205 0F 00");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x0F);
 }
 
 // shows 000.86, 000.88, 000.232
@@ -50,10 +50,10 @@ TEST(Manual000, PdosHaveTheLengthAndOrderOfTheirMapping) {
   EXPECT_EQ(drive.ask(bench::start),
             "185 34 12 | 285 34 12 0D 0C 0B 0A | 385 34 12 FE FF FF FF | 485 34 12 FE FF FF FF");
   drive.ask("305 0F 00 01 02 03 04");
-  EXPECT_EQ(drive.node.get<od::target_position>(), 0x04030201);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_position>()), 0x04030201);
   drive.ask("405 1F 00 FF FF FF FF");
-  EXPECT_EQ(drive.node.get<od::target_velocity>(), -1);
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0x1F);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_velocity>()), -1);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x1F);
   EXPECT_EQ(drive.ask("505"), "");
 }
 
@@ -64,9 +64,9 @@ TEST(Manual000, TakesSynchronousRpdosAtTheNextSync) {
     write(drive, 0x1400, 2, 1, type);
     drive.ask(bench::start);
     drive.ask("205 0F 00");
-    EXPECT_EQ(drive.node.get<od::controlword>(), 0) << type;
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0) << type;
     drive.ask("080");
-    EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F) << type;
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x0F) << type;
   }
 }
 
@@ -77,7 +77,7 @@ TEST(Manual000, TakesEventDrivenRpdosAtOnce) {
     write(drive, 0x1400, 2, 1, type);
     drive.ask(bench::start);
     drive.ask("205 0F 00");
-    EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F) << type;
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x0F) << type;
   }
 }
 
@@ -149,9 +149,9 @@ TEST(Manual000, TakesLongerRpdosAndNoShorterOnes) {
   Drive drive;
   start_with(drive, 0x1800, 255);
   EXPECT_EQ(drive.ask("205 0F"), "085 10 82 11 00 00 00 00 00");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0);
   EXPECT_EQ(drive.ask("205 1F 00 AA BB"), "085 00 00 00 00 00 00 00 00");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0x1F);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x1F);
 }
 
 // Mapping
@@ -232,7 +232,7 @@ TEST(Manual000, MapsDummiesOf2To7) {
     drive.ask(bench::start);
     const std::string skipped[] = {"", " AA", " AA AA", "", " AA AA AA AA"};
     drive.ask("205" + skipped[(dummy & 0xFF) / 8] + " 0F 00");
-    EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F) << dummy;
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x0F) << dummy;
   }
 }
 

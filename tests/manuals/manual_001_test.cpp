@@ -220,7 +220,7 @@ TEST(Manual001, PdosCarryTheirObjectsLowByteFirst) {
   drive.node.set<od::statusword>(canopen::raw(0x00F3));
   EXPECT_EQ(drive.ask(bench::start).substr(0, 18), "185 F3 00 00 00 01");
   drive.ask("205 11 22 03 11 FE FF FF FF");
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0x2211);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x2211);
   EXPECT_EQ(canopen::to_raw(drive.node.get<od::modes_of_operation>()), 3);
   EXPECT_EQ(canopen::to_raw(drive.node.get<od::homing_method>()), 0x11);
   EXPECT_EQ(canopen::to_raw(drive.node.get<od::home_offset>()), -2);
@@ -283,7 +283,7 @@ TEST(Manual001, TakesTheNewestRpdoAtTheNextSyncOrAtOnce) {
     drive.ask("305 02 00 00 00 00 00 00 00");
     EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_position>()), type > 240 ? 2 : 0) << type;
     drive.ask("080");
-    EXPECT_EQ(drive.node.get<od::target_position>(), 2) << type;
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_position>()), 2) << type;
   }
 }
 

@@ -36,14 +36,14 @@ TEST(Manual002, Rpdo2And3CarryTargetsOnceTheyAreEnabled) {
   Drive drive;
   drive.ask(bench::start);
   drive.ask("305 0F 00 01 00 00 00");
-  EXPECT_EQ(drive.node.get<od::target_position>(), 0);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_position>()), 0);
   write(drive, 0x1401, 1, 4, 0x305);
   write(drive, 0x1402, 1, 4, 0x405);
   drive.ask("305 0F 00 01 00 00 00");
-  EXPECT_EQ(drive.node.get<od::target_position>(), 1);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_position>()), 1);
   drive.ask("405 1F 00 FE FF FF FF");
   EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_velocity>()), -2);
-  EXPECT_EQ(drive.node.get<od::controlword>(), 0x1F);
+  EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x1F);
   EXPECT_EQ(drive.ask("305 0F 00 01 00 00"), "085 10 82 11 00 00 00 00 00");
 }
 
@@ -174,9 +174,9 @@ TEST(Manual002, TakesSynchronousRpdosAtTheNextSyncWhateverTheirNumber) {
     write(drive, 0x1400, 2, 1, type);
     drive.ask(bench::start);
     drive.ask("205 0F 00");
-    EXPECT_EQ(drive.node.get<od::controlword>(), 0) << type;
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0) << type;
     drive.ask("080");
-    EXPECT_EQ(drive.node.get<od::controlword>(), 0x0F) << type;
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::controlword>()), 0x0F) << type;
   }
 }
 
@@ -224,8 +224,8 @@ TEST(Manual002, TakesRpdo2And3WithSyncOrAtOnceByTheirType) {
     EXPECT_EQ(drive.node.get<od::target_position>(), type == 255 ? 1 : 0);
     EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_velocity>()), type == 255 ? 2 : 0);
     drive.ask("080");
-    EXPECT_EQ(drive.node.get<od::target_position>(), 1);
-    EXPECT_EQ(drive.node.get<od::target_velocity>(), 2);
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_position>()), 1);
+    EXPECT_EQ(canopen::to_raw(drive.node.get<od::target_velocity>()), 2);
   }
 }
 

@@ -43,7 +43,7 @@ TEST(Manual003, ChangesACobIdWhileThePdoIsNotValid) {
   EXPECT_EQ(canopen::to_raw(module.node.get<Output>()), 0x12);
   EXPECT_EQ(module.ask("605 23 00 14 01 22 02 00 80"), "585 60 00 14 01 00 00 00 00");
   module.ask("222 56 78");
-  EXPECT_EQ(module.node.get<Output>(), 0x12);
+  EXPECT_EQ(canopen::to_raw(module.node.get<Output>()), 0x12);
 }
 
 // shows 003.33, 003.62, 003.63, 003.161
@@ -160,7 +160,7 @@ TEST(Manual003, ServesPdosInOperationalOnly) {
     DigitalOutputs outputs;
     outputs.ask(command);
     EXPECT_EQ(outputs.ask("205 12 34"), "");
-    EXPECT_EQ(outputs.node.get<Output>(), 0);
+    EXPECT_EQ(canopen::to_raw(outputs.node.get<Output>()), 0);
     DigitalInputs inputs;
     inputs.ask(command);
     inputs.node.set<Input>(canopen::raw(1));
@@ -177,9 +177,9 @@ TEST(Manual003, TakesSynchronousRpdosAtTheNextSyncWhateverTheirNumber) {
     module.ask(bench::start);
     write(module, 0x1400, 2, 1, type);
     module.ask("205 12 34");
-    EXPECT_EQ(module.node.get<Output>(), 0) << type;
+    EXPECT_EQ(canopen::to_raw(module.node.get<Output>()), 0) << type;
     module.ask("080");
-    EXPECT_EQ(module.node.get<Output>(), 0x12) << type;
+    EXPECT_EQ(canopen::to_raw(module.node.get<Output>()), 0x12) << type;
   }
 }
 
@@ -190,7 +190,7 @@ TEST(Manual003, TakesAsynchronousRpdosAtOnce) {
     module.ask(bench::start);
     write(module, 0x1400, 2, 1, type);
     module.ask("205 12 34");
-    EXPECT_EQ(module.node.get<Output>(), 0x12) << type;
+    EXPECT_EQ(canopen::to_raw(module.node.get<Output>()), 0x12) << type;
   }
 }
 
@@ -204,7 +204,7 @@ TEST(Manual003, SendsType1AtEverySyncAndType0AfterAChange) {
   write(module, 0x1800, 2, 1, 0);
   module.ask("080");
   EXPECT_EQ(module.ask("080"), "");
-  module.node.set<Input>(1);
+  module.node.set<Input>(canopen::raw(1));
   EXPECT_EQ(module.pass(1s), "");
   EXPECT_EQ(module.ask("080"), "185 01 00");
   EXPECT_EQ(module.ask("080"), "");
@@ -229,7 +229,7 @@ TEST(Manual003, SendsTypes254And255AtAChangeByTheirTimerAndWhenAsked) {
     DigitalInputs module;
     write(module, 0x1800, 2, 1, type);
     module.ask(bench::start);
-    module.node.set<Input>(1);
+    module.node.set<Input>(canopen::raw(1));
     EXPECT_EQ(module.pass(1s), "185 01 00");
     EXPECT_EQ(module.ask("185 R 0"), "185 01 00");
     EXPECT_EQ(module.ask("605 2B 00 18 05 64 00 00 00"), "585 60 00 18 05 00 00 00 00");
@@ -245,7 +245,7 @@ TEST(Manual003, CountsTheInhibitTimeInMilliseconds) {
   EXPECT_EQ(module.ask("605 2B 00 18 03 0A 00 00 00"), "585 60 00 18 03 00 00 00 00");
   write(module, 0x1800, 1, 4, 0x185);
   EXPECT_EQ(module.ask(bench::start), "185 00 00");
-  module.node.set<Input>(1);
+  module.node.set<Input>(canopen::raw(1));
   EXPECT_EQ(module.pass(9999us), "");
   EXPECT_EQ(module.pass(1us), "185 01 00");
 }
@@ -257,7 +257,7 @@ TEST(Manual003, SdoAndPdoReachTheSameObjects) {
   outputs.ask("205 12 34");
   EXPECT_EQ(outputs.ask("605 40 00 62 02 00 00 00 00"), "585 4F 00 62 02 34 00 00 00");
   EXPECT_EQ(outputs.ask("605 2F 00 62 01 56 00 00 00"), "585 60 00 62 01 00 00 00 00");
-  EXPECT_EQ(outputs.node.get<Output>(), 0x56);
+  EXPECT_EQ(canopen::to_raw(outputs.node.get<Output>()), 0x56);
 
   AnalogOutputs analog_outputs;
   analog_outputs.ask(bench::start);
@@ -286,7 +286,7 @@ TEST(Manual003, OneSyncActsOnRpdoAndTpdo) {
   outputs.ask("205 12 34");
   EXPECT_EQ(outputs.ask("080"), "");
   EXPECT_EQ(inputs.ask("080"), "185 00 00");
-  EXPECT_EQ(outputs.node.get<Output>(), 0x12);
+  EXPECT_EQ(canopen::to_raw(outputs.node.get<Output>()), 0x12);
 }
 
 }  // namespace

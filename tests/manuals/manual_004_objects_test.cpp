@@ -312,7 +312,7 @@ TEST(Manual004, SendsTypes252And253WhenAsked) {
     Sensor sensor;
     write(sensor, 0x1800, 2, 1, type);
     sensor.ask(bench::start);
-    sensor.node.set<Position>(1);
+    sensor.node.set<Position>(canopen::raw(1));
     EXPECT_EQ(sensor.pass(1s), "");
     EXPECT_EQ(sensor.ask("080"), "");
     EXPECT_EQ(sensor.ask("185 R 0"), "185 01 00 00 00 00 00");
@@ -326,7 +326,7 @@ TEST(Manual004, SendsTypes254And255EachTimeTheEventTimerElapses) {
     write(sensor, 0x1800, 2, 1, type);
     write(sensor, 0x1800, 5, 2, 10);
     EXPECT_EQ(sensor.ask(bench::start), "");
-    sensor.node.set<Position>(1);
+    sensor.node.set<Position>(canopen::raw(1));
     EXPECT_EQ(sensor.pass(9ms), "");
     EXPECT_EQ(sensor.pass(1ms), "185 01 00 00 00 00 00");
     EXPECT_EQ(sensor.pass(10ms), "185 01 00 00 00 00 00");
@@ -338,7 +338,7 @@ TEST(Manual004, SendsNothingWithAnEventTimerOf0) {
   Sensor sensor;
   write(sensor, 0x1800, 5, 2, 0);
   sensor.ask(bench::start);
-  sensor.node.set<Position>(1);
+  sensor.node.set<Position>(canopen::raw(1));
   EXPECT_EQ(sensor.pass(1s), "");
 }
 

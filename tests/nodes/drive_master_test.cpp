@@ -36,7 +36,7 @@ TEST_F(MasterAndDrive, BootsConfiguresAndListens) {
   EXPECT_TRUE(logged("node 5: booted"));
   EXPECT_EQ(drive.node().state(), canopen::NmtState::operational);
   EXPECT_EQ(canopen::to_raw(drive.node().get<cpc_tc1::od::producer_heartbeat_time>()), 150);
-  EXPECT_EQ(drive.node().get<cpc_tc1::od::tpdo_communication_parameter_2::event_timer>(), 20);
+  EXPECT_EQ(canopen::to_raw(drive.node().get<cpc_tc1::od::tpdo_communication_parameter_2::event_timer>()), 20);
   EXPECT_EQ(master.position(), 0);
   EXPECT_TRUE(master.switch_on());
 }

@@ -117,7 +117,7 @@ TEST_F(MasterAndPlant, BringTheOutputsToTheirErrorValuesWhenTheMasterIsLost) {
   run(20);
   EXPECT_NE(canopen::to_raw(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>()), 0);
   bus.run_for(1s);  // no guarding
-  EXPECT_EQ(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>(), 0);
+  EXPECT_EQ(canopen::to_raw(plant.digital_out().node().get<can_2057c::od::write_output_8_bit<1>>()), 0);
   EXPECT_EQ(canopen::to_raw(plant.analogue_out().node().get<can_2024c::od::write_analogue_output_16_bit<1>>()), 0);
   EXPECT_TRUE(sent("081 30 81 11 07 00 00 00 00"));
 }
@@ -293,7 +293,7 @@ TEST_F(Boot, ConfiguresWithoutWaiting) {
   };
   master->start();
   master->poll(50ms);
-  EXPECT_EQ(module.node().get<od::guard_time>(), 250);
+  EXPECT_EQ(canopen::to_raw(module.node().get<od::guard_time>()), 250);
   ASSERT_GE(log.size(), 3u);
   EXPECT_EQ(log[log.size() - 3], "configured");
   EXPECT_EQ(log[log.size() - 2], "node 5: booted");

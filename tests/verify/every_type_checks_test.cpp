@@ -101,12 +101,13 @@ TEST(Limits, OfLengthAreThoseOfTheType) {
 TEST(NodeIdFormulas, FollowTheNodeId) {
   for (const unsigned node_id : {1u, 5u, 127u}) {
     Device device{static_cast<std::uint8_t>(node_id)};
-    EXPECT_EQ(device.store.get<od::cob_id_emcy>(), 0x80U + node_id);
-    EXPECT_EQ(device.store.get<od::rpdo_1_communication_parameter::cob_id>(), 0x200U + node_id);
-    EXPECT_EQ(device.store.get<od::tpdo_2_communication_parameter::cob_id>(), 0xC0000280U + node_id);
-    EXPECT_EQ(device.store.get<od::sdo_server_parameter::cob_id_client_to_server>(), 0x600U + node_id);
-    EXPECT_EQ(device.store.get<od::unsigned64_formula>(), 0x1000000000U + node_id);
-    EXPECT_EQ(device.store.get<od::constant_integer32_formula>(), 10 + static_cast<std::int32_t>(node_id));
+    EXPECT_EQ(canopen::to_raw(device.store.get<od::cob_id_emcy>()), 0x80U + node_id);
+    EXPECT_EQ(canopen::to_raw(device.store.get<od::rpdo_1_communication_parameter::cob_id>()), 0x200U + node_id);
+    EXPECT_EQ(canopen::to_raw(device.store.get<od::tpdo_2_communication_parameter::cob_id>()), 0xC0000280U + node_id);
+    EXPECT_EQ(canopen::to_raw(device.store.get<od::sdo_server_parameter::cob_id_client_to_server>()), 0x600U + node_id);
+    EXPECT_EQ(canopen::to_raw(device.store.get<od::unsigned64_formula>()), 0x1000000000U + node_id);
+    EXPECT_EQ(canopen::to_raw(device.store.get<od::constant_integer32_formula>()),
+              10 + static_cast<std::int32_t>(node_id));
   }
 }
 
@@ -118,11 +119,11 @@ TEST(NodeIdFormulas, OfTheApplicationFollowTheNodeIdFromPowerOnOn) {
   SilentBus bus;
   auto node = bench::make_node<every_type::Device>(bus, NodeId{9});
   node.start(canopen::TimePoint{});
-  EXPECT_EQ(node.get<od::node_id_itself>(), 9);
-  EXPECT_EQ(node.get<od::integer16_formula>(), -256 + 9);
-  EXPECT_EQ(node.get<od::array_with_formulas<1>>(), 0x10U + 9);
-  EXPECT_EQ(node.get<od::array_with_formulas<2>>(), 0x20U);
-  EXPECT_EQ(node.get<od::record_with_formulas::word>(), 2 + 9);
+  EXPECT_EQ(canopen::to_raw(node.get<od::node_id_itself>()), 9);
+  EXPECT_EQ(canopen::to_raw(node.get<od::integer16_formula>()), -256 + 9);
+  EXPECT_EQ(canopen::to_raw(node.get<od::array_with_formulas<1>>()), 0x10U + 9);
+  EXPECT_EQ(canopen::to_raw(node.get<od::array_with_formulas<2>>()), 0x20U);
+  EXPECT_EQ(canopen::to_raw(node.get<od::record_with_formulas::word>()), 2 + 9);
 }
 
 // ---- domains ----

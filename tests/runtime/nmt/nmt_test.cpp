@@ -114,7 +114,7 @@ TEST(Nmt, AnswersEachResetWithTheBootUpMessage) {
 TEST(Nmt, ResetNodeTakesAllDefaultValues) {
   Bench device;
   device.node.set<od::profile_acceleration>(5);
-  EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(100), canopen::ok);
+  EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(canopen::raw(100)), canopen::ok);
   device.ask(bench::reset_node);
   EXPECT_EQ(device.node.get<od::profile_acceleration>(), 1000u);
   EXPECT_EQ(canopen::to_raw(device.node.get<od::producer_heartbeat_time>()), 0);
@@ -123,7 +123,7 @@ TEST(Nmt, ResetNodeTakesAllDefaultValues) {
 TEST(Nmt, ResetCommunicationKeepsTheValuesOfTheApplication) {
   Bench device;
   device.node.set<od::profile_acceleration>(5);
-  EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(100), canopen::ok);
+  EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(canopen::raw(100)), canopen::ok);
   device.ask(bench::reset_communication);
   EXPECT_EQ(device.node.get<od::profile_acceleration>(), 5u);
   EXPECT_EQ(canopen::to_raw(device.node.get<od::producer_heartbeat_time>()), 0);

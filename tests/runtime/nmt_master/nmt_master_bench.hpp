@@ -79,7 +79,7 @@ class Slave {
   void after_reset() {
     guarding_.reset();
     if (beats_) {
-      EXPECT_EQ(node_.set<sample::od::producer_heartbeat_time>(50), canopen::ok);
+      EXPECT_EQ(node_.set<sample::od::producer_heartbeat_time>(canopen::raw(50)), canopen::ok);
     }
   }
 

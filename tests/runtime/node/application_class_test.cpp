@@ -318,8 +318,8 @@ TEST(ObjectValues, TakeAnElementByItsNumberAtRunTime) {
 
 TEST(ObjectValues, AskTheServiceOfAnElement) {
   bench::Bench<every_service::Device> device;
-  EXPECT_EQ(device.node.set(od::consumer_heartbeat_time{}, canopen::raw(1), 0x000A'0064), canopen::ok);
-  EXPECT_EQ(device.node.set(od::consumer_heartbeat_time{}, canopen::raw(2), 0x000A'0064),
+  EXPECT_EQ(device.node.set(od::consumer_heartbeat_time{}, 1, canopen::raw(0x000A'0064)), canopen::ok);
+  EXPECT_EQ(device.node.set(od::consumer_heartbeat_time{}, 2, canopen::raw(0x000A'0064)),
             AbortCode::parameter_incompatible)
       << "1016h:01 consumes node 10";
   EXPECT_EQ(canopen::to_raw(device.node.get(od::consumer_heartbeat_time<2>{})), 0u);

@@ -151,7 +151,7 @@ TEST(Node, StaysAsItIsBeforeItHasPower) {
 TEST(Node, TellsTheNearestDeadline) {
   Bench device;
   EXPECT_FALSE(device.node.next_deadline());
-  EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(100), canopen::ok);
+  EXPECT_EQ(device.node.set<od::producer_heartbeat_time>(canopen::raw(100)), canopen::ok);
   EXPECT_EQ(device.node.set<od::tpdo_communication_parameter_1::event_timer>(canopen::raw(30)), canopen::ok);
   EXPECT_EQ(device.pass(0ms), "705 7F");
   device.ask(bench::start);
@@ -170,7 +170,7 @@ TEST(Node, TwoOfTheSameDeviceShareNothing) {
 TEST(Node, SendsTheAnswerBeforeTheHeartbeatAndTheHeartbeatBeforePdos) {
   auto device = bench::with(canopen::on_write<od::profile_acceleration>([](auto& node, std::uint32_t) {
     node.template set<od::statusword>(1);
-    EXPECT_EQ(node.template set<od::producer_heartbeat_time>(100), canopen::ok);
+    EXPECT_EQ(node.template set<od::producer_heartbeat_time>(canopen::raw(100)), canopen::ok);
   }));
   device.ask(bench::start);
   EXPECT_EQ(device.ask("605 23 83 60 00 01 00 00 00"), "585 60 83 60 00 00 00 00 00 | 705 05 | 185 01 00 00 00 00 00");

@@ -37,10 +37,10 @@ using Bytes = std::vector<std::uint8_t>;
 
 TEST(ObjectStore, BeginsWithTheDefaultValues) {
   Store store = fresh();
-  EXPECT_EQ(store.get<od::integer32_value>(), -2);
-  EXPECT_EQ(store.get<od::profile_acceleration>(), 1000u);
+  EXPECT_EQ(canopen::to_raw(store.get<od::integer32_value>()), -2);
+  EXPECT_EQ(canopen::to_raw(store.get<od::profile_acceleration>()), 1000u);
   EXPECT_EQ(store.get<od::visible_string_value>().view(), "hello");
-  EXPECT_EQ(store.get<od::filter::time_constant>(), 1000u);
+  EXPECT_EQ(canopen::to_raw(store.get<od::filter::time_constant>()), 1000u);
 }
 
 /// Returns a value whose padding, and whose bytes after the end of a string, are all `filler`.
@@ -85,7 +85,7 @@ TEST(ObjectStore, SaysWhetherAValueIsNew) {
   Store store = fresh();
   EXPECT_TRUE(store.set<od::statusword>(1));
   EXPECT_FALSE(store.set<od::statusword>(1));
-  EXPECT_EQ(store.get<od::statusword>(), 1);
+  EXPECT_EQ(canopen::to_raw(store.get<od::statusword>()), 1);
 }
 
 TEST(ObjectStore, KnowsWhatCanBeSet) {
@@ -110,10 +110,10 @@ TEST(ObjectStore, ReadsTheBytesThatSdoSends) {
 TEST(ObjectStore, WidensNumbersOfOddLength) {
   Store store = fresh();
   store.entries().write(sample::dictionary.find(0x2003, 0), Bytes{0xFD, 0xFF, 0xFF});
-  EXPECT_EQ(store.get<od::integer24_value>(), -3);
+  EXPECT_EQ(canopen::to_raw(store.get<od::integer24_value>()), -3);
   store.set<od::unsigned40_value>(~std::uint64_t{0});
   store.entries().write(sample::dictionary.find(0x2009, 0), Bytes{1, 2, 3, 4, 0xF5});
-  EXPECT_EQ(store.get<od::unsigned40_value>(), 0xF504030201u);
+  EXPECT_EQ(canopen::to_raw(store.get<od::unsigned40_value>()), 0xF504030201u);
 }
 
 TEST(ObjectStore, ChecksLengthsBeforeValues) {
@@ -156,9 +156,9 @@ TEST(ObjectStore, ResetOfCommunicationLeavesTheApplicationAlone) {
   store.set<od::profile_acceleration>(7);
   store.set<od::producer_heartbeat_time>(canopen::from_raw<od::producer_heartbeat_time::type>(7));
   store.reset_communication(NodeId{6});
-  EXPECT_EQ(store.get<od::profile_acceleration>(), 7u);
+  EXPECT_EQ(canopen::to_raw(store.get<od::profile_acceleration>()), 7u);
   EXPECT_EQ(canopen::to_raw(store.get<od::producer_heartbeat_time>()), 0);
-  EXPECT_EQ(store.get<od::rpdo_communication_parameter_1::cob_id_used_by_rpdo>(), 0x206u);
+  EXPECT_EQ(canopen::to_raw(store.get<od::rpdo_communication_parameter_1::cob_id_used_by_rpdo>()), 0x206u);
 }
 
 }  // namespace

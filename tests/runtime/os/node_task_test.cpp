@@ -60,7 +60,7 @@ struct Task {
 TEST(NodeTask, WaitsUntilTheNextDeadline) {
   Task<Port> it;
   it.port.take();
-  ASSERT_EQ(it.node.set<od::producer_heartbeat_time>(100), canopen::ok);
+  ASSERT_EQ(it.node.set<od::producer_heartbeat_time>(canopen::raw(100)), canopen::ok);
   it.task.run_once();
   it.task.run_once();
   it.task.run_once();

@@ -77,7 +77,7 @@ TEST(Tpdo, PacksObjectsAtAnyBit) {
   device.ask("605 23 01 18 01 85 02 00 40");
   device.node.set<od::inputs::input_2>(true);
   EXPECT_EQ(device.node.set<od::integer40_value>(-1), canopen::ok);
-  EXPECT_EQ(device.node.set<od::error_register>(0x81), canopen::ok);
+  EXPECT_EQ(device.node.set<od::error_register>(canopen::raw(0x81)), canopen::ok);
   EXPECT_EQ(device.ask(bench::start), std::string{zeros} + " | 285 FE FF FF FF FF 07 02");
 }
 
