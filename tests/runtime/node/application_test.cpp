@@ -89,7 +89,7 @@ TEST(SetOfAParameter, ObeysTheRulesOfItsService) {
   using tpdo1 = od::tpdo_communication_parameter_1::cob_id;
   EXPECT_EQ(device.node.set<tpdo1>(canopen::raw(0x190)), AbortCode::invalid_value) << "while it is valid";
   EXPECT_EQ(device.node.set<tpdo1>(canopen::raw(0x8000'0185)), canopen::ok);
-  EXPECT_EQ(device.node.set<tpdo1>(0x601), AbortCode::invalid_value) << "restricted";
+  EXPECT_EQ(device.node.set<tpdo1>(canopen::raw(0x601)), AbortCode::invalid_value) << "restricted";
   EXPECT_EQ(device.node.set<tpdo1>(canopen::raw(0x190)), canopen::ok);
   EXPECT_EQ(canopen::to_raw(device.node.get<tpdo1>()), 0x190u);
   EXPECT_EQ(device.node.set<od::synchronous_counter_overflow_value>(canopen::raw(1)), AbortCode::invalid_value);

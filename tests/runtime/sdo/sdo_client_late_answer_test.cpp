@@ -195,7 +195,7 @@ TEST(SdoClient, ANodeThatHasBootedUpIsAskedAtOnce) {
   client.read<od::device_type>(TimePoint{20ms});
   EXPECT_EQ(bus.take(), "605 40 00 10 00 00 00 00 00") << "what comes now was said after the reset";
   client.on_frame(frame("585 43 00 10 00 01 00 00 00"), TimePoint{21ms});
-  EXPECT_EQ(canopen::to_raw(client.value<od::device_type>()), 1u);
+  EXPECT_EQ(client.value<od::device_type>()->raw(), 1u);
   client.read<od::device_type>(TimePoint{22ms});
   EXPECT_EQ(bus.take(), "") << "there may be a second answer";
 }
