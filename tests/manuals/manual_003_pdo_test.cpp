@@ -265,7 +265,7 @@ TEST(Manual003, SdoAndPdoReachTheSameObjects) {
   EXPECT_EQ(analog_outputs.ask("605 40 11 64 01 00 00 00 00"), "585 4B 11 64 01 FF 3F 00 00");
 
   DigitalInputs inputs;
-  inputs.node.set<Input>(0xAB);
+  inputs.node.set<Input>(canopen::raw(0xAB));
   EXPECT_EQ(inputs.ask("605 40 00 60 01 00 00 00 00"), "585 4F 00 60 01 AB 00 00 00");
   EXPECT_EQ(inputs.ask(bench::start), "185 AB 00");
 

@@ -353,7 +353,7 @@ TEST(Manual004, HasAFixedMapping) {
 // shows 004.92, 004.94, 004.161
 TEST(Manual004, SdoAndTpdo1CarryTheSameValues) {
   Sensor sensor;
-  sensor.node.set<Position>(-200);
+  sensor.node.set<Position>(canopen::raw(-200));
   sensor.node.set<Speed>(canopen::raw(-300));
   EXPECT_EQ(sensor.ask("605 40 20 60 01 00 00 00 00"), "585 42 20 60 01 38 FF FF FF");
   EXPECT_EQ(sensor.ask("605 40 30 60 01 00 00 00 00"), "585 42 30 60 01 D4 FE 00 00");
