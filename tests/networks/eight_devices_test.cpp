@@ -62,7 +62,7 @@ TEST(EightDevices, ASensorThatLosesPowerIsBootedAgainWhileTheOthersRun) {
   bench.bus.run_for(2s);
   EXPECT_EQ(bench.boots["sensor"], 2);
   EXPECT_EQ(bench.boots["axis"], 1);
-  EXPECT_EQ(bench.analog_outputs.node().get(can_2024c::od::write_analogue_output_16_bit<2>{}), 77);
+  EXPECT_EQ(bench.analog_outputs.node().get(can_2024c::od::write_analogue_output_16_bit<2>{}).raw(), 77);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ TEST(EventDriven, AValueIsSentOnceWhenItChanges) {
   EXPECT_EQ(bench.count(can_id), 1U);
   EXPECT_EQ(bench.last(can_id), (Bytes{0xE8, 0x03, 0, 0, 0, 0, 0, 0}));
   EXPECT_EQ(canopen::to_raw(bench.axis.node().get(od::target_position{})), 1000);
-  bench.control.plant.axis.target_position(1000);
+  bench.control.plant.axis.target_position(canopen::raw(1000));
   bench.bus.run_for(1s);
   EXPECT_EQ(bench.count(can_id), 1U);
 }
@@ -49,7 +49,7 @@ TEST(EventDriven, AValueIsSentAgainToANodeThatHasBooted) {
   Line bench;
   bench.start();
   ASSERT_TRUE(bench.boot(10s));
-  bench.control.plant.axis.target_position(1000);
+  bench.control.plant.axis.target_position(canopen::raw(1000));
   bench.bus.run_for(1s);
   bench.axis.switch_off();
   bench.bus.run_for(1s);

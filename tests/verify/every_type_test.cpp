@@ -61,12 +61,12 @@ TEST(EveryType, HasNoOtherEntries) {
 TEST(EveryType, TakesItsDefaultsBackAtEachReset) {
   Device device;
   device.store.set<od::integer32_value>(1);
-  device.store.set<od::cob_id_sync>(0x81);
+  device.store.set<od::cob_id_sync>(od::cob_id_sync::type{canopen::raw(0x81)});
   device.store.set<od::integer24_array<2>>(1);
   device.store.reset_application(NodeId{5});
   device.store.reset_communication(NodeId{5});
   EXPECT_EQ(device.store.get<od::integer32_value>(), -100000);
-  EXPECT_EQ(device.store.get<od::cob_id_sync>(), 0x80U);
+  EXPECT_EQ(device.store.get<od::cob_id_sync>().raw(), 0x80U);
   EXPECT_EQ(device.store.get<od::integer24_array<2>>(), -1);
 }
 
