@@ -61,7 +61,7 @@ TEST(EveryType, HasNoOtherEntries) {
 TEST(EveryType, TakesItsDefaultsBackAtEachReset) {
   Device device;
   device.store.set<od::integer32_value>(1);
-  device.store.set<od::cob_id_sync>(od::cob_id_sync::type{canopen::raw(0x81)});
+  device.store.set<od::cob_id_sync>(od::cob_id_sync::type{canopen::raw(0x81u)});
   device.store.set<od::integer24_array<2>>(1);
   device.store.reset_application(NodeId{5});
   device.store.reset_communication(NodeId{5});
