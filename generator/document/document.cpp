@@ -85,6 +85,7 @@ std::string document_of(const DeviceToDocument& device, DocumentFormat format) {
   if (device.diagnostics != nullptr) document::add_findings(*device.diagnostics, view);
   document::add_changes(device.compared, view);
   document::add_pdos(device, view);
+  document::add_error_codes(device.device(), view);
   document::add_objects(device, view);
   view["page_title"] = view["title"].get<std::string>() + ", CANopen device";
   return rendered("device", std::move(view), format);

@@ -5,15 +5,19 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "backend/json/replaced_default.hpp"
 #include "compare/compare_parts.hpp"
-#include "device/meaning/raw_unit.hpp"
+#include "device/entry_text.hpp"
+#include "device/error_code_text.hpp"
 #include "document/views.hpp"
 #include "text/counted.hpp"
+#include "values/value_bytes.hpp"
+#include "values/value_text.hpp"
 
 namespace edsc::document {
 namespace {
@@ -69,20 +73,46 @@ std::string other_base(const std::optional<Value>& value, const canopen::DataTyp
   return value->hexadecimal ? fmt::format("{}", value->bits) : fmt::format("0x{:X}", value->bits);
 }
 
-std::string limits_text(const Entry& entry) {
+std::string raw_limits_text(const Entry& entry) {
   if (!entry.low_limit && !entry.high_limit) return {};
   return fmt::format("{} .. {}", shown_value(entry.low_limit, *entry.type), shown_value(entry.high_limit, *entry.type));
 }
 
-std::string unit_text(const Entry& entry) {
-  if (!entry.meaning || !entry.meaning->quantity) return {};
-  const Quantity& quantity = *entry.meaning->quantity;
-  return (quantity.is_raw() ? "" : "\u00D7 ") + raw_unit_text(quantity);
+std::string unit_text_of(const Entry& entry) {
+  const Quantity* const quantity = quantity_of(entry);
+  return quantity == nullptr ? std::string{} : unit_text(*quantity);
+}
+
+/// The value by its meaning: `21.5 °C`, `3 profile_velocity`; empty without one.
+std::string meant_text(const Device& device, const Entry& entry, const std::optional<Value>& value) {
+  if (!value || value->plus_node_id) return {};
+  const bool has_code = error_code_place(device, entry) != ErrorCodePlace::none;
+  const bool has_meaning = entry.meaning && (quantity_of(entry) != nullptr || meaning_of_integer(entry) != nullptr);
+  if (!has_code && !has_meaning) return {};
+  std::optional<std::int64_t> other;
+  if (entry.meaning && entry.meaning->depends_on) {
+    const auto [index, sub_index] = *entry.meaning->depends_on;
+    const Entry* const mode = device.find(index, sub_index);
+    if (mode != nullptr && mode->default_value) other = static_cast<std::int64_t>(mode->default_value->bits);
+  }
+  const std::string bytes = bytes_of(*value, *entry.type);
+  const std::span octets{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+  std::string text, plain;
+  append_device_value(text, device, entry, octets, other);
+  append_value(plain, *entry.type, octets);
+  const bool is_bare_word = entry.meaning && entry.meaning->has_fields() && text.find(' ') == std::string::npos;
+  return text == plain || is_bare_word ? std::string{} : text;
+}
+
+/// The limits as physical values; empty without a quantity.
+std::string meant_limits(const Entry& entry) {
+  return quantity_of(entry) == nullptr ? std::string{} : edsc::limits_text(entry);
 }
 
 class ObjectRows {
  public:
-  explicit ObjectRows(const DeviceToDocument& input) : input_{input}, device_{input.device()} {
+  explicit ObjectRows(const DeviceToDocument& input)
+      : input_{input}, device_{input.device()}, meanings_{input.device()} {
     for (const Pdo& pdo : device_.pdos) {
       for (const PdoEntry& mapped : pdo.entries) mapped_.emplace(mapped.index, mapped.sub_index);
     }
@@ -149,7 +179,7 @@ class ObjectRows {
                                                      counted(object.entries.size(), "entry", "entries"))},
             {"summary_access", is_single ? canopen::row_of(first.access).name : std::string_view{}},
             {"summary_mapping", is_single ? mapping_text(first) : ""},
-            {"summary_value", is_single ? shown_value(first.default_value, *first.type) : ""},
+            {"summary_value", is_single ? summary_value(first) : ""},
             {"change", shown(change_class)},
             {"denotation", shown(object.denotation)},
             {"comment", shown(comment)},
@@ -157,9 +187,15 @@ class ObjectRows {
             {"has_links", !object.links.empty()},
             {"line", object.position.line},
             {"has_limits", any([](const Entry& entry) { return entry.low_limit || entry.high_limit; })},
-            {"has_unit", any([](const Entry& entry) { return !unit_text(entry).empty(); })},
+            {"has_unit", any([](const Entry& entry) { return !unit_text_of(entry).empty(); })},
             {"has_configured", any([&](const Entry& entry) { return configured(entry).has_value(); })},
-            {"entries", std::move(entries)}};
+            {"entries", std::move(entries)},
+            {"meanings", meanings_.of(object)}};
+  }
+
+  [[nodiscard]] std::string summary_value(const Entry& entry) const {
+    std::string meant = meant_text(device_, entry, entry.default_value);
+    return meant.empty() ? shown_value(entry.default_value, *entry.type) : meant;
   }
 
   /// The default value of an entry with another value, from the network or a DCF.
@@ -187,28 +223,32 @@ class ObjectRows {
     accesses_.emplace(access);
     const std::string comment = object.has_sub_indices() ? comment_before(entry.position) : "";
     const CppType cpp = input_.loaded.names->type_of(object, entry);
-    return {{"sub_id", object.has_sub_indices() ? Json(anchor_of(object, entry)) : Json(nullptr)},
-            {"href", anchor_of(object, entry)},
-            {"sub_index", fmt::format("{:02X}", entry.sub_index)},
-            {"entry_name", entry.name},
-            {"type", entry.type->name},
-            {"octets", entry.octets == 0 ? Json(nullptr) : Json(entry.octets)},
-            {"access", access},
-            {"mapping", mapping_text(entry)},
-            {"mapping_words", shown(mapping_words(entry, mapped_.contains({entry.index, entry.sub_index})))},
-            {"default", shown_value(standard, *entry.type)},
-            {"other_base", shown(other_base(standard, *entry.type))},
-            {"clause", standard ? shown(standard->clause) : Json(nullptr)},
-            {"configured", configured_entry ? Json(shown_value(entry.default_value, *entry.type)) : Json(nullptr)},
-            {"changed", is_changed},
-            {"limits", limits_text(entry)},
-            {"unit", unit_text(entry)},
-            {"cpp", cpp.text()},
-            {"cpp_object", cpp.object},
-            {"cpp_member", shown(cpp.member)},
-            {"entry_line", entry.position.line},
-            {"description", shown(entry.description)},
-            {"entry_comment", shown(comment)}};
+    return {
+        {"sub_id", object.has_sub_indices() ? Json(anchor_of(object, entry)) : Json(nullptr)},
+        {"href", anchor_of(object, entry)},
+        {"sub_index", fmt::format("{:02X}", entry.sub_index)},
+        {"entry_name", entry.name},
+        {"type", entry.type->name},
+        {"octets", entry.octets == 0 ? Json(nullptr) : Json(entry.octets)},
+        {"access", access},
+        {"mapping", mapping_text(entry)},
+        {"mapping_words", shown(mapping_words(entry, mapped_.contains({entry.index, entry.sub_index})))},
+        {"default", shown_value(standard, *entry.type)},
+        {"default_meant", shown(meant_text(device_, entry, standard))},
+        {"other_base", shown(other_base(standard, *entry.type))},
+        {"clause", standard ? shown(standard->clause) : Json(nullptr)},
+        {"configured", configured_entry ? Json(shown_value(entry.default_value, *entry.type)) : Json(nullptr)},
+        {"configured_meant", configured_entry ? shown(meant_text(device_, entry, entry.default_value)) : Json(nullptr)},
+        {"changed", is_changed},
+        {"limits", raw_limits_text(entry)},
+        {"limits_meant", shown(meant_limits(entry))},
+        {"unit", unit_text_of(entry)},
+        {"cpp", cpp.text()},
+        {"cpp_object", cpp.object},
+        {"cpp_member", shown(cpp.member)},
+        {"entry_line", entry.position.line},
+        {"description", shown(entry.description)},
+        {"entry_comment", shown(comment)}};
   }
 
   [[nodiscard]] Json links_of(const Object& object) const {
@@ -219,6 +259,7 @@ class ObjectRows {
 
   const DeviceToDocument& input_;
   const Device& device_;
+  MeaningTables meanings_;
   std::set<std::pair<std::uint16_t, std::uint8_t>> mapped_;  ///< by default PDOs
   std::map<std::string, bool> breaking_;  ///< `6041h` of changed objects, and whether a change breaks anything
   std::set<std::string> types_, accesses_;

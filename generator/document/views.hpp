@@ -2,9 +2,11 @@
 /// template does not find that of an outer section.
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "compare/change.hpp"
 #include "document/document.hpp"
@@ -35,6 +37,27 @@ void add_identity(const DeviceToDocument& input, Json& view);
 
 /// `areas` of the object dictionary with their objects, and the choices of the filters.
 void add_objects(const DeviceToDocument& device, Json& view);
+
+/// What a raw number is multiplied by, and the unit: `× 0.1 °C`, `rpm`.
+[[nodiscard]] std::string unit_text(const Quantity& quantity);
+
+/// The meaning of objects as tables: names of values, drawn bits, states. Each meaning is drawn once, at the first
+/// object that has it; others have a link to it.
+class MeaningTables {
+ public:
+  explicit MeaningTables(const Device& device) : device_{device} {}
+
+  [[nodiscard]] Json of(const Object& object);
+
+ private:
+  [[nodiscard]] Json view_of(const Object& object, const Meaning& meaning, const std::vector<const Entry*>& entries);
+
+  const Device& device_;
+  std::map<const Meaning*, std::string> drawn_;  ///< with the anchor of the entry
+};
+
+/// `error_codes` that the options of the device name, and `profile_codes` of the profiles.
+void add_error_codes(const Device& device, Json& view);
 
 /// `pdo_groups`, with the drawing of each PDO.
 void add_pdos(const DeviceToDocument& input, Json& view);

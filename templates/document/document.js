@@ -45,10 +45,11 @@
     const maxOpened = 20;  /* objects that a search expands, if it finds not more */
     const entryWord = /^(?:0x)?([0-9a-f]{4})h?(?:[:.-](?:0x)?([0-9a-f]{1,2})h?)?$/;
 
-    /* The texts of an object without those that every object has: the kind with its line, and the head of its table. */
+    /* The texts of an object without those that every object has: the kind with its line, and the heads of its tables. */
     const textOf = (object) => {
-      const head = object.querySelector('thead').textContent;
-      return object.textContent.replace(/ [A-Z]+, line \d+/, ' ').replace(head, ' ').toLowerCase();
+      let text = object.textContent.replace(/ [A-Z]+, line \d+/, ' ');
+      for (const head of object.querySelectorAll('thead')) text = text.replace(head.textContent, ' ');
+      return text.toLowerCase();
     };
 
     /* What is searched, read from the page once. */

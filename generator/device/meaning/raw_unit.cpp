@@ -27,8 +27,9 @@ InBaseUnit in_base_unit(const Quantity& quantity) {
 
 std::string raw_unit_text(const Quantity& quantity) {
   if (quantity.is_raw()) return quantity.symbol;
-  std::string text =
-      quantity.scale == Rational{1} && !quantity.symbol.empty() ? quantity.symbol : number_in_unit(quantity.scale, quantity);
+  std::string text = quantity.scale == Rational{1} && !quantity.symbol.empty()
+                         ? quantity.symbol
+                         : number_in_unit(quantity.scale, quantity);
   if (quantity.offset != Rational{0}) text += ", 0 is " + number_in_unit(quantity.offset, quantity);
   return text;
 }

@@ -155,6 +155,20 @@ async function texts(page, [file, ...selectors]) {
   return found;
 }
 
-const commands = { audit, 'audit-expanded': (page, files) => audit(page, files, true), use, drawings, speed, narrow, check, follow, texts };
+// The tables of an object: the caption and its rows; of a drawn word, each row of cells as [label, bits, class].
+async function meaning(page, [file, id]) {
+  const seen = watch(page);
+  await open(page, file);
+  return { seen, tables: await page.evaluate((object) => {
+    const textOf = (one) => one.innerText.trim();
+    const rowOf = (row) => [...row.cells].map((cell) => cell.closest('.bits') && cell.localName === 'td'
+      ? [cell.textContent, cell.colSpan, cell.classList[0]] : textOf(cell));
+    for (const one of document.querySelectorAll(`details[id="${object}"], section[id="${object}"] details`)) one.open = true;
+    return [...document.querySelectorAll(`[id="${object}"] table, section[id="${object}"] table`)].map(
+      (table) => [table.caption ? textOf(table.caption) : '', ...[...table.rows].map(rowOf)]);
+  }, id) };
+}
+
+const commands = { meaning, audit, 'audit-expanded': (page, files) => audit(page, files, true), use, drawings, speed, narrow, check, follow, texts };
 const [chromium, command, ...rest] = process.argv.slice(2);
 console.log(JSON.stringify(await withPage(chromium, (page) => commands[command](page, rest))));
