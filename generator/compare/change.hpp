@@ -13,7 +13,7 @@ namespace edsc {
 /// One difference. On a side without the entry, the position is the whole file.
 struct Change {
   ChangeRule rule;
-  std::string entry;      ///< `6040h:00`, `1018h`, `TPDO 1` or `device`
+  std::string entry;      ///< `6040h:00`, `1018h`, `TPDO 1`, `EMCY 2310h` or `device`
   std::string name;       ///< of the entry; may be empty
   std::string old_value;  ///< empty if there is none
   std::string new_value;

@@ -33,10 +33,17 @@ void walk(const List& before, const List& after, Key key, Visit visit) {
 class DeviceComparison {
  public:
   DeviceComparison(const NamedDevice& before, const NamedDevice& after)
-      : before_{before.device}, after_{after.device}, old_names_{before.names}, new_names_{after.names} {
+      : before_{before.device},
+        after_{after.device},
+        old_names_{before.names},
+        new_names_{after.names},
+        sources_{compared_sources(before_, after_)} {
     for (const Pdo& pdo : before_.pdos) {
-      if (pdo.direction != PdoDirection::receive) continue;
-      for (const PdoEntry& entry : pdo.entries) in_rpdo_.emplace(entry.index, entry.sub_index);
+      const bool is_received = pdo.direction == PdoDirection::receive;
+      for (const PdoEntry& entry : pdo.entries) {
+        in_pdo_.emplace(entry.index, entry.sub_index);
+        if (is_received) in_rpdo_.emplace(entry.index, entry.sub_index);
+      }
     }
   }
 
@@ -46,6 +53,7 @@ class DeviceComparison {
     walk(
         before_.objects, after_.objects, [](const Object& object) { return object.index; },
         [&](const Object* a, const Object* b) { compare_objects(a, b); });
+    compare_error_codes(before_, after_, sources_, changes_);
     compare_pdos(before_, after_, changes_);
     check_revision();
     return std::move(changes_);
@@ -155,6 +163,7 @@ class DeviceComparison {
     }
     if (has_sub_indices) compare_names(entry_label(b->index, b->sub_index), *a, *b);
     compare_entries(*a, *b, in_rpdo_.contains({a->index, a->sub_index}), changes_);
+    compare_meanings(*a, *b, {in_pdo_.contains({a->index, a->sub_index}), sources_}, changes_);
   }
 
   /// Of objects or entries.
@@ -174,7 +183,9 @@ class DeviceComparison {
   const Device& after_;
   const CppNames& old_names_;
   const CppNames& new_names_;
-  std::set<EntryNumber> in_rpdo_;  ///< mapped to RPDOs by default, before the change
+  ComparedSources sources_;
+  std::set<EntryNumber> in_pdo_;   ///< mapped to PDOs by default, before the change
+  std::set<EntryNumber> in_rpdo_;  ///< those of RPDOs
   Changes changes_;
 };
 

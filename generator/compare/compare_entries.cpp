@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "device/cob_id_parameter.hpp"
+#include "device/entry_text.hpp"
 #include "values/value_bytes.hpp"
+#include "values/value_text.hpp"
 
 namespace edsc {
 namespace {
@@ -144,7 +147,7 @@ class EntryComparison {
                                        : ChangeRule{"limit-widened"};
     Change& change =
         add(rule, place_of(old_limit, before_), place_of(new_limit, after_),
-            fmt::format("{} {}", which, value_text(old_limit, *before_.type)), value_text(new_limit, *after_.type));
+            fmt::format("{} {}", which, meant_value_text(old_limit, before_)), meant_value_text(new_limit, after_));
     change.breaks.pdo = rule == ChangeRule{"limit-narrowed"} && in_rpdo_;
   }
 
@@ -155,7 +158,7 @@ class EntryComparison {
       return compare_cob_id(*parameter);
     }
     add(default_change(), place_of(before_.default_value, before_), place_of(after_.default_value, after_),
-        value_text(before_.default_value, *before_.type), value_text(after_.default_value, *after_.type));
+        meant_value_text(before_.default_value, before_), meant_value_text(after_.default_value, after_));
   }
 
   void compare_cob_id(const CobIdParameter& parameter) {
@@ -203,6 +206,18 @@ class EntryComparison {
 
 void compare_entries(const Entry& before, const Entry& after, bool in_rpdo, Changes& changes) {
   EntryComparison{before, after, in_rpdo, changes}.compare();
+}
+
+std::string meant_value_text(const std::optional<Value>& value, const Entry& entry) {
+  std::string text = value_text(value, *entry.type);
+  const bool has_meaning = entry.meaning && (quantity_of(entry) != nullptr || meaning_of_integer(entry) != nullptr);
+  if (!value || value->plus_node_id || !has_meaning) return text;
+  const std::string bytes = bytes_of(*value, *entry.type);
+  const std::span octets{reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
+  std::string meant = value_text(entry, octets);
+  if (meant == value_text(*entry.type, octets) || meant.find(' ') == std::string::npos) return text;
+  const bool is_name = entry.meaning->values || entry.meaning->has_fields();
+  return is_name ? meant : fmt::format("{} ({})", text, meant);
 }
 
 std::string value_text(const std::optional<Value>& value, const DataTypeRow& type) {

@@ -28,6 +28,32 @@ struct CobIdChange {
 /// limits apply to the sender too. The default values of PDO communication and mapping parameters are compared as PDOs.
 void compare_entries(const Entry& before, const Entry& after, bool in_rpdo, Changes& changes);
 
+/// The sources of meanings that are compared. Options, and the profile that they can replace, only if both versions
+/// have options that name something: a DCF without an options file is compared with its EDS by what both files state.
+/// The profile only if it is the same: otherwise the device type has changed.
+struct ComparedSources {
+  bool options, profile;
+
+  [[nodiscard]] bool has(MeaningSource source) const {
+    return source == MeaningSource::eds || (source == MeaningSource::options ? options : profile);
+  }
+};
+[[nodiscard]] ComparedSources compared_sources(const Device& before, const Device& after);
+
+struct MeaningContext {
+  bool in_pdo;  ///< a PDO maps the entry by default
+  ComparedSources sources;
+};
+
+/// Compares units, names of values and bits.
+void compare_meanings(const Entry& before, const Entry& after, const MeaningContext& context, Changes& changes);
+
+/// Compares the names of error codes of EMCY messages.
+void compare_error_codes(const Device& before, const Device& after, const ComparedSources& sources, Changes& changes);
+
+/// A value in EDS spelling, and its meaning: `215 (21.5 °C)`, `1 run`.
+[[nodiscard]] std::string meant_value_text(const std::optional<Value>& value, const Entry& entry);
+
 /// A value in EDS spelling; strings in quotes; `none` if missing.
 [[nodiscard]] std::string value_text(const std::optional<Value>& value, const canopen::DataTypeRow& type);
 
