@@ -21,7 +21,7 @@ void run(const char* address) {
     std::fflush(stdout);
   };
   plant.on_fault = [](const canopen::PlantNode& node, const canopen::PlantFault& fault) {
-    std::fprintf(stderr, "%s\n", fault_text(node, fault, line::Network::places).c_str());
+    std::fprintf(stderr, "%s\n", fault_text(node, fault, line::Network::places, line::Network::errors).c_str());
   };
   bus.run(plant);
 }

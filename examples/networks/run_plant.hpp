@@ -25,7 +25,7 @@ template <class Plant>
 void print_events(Plant& plant) {
   plant.on_booted = [](const canopen::PlantNode& node) { print_line(std::string{node.name} + ": booted"); };
   plant.on_fault = [](const canopen::PlantNode& node, const canopen::PlantFault& fault) {
-    print_line(fault_text(node, fault, Plant::Network::places));
+    print_line(fault_text(node, fault, Plant::Network::places, Plant::Network::errors));
   };
 }
 

@@ -34,9 +34,10 @@ TEST(FourModules, AllNodesAreConfiguredAndStarted) {
   // Manual 003: the modules report each reset.
   std::ranges::sort(bench.faults);
   EXPECT_EQ(bench.faults,
-            (std::vector<std::string>{
-                "analog_inputs: EMCY FF00h: device specific", "analog_outputs: EMCY FF00h: device specific",
-                "digital_inputs: EMCY FF00h: device specific", "digital_outputs: EMCY FF00h: device specific"}));
+            (std::vector<std::string>{"analog_inputs: EMCY FF00h: request to reset node or communication",
+                                      "analog_outputs: EMCY FF00h: request to reset node or communication",
+                                      "digital_inputs: EMCY FF00h: request to reset node or communication",
+                                      "digital_outputs: EMCY FF00h: request to reset node or communication"}));
   for (const char* name : {"digital_outputs", "digital_inputs", "analog_outputs", "analog_inputs"}) {
     EXPECT_EQ(bench.boots[name], 1) << name;
   }

@@ -56,7 +56,8 @@ class PlantBench {
     canopen::VirtualBus::connect(end_, control.plant);
     control.plant.on_booted = [this](const canopen::PlantNode& node) { ++boots[std::string{node.name}]; };
     control.plant.on_fault = [this](const canopen::PlantNode& node, const canopen::PlantFault& fault) {
-      faults.push_back(fault_text(node, fault, decltype(control.plant)::Network::places));
+      using Network = typename decltype(control.plant)::Network;
+      faults.push_back(fault_text(node, fault, Network::places, Network::errors));
     };
     bus.listen([this](const canopen::Frame& frame, canopen::TimePoint) { frames.push_back(frame); });
   }

@@ -4,9 +4,11 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <canopen/emcy/emcy_consumer.hpp>
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -102,8 +104,12 @@ class PlantHeader {
     for (const NetworkNode& node : network_.nodes) {
       ordered_json bytes = configuration_rows(node);
       const bool any = !bytes.empty() && &node != network_.master();
+      ordered_json texts = owner_of_error_texts(node) == &node ? error_text_rows(node) : ordered_json::array();
+      const bool any_error_text = !texts.empty();
       rows.push_back({{"label", label(node)},
                       {"identifier", identifier(node)},
+                      {"any_error_text", any_error_text},
+                      {"error_texts", std::move(texts)},
                       {"device", parts_.devices[position_in_file(node)]},
                       {"node_id", node.node_id},
                       {"pdos", pdo_structs(node)},
@@ -111,6 +117,24 @@ class PlantHeader {
                       {"configuration", std::move(bytes)}});
     }
     return rows;
+  }
+
+  /// The names of error codes that CiA 301 does not have.
+  [[nodiscard]] static ordered_json error_text_rows(const NetworkNode& node) {
+    ordered_json rows = ordered_json::array();
+    for (const ErrorCodeName& one : node.device().error_codes) {
+      if (one.text == canopen::emergency_text(one.code)) continue;
+      rows.push_back({{"code", fmt::format("0x{:04X}", one.code)}, {"text", cpp_string(one.text)}});
+    }
+    return rows;
+  }
+
+  /// The first node with the same device, whose table the others use.
+  [[nodiscard]] const NetworkNode* owner_of_error_texts(const NetworkNode& node) const {
+    const std::string& device = parts_.devices[position_in_file(node)];
+    return std::ranges::find_if(
+        network_.nodes.data(), network_.nodes.data() + network_.nodes.size(),
+        [&](const NetworkNode& one) { return parts_.devices[position_in_file(one)] == device; });
   }
 
   /// The PDOs that are valid and have a layout.
@@ -215,17 +239,28 @@ class PlantHeader {
     const Meaning* const meaning = entry.object->meaning.get();
     const bool has_unit = meaning != nullptr && meaning->quantity && !meaning->quantity->symbol.empty();
     const std::string unit = has_unit ? " in " + raw_unit_text(*meaning->quantity) : "";
+    const std::string values = meaning != nullptr && meaning->values ? ", " + values_text(*meaning->values) : "";
     const bool is_limited = entry.object->low_limit || entry.object->high_limit;
     return {{"name", name},
             {"type", fmt::format("::{}::signals::{}::{}", name_, identifier(node), name)},
             {"comment",
-             cpp_comment(fmt::format("{} {}{}, {}, bits {}..{}", named(*entry.object), entry.object->type->name, unit,
-                                     link_text(link), value.first_bit, value.first_bit + entry.bits - 1U))},
+             cpp_comment(fmt::format("{} {}{}, {}, bits {}..{}{}", named(*entry.object), entry.object->type->name, unit,
+                                     link_text(link), value.first_bit, value.first_bit + entry.bits - 1U, values))},
             {"tpdo", full_name(*link.sender)},
             {"rpdo", full_name(*link.receiver)},
             {"sent", value.sent},
             {"taken", value.taken},
             {"nodiscard", is_limited ? "[[nodiscard]] " : ""}};
+  }
+
+  /// `0 off, 1 heating`; at most eight names.
+  [[nodiscard]] static std::string values_text(const Enumeration& values) {
+    constexpr std::size_t max_names = 8;
+    std::string text;
+    for (const NamedValue& one : std::span{values.values}.first(std::min(max_names, values.values.size()))) {
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", one.value, one.name);
+    }
+    return values.values.size() > max_names ? text + ", ..." : text;
   }
 
   [[nodiscard]] ordered_json network_view() const {
@@ -235,9 +270,14 @@ class PlantHeader {
     ordered_json received = ordered_json::array();
     ordered_json sent = ordered_json::array();
     ordered_json places = ordered_json::array();
+    ordered_json errors = ordered_json::array();
     for (const NetworkNode& node : network_.nodes) {
       if (&node == master) continue;
       add_places(places, node);
+      const NetworkNode& owner = *owner_of_error_texts(node);
+      if (!error_text_rows(owner).empty()) {
+        errors.push_back({{"node", identifier(node)}, {"texts_of", identifier(owner)}});
+      }
       Signals signals = signals_of(node);
       for (const ordered_json& one : signals.received) received.push_back({{"type", one["type"]}});
       for (const ordered_json& one : signals.sent) sent.push_back({{"type", one["type"]}});
@@ -257,6 +297,8 @@ class PlantHeader {
             {"slaves", with_separators(std::move(slaves), ", ")},
             {"place_count", places.size()},
             {"places", std::move(places)},
+            {"error_count", errors.size()},
+            {"errors", std::move(errors)},
             {"received_list", with_separators(std::move(received), ", ")},
             {"sent_list", with_separators(std::move(sent), ", ")}};
   }

@@ -318,6 +318,83 @@ class Generate(unittest.TestCase):
             for message in messages:
                 self.assertIn(message, found)
 
+    def write_options(self, name: str, **options: object) -> None:
+        shutil.copy(self.folder / "node.eds", self.folder / f"{name}.eds")
+        (self.folder / f"{name}.options.json").write_text(json.dumps(options))
+
+    def run_program(self, text: str) -> str:
+        program = self.folder / "program"
+        subprocess.run(["c++", "-std=c++20", "-Wall", "-Wextra", "-Werror", "-I", SOURCE_DIR / "runtime/include", "-I", self.out,
+                        "-x", "c++", "-", "-o", program], input=text, text=True, check=True)
+        return subprocess.run([program], capture_output=True, text=True, check=True).stdout
+
+    def test_an_emcy_has_the_name_of_the_device(self) -> None:
+        self.write_options("pump", meaning={"emcy": {"2310h": "motor current", "FF01h": 'door "A" open'}})
+        text = PLANT.replace('"a": {"node_id": 1, "eds": "node.eds"', '"a": {"node_id": 1, "eds": "pump.eds"')
+        self.generate(text)
+        found = self.run_program("""
+            #include <canopen/host/plant_text.hpp>
+            #include <plant.hpp>
+            int main() {
+              for (const canopen::PlantNode& node : plant::Network::nodes) {
+                for (const unsigned code : {0x2310U, 0xFF01U, 0x8130U, 0xFF02U}) {
+                  canopen::PlantFault fault{};
+                  fault.kind = canopen::PlantFaultKind::emergency;
+                  fault.emergency.code = static_cast<std::uint16_t>(code);
+                  std::puts(fault_text(node, fault, plant::Network::places, plant::Network::errors).c_str());
+                }
+              }
+            }""")
+        self.assertEqual(found.splitlines(), [
+            "a: EMCY 2310h: motor current", 'a: EMCY FF01h: door "A" open', "a: EMCY 8130h: life guard or heartbeat error",
+            "a: EMCY FF02h: device specific", "b: EMCY 2310h: current, device output side", "b: EMCY FF01h: device specific",
+            "b: EMCY 8130h: life guard or heartbeat error", "b: EMCY FF02h: device specific"])
+
+    def test_nodes_of_one_file_share_the_names_of_their_error_codes(self) -> None:
+        self.write_options("pump", meaning={"emcy": {"FF01h": "door open"}})
+        self.generate(PLANT.replace("node.eds", "pump.eds"))
+        header = (self.out / "plant.hpp").read_text()
+        self.assertEqual(header.count('{ 0xFF01, "door open" }'), 1)
+        self.assertEqual(re.findall(r"\{ (\w+)::node_id, (\w+)::error_texts \}", header), [("a", "a"), ("b", "a")])
+
+    UNITS = """{
+      "bit_rate": 500, "sync": {"producer": "m", "period_us": 10000},
+      "nodes": {"m": {"node_id": 127, "master": true, "eds": "own.eds"},
+                "a": {"node_id": 1, "eds": "pump.eds", "heartbeat_ms": 50}},
+      "signals": [{"from": "a", "object": "speed", "to": "m.target_speed", "every_ms": 10},
+                  {"from": "m", "object": "position", "to": "a.target_position", "every_ms": 10}]
+    }"""
+
+    def write_units(self, of_master: dict[str, str]) -> None:
+        meaning = {"2000h": {"unit": "V", "scale": "1/100"}, "2003h": {"values": {"0": "home", "1": "away", "-1": "back"}}}
+        self.write_options("pump", typed_values=True, meaning=meaning)
+        own = self.folder / "own.eds"
+        self.write_options("own", typed_values=True, meaning={"2002h": of_master})
+        own.write_text(own.read_text().replace("Unit=inc", "Unit="))
+
+    def test_a_signal_has_the_unit_and_names_of_the_node(self) -> None:
+        self.write_units({"unit": "mV", "scale": "10"})
+        self.generate(self.UNITS)
+        header = (self.out / "plant.hpp").read_text()
+        self.assertIn('/// 2000h:00 "Speed" UNSIGNED16 in 0.01 V, a TPDO 1 to m RPDO 1', header)
+        self.assertRegex(header, r'2003h:00 "Target position" INTEGER32.*, -1 back, 0 home, 1 away')
+        found = self.run_program("""
+            #include <canopen/plant/plant.hpp>
+            #include <cstdio>
+            #include <plant.hpp>
+            #include <type_traits>
+            namespace signals = plant::signals::a;
+            static_assert(std::is_same_v<signals::target_position::type, plant::a::od::target_position::type>);
+            static_assert(std::is_same_v<signals::speed::type, plant::m::od::target_speed::type>);
+            int main() { std::printf("%g\\n", canopen::from_raw<signals::speed::type>(150).in<canopen::unit::volt>()); }""")
+        self.assertEqual(found, "1.5\n")
+
+    def test_a_signal_in_another_scale_is_a_warning_and_does_not_compile(self) -> None:
+        self.write_units({"unit": "mV"})
+        found = self.generate(self.UNITS)
+        self.assertRegex(found.stderr + found.stdout, r"m RPDO 1 entry 1, 2002h:00 .* is in mV, but a TPDO 1 sends 2000h:00 .* in 0\.01 V")
+        self.assertIn("has another unit, scale or offset", self.compile("plant.hpp", fails=True))
+
     def compile(self, header: str, fails: bool = False) -> str:
         result = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow",
                                  "-Wconversion", "-Wsign-conversion",

@@ -112,6 +112,21 @@ def bytes_of_wide(count: int) -> list[str]:
     return [f"2000h:{sub:02X}" for sub in range(1, min(count, 254) + 1)] + ["2001h"] * (count > 254)
 
 
+UNITS = {  # name of the node: the keys of 2000h and 2002h
+    "v": ("Unit=V\nFactor=0.001", "Unit=V"), "mv": ("Unit=V", "Unit=mV"), "tenths": ("Unit=V", "Unit=V\nFactor=0.1"),
+    "amps": ("Unit=A", "Unit=A\nFactor=0.001"), "plain": ("Unit=V", ""),
+}
+IN_UNITS = {name: {"node_id": 10 + i, "eds": f"{name}.eds", "heartbeat_ms": 100} for i, name in enumerate(UNITS)}
+
+
+def sheet_in_units(sent: str, taken: str) -> str:
+    """node.eds with other units of 2000h and 2002h."""
+    text = (Path(__file__).parent / "node.eds").read_text(encoding="utf-8")
+    for section, keys in (("2000", sent), ("2002", taken)):
+        text = re.sub(rf"(\[{section}\][^\[]*)Unit=rpm", lambda found, keys=keys: found[1] + keys, text)
+    return text
+
+
 SPEED = ("a", "2000h", "b.2002h", "m")
 NODE_A = {"node_id": 1, "eds": "node.eds", "heartbeat_ms": 100}
 NETWORKS = {  # name: (network, errors and warnings as severity and rule)
@@ -186,6 +201,13 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
                 **{f"w{node}": wide(node) for node in range(10, 26)}), [("error", "network-signal")]),
     "second_master_without_a_file": (network(m2={"node_id": 126, "master": True}), [("warning", "network-nmt-master")]),
     "node_without_a_file": (network(x={"node_id": 4}), [("error", "network-file")]),
+    "units_of_a_signal_with_the_same_raw_numbers": (network(signal("v", "2000h", "mv.2002h"), **IN_UNITS), []),
+    "units_of_a_signal_with_another_scale": (network(signal("v", "2000h", "tenths.2002h"), **IN_UNITS),
+                                             [("warning", "network-pdo-unit")]),
+    "units_of_a_signal_of_another_dimension": (network(signal("v", "2000h", "amps.2002h"), **IN_UNITS),
+                                               [("warning", "network-pdo-unit")]),
+    "unit_of_a_signal_on_one_side": (network(signal("v", "2000h", "plain.2002h"), **IN_UNITS), []),
+    "unit_of_a_signal_to_a_master_that_copies_it": (network(signal("v", "2000h", "m"), **IN_UNITS), []),
     "signals_of_an_unreadable_node": (
         network(signal("x", "2000h", "m"), signal("a", "2000h", "x.2002h"), x={"node_id": 4, "eds": "missing.eds"}),
         [("error", "network-file")]),
@@ -245,6 +267,8 @@ def main() -> int:
         (folder / "valid.eds").write_text(sheet_with("1400sub1", "$NODEID+0x200"))
         (folder / "slow.eds").write_text(sheet_with("1800sub3", "200"))
         (folder / "wide.eds").write_text(wide_sheet())
+        for name, units in UNITS.items():
+            (folder / f"{name}.eds").write_text(sheet_in_units(*units))
         (folder / "short.eds").write_text(re.sub(r"(\[1017\][^\[]*DataType=)0x0006", r"\g<1>0x0005", sheet_with("1017", "0")))
         for name, (text, code, expected) in TEXTS.items():
             got_code, found = check(edsc, folder, name, text)

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
+#include <canopen/od/quantity.hpp>
 #include <canopen/pdo/pdo_compatible.hpp>
 #include <canopen/pdo/pdo_list.hpp>
 
 #include <cstdint>
+#include <ratio>
 
 #include <sample/pdo.hpp>
 
@@ -62,6 +64,21 @@ TEST(CompatiblePdos, HaveEntriesOfTheSameKind) {
   using Text = canopen::FixedString<Sent<1, canopen::VisibleString<8>>, 4>;
   EXPECT_FALSE((compatible<Tpdo<Text>, Rpdo<Received<1, std::uint32_t>>>));
   EXPECT_TRUE((compatible<Tpdo<Text>, Rpdo<canopen::FixedString<Received<1, canopen::OctetString<4>>, 4>>>));
+}
+
+TEST(CompatiblePdos, HaveTheSameRawNumbersInAnyUnitOfADimension) {
+  namespace unit = canopen::unit;
+  using Volts = canopen::Quantity<std::int16_t, unit::volt, std::ratio<1, 100>, std::ratio<0>>;
+  using TensOfMillivolts = canopen::Quantity<std::int16_t, unit::millivolt, std::ratio<10>, std::ratio<0>>;
+  using Millivolts = canopen::Quantity<std::int16_t, unit::millivolt, std::ratio<1>, std::ratio<0>>;
+  using Celsius = canopen::Quantity<std::int16_t, unit::degree_celsius, std::ratio<1>, std::ratio<0>>;
+  using Kelvin = canopen::Quantity<std::int16_t, unit::kelvin, std::ratio<1>, std::ratio<27315, 100>>;
+  using AbsoluteKelvin = canopen::Quantity<std::int16_t, unit::kelvin, std::ratio<1>, std::ratio<0>>;
+  EXPECT_TRUE((compatible<Tpdo<Sent<1, Volts, 16>>, Rpdo<Received<1, TensOfMillivolts, 16>>>));
+  EXPECT_FALSE((compatible<Tpdo<Sent<1, Volts, 16>>, Rpdo<Received<1, Millivolts, 16>>>));
+  EXPECT_TRUE((compatible<Tpdo<Sent<1, Celsius, 16>>, Rpdo<Received<1, Kelvin, 16>>>));
+  EXPECT_FALSE((compatible<Tpdo<Sent<1, Celsius, 16>>, Rpdo<Received<1, AbsoluteKelvin, 16>>>));
+  EXPECT_FALSE((compatible<Tpdo<Sent<1, Celsius, 16>>, Rpdo<Received<1, Volts, 16>>>));
 }
 
 TEST(CompatiblePdos, MayDifferWhereTheConsumerHasADummy) {

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "canopen/emcy/emcy_consumer.hpp"
 #include "canopen/host/master_text.hpp"
+#include "canopen/plant/plant_errors.hpp"
 #include "canopen/plant/plant_fault.hpp"
 #include "canopen/plant/plant_node.hpp"
 #include "canopen/plant/plant_place.hpp"
@@ -15,9 +15,11 @@ namespace canopen {
 
 /// `axis1: lost, last state operational`, `axis1: product code 1018h:02 is not the one of 1F86h: expected ...`; a node
 /// that the network file does not list is `node 9`. With the `places` of the network, a failed boot-up begins with the
-/// line that it contradicts: `eds/drive.eds:120: axis1: ...`.
+/// line that it contradicts: `eds/drive.eds:120: axis1: ...`. With its `errors`, an EMCY has the name that the device
+/// gives to the error code: `axis1: EMCY 2310h: continuous over current`.
 [[nodiscard]] inline std::string fault_text(const PlantNode& node, const PlantFault& fault,
-                                            std::span<const PlantPlace> places = {}) {
+                                            std::span<const PlantPlace> places = {},
+                                            std::span<const PlantErrors> errors = {}) {
   const std::string who = node.name.empty() ? "node " + std::to_string(node.node_id.value()) : std::string{node.name};
   if (fault.kind == PlantFaultKind::boot) {
     const PlantPlace* const place = find_place(places, node.node_id, fault.boot);
@@ -32,7 +34,7 @@ namespace canopen {
     case PlantFaultKind::emergency: {
       char code[8];
       std::snprintf(code, sizeof code, " %04Xh", unsigned{fault.emergency.code});
-      return text + code + ": " + std::string{emergency_text(fault.emergency.code)};
+      return text + code + ": " + std::string{error_text(errors, node.node_id, fault.emergency.code)};
     }
     case PlantFaultKind::pdo_missing:
     case PlantFaultKind::pdo_too_short: return text + ": RPDO " + std::to_string(fault.rpdo) + " of the master";

@@ -9,6 +9,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "canopen/base/fraction.hpp"
 #include "canopen/base/label.hpp"
 #include "canopen/base/verdict.hpp"
 #include "canopen/od/typed_value.hpp"
@@ -38,14 +39,31 @@ template <class Type>
   }
 }
 
-/// Whether two quantities have one unit, scale and offset. A value without unit is what its consumer takes it for.
+/// Whether each raw number is the same physical value in both units of a dimension: 0.001 s and ms.
+template <class Unit, class Scale, class Offset, class OtherUnit, class OtherScale, class OtherOffset>
+[[nodiscard]] constexpr bool has_same_raw_numbers() {
+  if constexpr (std::is_same_v<Unit, OtherUnit>) {
+    return std::is_same_v<Scale, OtherScale> && std::is_same_v<Offset, OtherOffset>;
+  } else if constexpr (Unit::row.dimension != OtherUnit::row.dimension) {
+    return false;
+  } else if constexpr (!is_exact_conversion(Unit::row, OtherUnit::row)) {
+    return false;
+  } else {
+    constexpr Fraction scale{Scale::num, Scale::den}, offset{Offset::num, Offset::den};
+    constexpr Fraction other_scale{OtherScale::num, OtherScale::den}, other_offset{OtherOffset::num, OtherOffset::den};
+    return convert(offset, Unit::row, OtherUnit::row) == other_offset &&
+           convert(scale + offset, Unit::row, OtherUnit::row) == other_scale + other_offset;
+  }
+}
+
+/// Whether two quantities have the same raw numbers. A value without unit is what its consumer takes it for.
 template <class One, class Other>
 inline constexpr bool is_same_quantity = true;
 template <class One, class Unit, class Scale, class Offset, class Other, class OtherUnit, class OtherScale,
           class OtherOffset>
 inline constexpr bool
     is_same_quantity<Quantity<One, Unit, Scale, Offset>, Quantity<Other, OtherUnit, OtherScale, OtherOffset>> =
-        std::is_same_v<Unit, OtherUnit>&& std::is_same_v<Scale, OtherScale>&& std::is_same_v<Offset, OtherOffset>;
+        has_same_raw_numbers<Unit, Scale, Offset, OtherUnit, OtherScale, OtherOffset>();
 
 enum class Link : std::uint8_t { fits, too_short, nothing_begins_there, other_length, other_kind, other_unit };
 
