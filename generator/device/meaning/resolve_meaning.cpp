@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "device/meaning/profile_scales.hpp"
 #include "device/meaning/profiles.hpp"
 #include "diagnostics/quote.hpp"
 #include "text/ascii.hpp"
@@ -397,6 +398,7 @@ std::optional<Quantity> quantity_of_keys(const EntryDescription& description, Di
 
 void resolve_meaning(Device& device, const Options& options, Diagnostics& diagnostics) {
   Resolver{device, options, diagnostics}.resolve();
+  resolve_profile_scales(device);
 }
 
 }  // namespace edsc
