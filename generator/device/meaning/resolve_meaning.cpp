@@ -15,6 +15,7 @@
 #include "eds/number.hpp"
 #include "text/ascii.hpp"
 #include "text/snake_case.hpp"
+#include "values/little_endian.hpp"
 
 namespace edsc {
 namespace {
@@ -397,7 +398,8 @@ std::optional<Quantity> quantity_of_keys(const EntryDescription& description, Di
   return is_scale && is_offset ? std::optional{quantity} : std::nullopt;
 }
 
-std::optional<Enumeration> names_of_values(const EntryDescription& description, const canopen::DataTypeRow& type) {
+std::optional<Enumeration> names_of_values(const EntryDescription& description, const canopen::DataTypeRow& type,
+                                           Diagnostics& diagnostics) {
   const bool is_signed = type.kind == canopen::DataClass::signed_integer;
   if (!is_signed && type.kind != canopen::DataClass::unsigned_integer) return std::nullopt;
   Enumeration names;
@@ -413,6 +415,13 @@ std::optional<Enumeration> names_of_values(const EntryDescription& description, 
     named.value = static_cast<std::int64_t>(is_negative ? 0 - *magnitude : *magnitude);
     named.source = MeaningSource::eds;
     named.position = one.value.position;
+    const std::uint64_t bits = static_cast<std::uint64_t>(named.value) & low_bits(type.bits);
+    if ((is_signed ? sign_extended(bits, type.bits) : static_cast<std::int64_t>(bits)) != named.value) {
+      diagnostics.warning(
+          "meaning-value", named.position,
+          fmt::format("{} = {} is not a value of {}; it is left out", quote(named.name), named.value, type.name));
+      continue;
+    }
     const bool is_new = std::ranges::none_of(
         names.values, [&](const NamedValue& other) { return other.value == named.value || other.name == named.name; });
     if (is_new) names.values.push_back(std::move(named));

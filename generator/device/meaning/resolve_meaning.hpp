@@ -13,9 +13,9 @@ namespace edsc {
 [[nodiscard]] std::optional<Quantity> quantity_of_keys(const EntryDescription& description, Diagnostics& diagnostics);
 
 /// The names of values that an XDD states, as in C++: `Velocity control` is velocity_control. The first one of a number
-/// or name is used. Nothing for a type that is not an integer.
+/// or name is used; a number outside the type is reported. Nothing for a type that is not an integer.
 [[nodiscard]] std::optional<Enumeration> names_of_values(const EntryDescription& description,
-                                                         const canopen::DataTypeRow& type);
+                                                         const canopen::DataTypeRow& type, Diagnostics& diagnostics);
 
 /// Gives each entry its meaning: from the options, the keys of the EDS, and the profiles of the device, in this order.
 /// Reports options that name objects which the device does not have, and options that contradict the EDS.

@@ -115,7 +115,7 @@ std::optional<Entry> EntryResolver::resolve(const EntryDescription& description,
   entry.offset = description.offset.text;
   entry.description = description.description.text;
   auto quantity = quantity_of_keys(description, diagnostics_);
-  auto names = description.value_names.empty() ? std::nullopt : names_of_values(description, *type.row);
+  auto names = description.value_names.empty() ? std::nullopt : names_of_values(description, *type.row, diagnostics_);
   if (quantity || names) {
     Meaning meaning;
     meaning.quantity = std::move(quantity);

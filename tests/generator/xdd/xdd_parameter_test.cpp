@@ -111,21 +111,23 @@ TEST(XddParameter, FollowsEnumsAndDerivedTypes) {
 }
 
 TEST(XddParameter, NamesTheValuesOfAnEnum) {
-  const ReadXdd read(
-      Profile{referring_object,
-              "<dataTypeList><enum uniqueID='e'><SINT/><enumValue value='-1'><label lang='en'>Homing run"
-              "</label></enumValue><enumValue value='3'><label lang='de'>Drehzahl</label><label lang='en'>"
-              "Velocity</label></enumValue><enumValue value='4'/></enum></dataTypeList>" +
-                  parameter("<dataTypeIDRef uniqueIDRef='e'/>"),
-              "", ""});
+  const ReadXdd read(Profile{
+      referring_object,
+      "<dataTypeList><enum uniqueID='e'><SINT/><enumValue value='-1'><label lang='en'>Homing run"
+      "</label></enumValue><enumValue value='3'><label lang='de'>Drehzahl</label><label lang='en'>"
+      "Velocity</label></enumValue><enumValue value='4'/><enumValue value='300'><label>Far</label></enumValue></enum></dataTypeList>" +
+          parameter("<dataTypeIDRef uniqueIDRef='e'/>"),
+      "", ""});
   EXPECT_EQ(findings(read.diagnostics), Findings{});
-  const auto names = names_of_values(read.object(), *canopen::find_data_type(2));
+  Diagnostics diagnostics;
+  const auto names = names_of_values(read.object(), *canopen::find_data_type(2), diagnostics);
   ASSERT_TRUE(names.has_value());
   ASSERT_EQ(names->values.size(), 2U);
   EXPECT_EQ(names->values[0].value, -1);
   EXPECT_EQ(names->values[0].name, "homing_run");
   EXPECT_EQ(names->values[1].value, 3);
   EXPECT_EQ(names->values[1].name, "velocity");
+  EXPECT_EQ(findings(diagnostics).size(), 1U) << "300 is not an INTEGER8";
 }
 
 TEST(XddParameter, NamesTheAllowedValues) {
@@ -133,7 +135,8 @@ TEST(XddParameter, NamesTheAllowedValues) {
                              parameter("<USINT/><allowedValues><value value='0'><label lang='en'>Off</label></value>"
                                        "<value value='1'><label lang='en'>On</label></value></allowedValues>"),
                              "", ""});
-  const auto names = names_of_values(read.object(), *canopen::find_data_type(5));
+  Diagnostics diagnostics;
+  const auto names = names_of_values(read.object(), *canopen::find_data_type(5), diagnostics);
   ASSERT_TRUE(names.has_value());
   EXPECT_EQ(names->values.at(1).name, "on");
 }
