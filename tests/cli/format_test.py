@@ -224,7 +224,18 @@ class FromXdd(CommandLine):
         self.assertNotIn("ParameterValue", text)
         self.assertIn("DeviceIdentity/deviceFamily cannot be expressed in the EDS; it is left out", made.stderr)
         self.assertIn("the attribute selfStartingDevice of CANopenGeneralFeatures cannot be expressed", made.stderr)
-        self.assertIn("parameter/unit cannot be expressed", made.stderr)
+        self.assertNotIn("parameter/unit", made.stderr)
+
+    def test_writes_the_unit_as_keys(self) -> None:
+        empty = '<unit multiplier="1"/>'
+        text = XDD.read_text(encoding="utf-8")
+        self.assertEqual(text.count(empty), 1)
+        unit = '<unit multiplier="0.1"><label lang="en">mm</label></unit>'
+        made = self.same_device(self.write("speed.xdd", text.replace(empty, unit)), ".eds")
+        self.assertNotIn("parameter/unit", made.stderr)
+        written = (self.folder / "speed.eds").read_text()
+        self.assertIn("Unit=mm", written)
+        self.assertIn("Factor=0.1", written)
 
     def test_gives_an_array_the_keys_of_cia_306_only(self) -> None:
         """Other loaders of EDS files reject a DataType or an AccessType beside SubNumber."""
