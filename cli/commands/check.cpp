@@ -37,6 +37,7 @@ struct Settings {
   std::optional<std::uint8_t> node_id;
   bool strict = false;
   bool keep_going = false;
+  bool all = false;
   bool list_rules = false;
   bool list_options = false;
   std::string explained_rule;
@@ -120,7 +121,7 @@ int check(const Settings& settings) {
     return exit_wrong_usage;
   }
   int exit_code = exit_fine;
-  FindingsReport report{settings.format, settings.color};
+  FindingsReport report{settings.format, settings.color, settings.all};
   for (const std::string& path : settings.paths) {
     Diagnostics diagnostics;
     if (settings.strict) diagnostics.treat_warnings_as_errors();
@@ -157,6 +158,7 @@ void add_check_options(Command command, int& exit_code) {
       .one_value_each()
       .check(check_rule);
   command.add_flag("--keep-going", settings.keep_going, keep_going_help);
+  command.add_flag("--all", settings.all, all_findings_help);
   command.add_flag("--strict", settings.strict, "warnings count as errors; notes do not");
   command.add_flag("--list-rules", settings.list_rules, "list the rules and end");
   command.add_flag("--list-options", settings.list_options, "list the members of an options file and end");

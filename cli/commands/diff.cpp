@@ -57,7 +57,7 @@ std::unique_ptr<LoadedDevice> reported(std::unique_ptr<LoadedDevice> loaded, con
 
 std::unique_ptr<LoadedDevice> load(const std::string& path, const Settings& settings) {
   Diagnostics diagnostics;
-  diagnostics.drop_notes();
+  diagnostics.limit_notes(Notes::none);
   LoadSettings load{path, "", "", settings.node_id};
   load.keep_going = settings.keep_going;
   auto loaded = load_device(load, diagnostics);
@@ -67,7 +67,7 @@ std::unique_ptr<LoadedDevice> load(const std::string& path, const Settings& sett
 std::unique_ptr<LoadedDevice> load_committed(GitFile committed, const std::string& revision, const std::string& path,
                                              const Settings& settings) {
   Diagnostics diagnostics;
-  diagnostics.drop_notes();
+  diagnostics.limit_notes(Notes::none);
   LoadSettings load{path, "", "", settings.node_id};
   load.keep_going = settings.keep_going;
   auto loaded = load_git_device(std::move(committed), revision, load, diagnostics);

@@ -44,7 +44,7 @@ DocumentFormat format_of(const Settings& settings) {
 /// The older version, and the files it was read from. Ends the command if it has errors, which are printed.
 std::unique_ptr<LoadedDevice> load_older(const Settings& settings, std::vector<std::string>& inputs) {
   Diagnostics diagnostics;
-  diagnostics.drop_notes();
+  diagnostics.limit_notes(Notes::none);
   LoadSettings load = settings.load;
   std::unique_ptr<LoadedDevice> older;
   if (names_git_revision(settings.against)) {

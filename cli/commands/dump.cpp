@@ -35,7 +35,7 @@ bool is_incomplete(const Diagnostics& diagnostics) {
 
 int dump(const Settings& settings) {
   Diagnostics diagnostics;
-  diagnostics.drop_notes();
+  diagnostics.limit_notes(Notes::none);
   LoadSettings load = settings.load;
   load.check = false;
   const auto loaded = load_device(load, diagnostics);

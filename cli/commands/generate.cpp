@@ -156,15 +156,16 @@ constexpr const char* keep_going_hint =
 
 /// Whether each finding is listed with its place.
 bool lists_all(const Diagnostics& diagnostics) {
-  return diagnostics.omitted().empty() &&
-         std::ranges::none_of(diagnostics.all(), [](const Diagnostic& one) { return one.unnamed > 0; });
+  return diagnostics.omitted().empty() && std::ranges::none_of(diagnostics.all(), [](const Diagnostic& one) {
+           return one.places > Diagnostic::max_places || one.follows_from;
+         });
 }
 
 int generate(const Settings& settings) {
   if (settings.output.empty() && settings.dbc.empty()) throw_required("--output or --dbc");
   if (settings.output.empty() && !settings.depfile.empty()) throw_requires("--depfile", "--output");
   Diagnostics diagnostics;
-  diagnostics.drop_notes();
+  diagnostics.limit_notes(Notes::of_names);
   const auto loaded = load_device(settings.load, diagnostics);
   std::vector<OutputFile> files;
   std::vector<std::string> inputs;

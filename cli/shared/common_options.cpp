@@ -22,8 +22,8 @@ bool ColorOption::on(std::FILE* stream) const {
   return is_terminal(stream) && std::getenv("NO_COLOR") == nullptr;
 }
 
-void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color, bool with_allowed) {
-  print_text(stream, diagnostics, color.on(stream), with_allowed);
+void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color) {
+  print_text(stream, diagnostics, {.colour = color.on(stream)});
 }
 
 void add_options_option(Command command, std::string& path) {

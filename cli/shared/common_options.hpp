@@ -35,12 +35,15 @@ struct ColorOption {
   [[nodiscard]] bool on(std::FILE* stream) const;
 };
 
-/// Prints findings as text to a stream; `with_allowed` adds the number of allowed findings.
-void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color,
-                    bool with_allowed = false);
+/// Prints findings as text to a stream.
+void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color);
 
 /// `--options FILE` of a device.
 void add_options_option(Command command, std::string& path);
+
+/// Help text of `--all`.
+inline constexpr const char* all_findings_help =
+    "list the findings that follow from others too, and all places of each cause";
 
 /// Help text of `--keep-going`.
 inline constexpr const char* keep_going_help =

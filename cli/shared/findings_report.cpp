@@ -14,15 +14,17 @@ namespace edsc {
 
 std::string url_of(const Rule& rule) { return fmt::format("{}rules.md#{}", EDSC_DOCS_URL, rule.id); }
 
-FindingsReport::FindingsReport(std::string format, const ColorOption& color)
+FindingsReport::FindingsReport(std::string format, const ColorOption& color, bool all)
     : format_{std::move(format)},
       color_{color},
+      all_{all},
       sarif_{EDSC_VERSION, check_rules, url_of},
       json_{{"version", 1},
             {"diagnostics", nlohmann::json::array()},
             {"allowed_diagnostics", nlohmann::json::array()},
             {"suppressed", nlohmann::json::array()},
             {"left_out", nlohmann::json::array()},
+            {"causes", 0},
             {"errors", 0},
             {"warnings", 0},
             {"notes", 0},
@@ -30,7 +32,7 @@ FindingsReport::FindingsReport(std::string format, const ColorOption& color)
 
 void FindingsReport::add(const Diagnostics& diagnostics) {
   if (format_ == "text") {
-    print_findings(stdout, diagnostics, color_, true);
+    print_text(stdout, diagnostics, {.colour = color_.on(stdout), .of_check = true, .all = all_});
   } else if (format_ == "sarif") {
     sarif_.add(diagnostics);
   } else {
@@ -56,10 +58,15 @@ void FindingsReport::finish() const {
 }
 
 void FindingsReport::add_json(const nlohmann::json& one) {
-  for (const char* list : {"diagnostics", "allowed_diagnostics", "suppressed"}) {
+  const std::size_t listed_before = json_["diagnostics"].size();
+  for (const nlohmann::json& one_finding : one["diagnostics"]) {
+    nlohmann::json& row = json_["diagnostics"].emplace_back(one_finding);
+    if (row.contains("follows_from")) row["follows_from"] = row["follows_from"].get<std::size_t>() + listed_before;
+  }
+  for (const char* list : {"allowed_diagnostics", "suppressed"}) {
     for (const auto& row : one[list]) json_[list].push_back(row);
   }
-  for (const char* count : {"errors", "warnings", "notes", "allowed"}) {
+  for (const char* count : {"causes", "errors", "warnings", "notes", "allowed"}) {
     json_[count] = json_[count].get<std::size_t>() + one[count].get<std::size_t>();
   }
 }

@@ -18,8 +18,8 @@ namespace edsc {
 /// Text is printed at once, JSON and SARIF by finish().
 class FindingsReport {
  public:
-  /// `format` is `text`, `json` or `sarif`.
-  FindingsReport(std::string format, const ColorOption& color);
+  /// `format` is `text`, `json` or `sarif`. `all`: the text has findings that follow from others, and all places.
+  FindingsReport(std::string format, const ColorOption& color, bool all);
 
   void add(const Diagnostics& diagnostics);
 
@@ -36,6 +36,7 @@ class FindingsReport {
 
   std::string format_;
   const ColorOption& color_;
+  bool all_;
   SarifLog sarif_;
   nlohmann::json json_;
 };

@@ -37,7 +37,7 @@ std::string not_compared_text(const std::string& path, const std::vector<NotComp
 
 std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uint8_t node) {
   Diagnostics diagnostics;
-  diagnostics.drop_notes();
+  diagnostics.limit_notes(Notes::none);
   LoadSettings settings;
   settings.path = path;
   settings.node_id = node;

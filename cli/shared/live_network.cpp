@@ -44,7 +44,7 @@ void add_live_network_options(Command command, LiveNetworkSettings& settings) {
 
 LiveNetwork load_live_network(const LiveNetworkSettings& settings) {
   Diagnostics diagnostics;
-  diagnostics.drop_notes();
+  diagnostics.limit_notes(Notes::none);
   LiveNetwork live{load_network(settings.path, diagnostics), {}};
   const Network& network = live.loaded->network;
   if (!live.loaded->unreadable) check_network(network, diagnostics);

@@ -99,7 +99,8 @@ class Completion {
     }
     diagnostics_.warning("sub-index-0-value", count.default_value->position,
                          fmt::format("{} is {}, but the highest sub-index described is {}; using {}", named(count),
-                                     count.default_value->bits, highest, highest));
+                                     count.default_value->bits, highest, highest),
+                         {}, fmt::format("{:+}", static_cast<std::int64_t>(count.default_value->bits) - highest));
     set(count, highest, sub_index_0_clause);
   }
 
@@ -138,7 +139,8 @@ class Completion {
     } else {
       diagnostics_.warning("default-sdo-cob-id", value->position,
                            fmt::format("{} is {}, but that of the default SDO is {}; using that ({})", named(entry),
-                                       spelled(*value), spelled(own), by(own.clause)));
+                                       spelled(*value), spelled(own), by(own.clause)),
+                           {}, "CAN-IDs");
     }
     entry.default_value = std::move(own);
   }

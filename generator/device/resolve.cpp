@@ -15,6 +15,7 @@
 #include "device/pdo/resolve_pdos.hpp"
 #include "device/resolve_information.hpp"
 #include "device/stored_eds.hpp"
+#include "device/types/shifted_types.hpp"
 #include "device/types/type_table.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
@@ -39,6 +40,7 @@ class Resolver {
         device_.dummies.push_back(static_cast<std::uint16_t>(dummy.number));
       }
     }
+    report_shifted_types(sheet_, diagnostics_);
     resolve_objects();
     complete_device(device_, options_, diagnostics_);
     check_option_keys();

@@ -13,7 +13,26 @@ bool is_before(const SheetPart& a, const SheetPart& b) {
   return a.line != b.line ? a.line < b.line : a.column < b.column;
 }
 
+/// The part that contains a position, or null.
+const SheetPart* part_at(const SheetOutline& outline, const Position& position) {
+  const auto next = std::ranges::upper_bound(outline.parts, SheetPart{position.line, position.column}, is_before);
+  return next == outline.parts.begin() ? nullptr : &*std::prev(next);
+}
+
+/// A line that describes another object than its part, or null.
+const SheetPart* line_at(const SheetOutline& outline, const Position& position) {
+  const auto line = std::ranges::lower_bound(outline.lines, position.line, {}, &SheetPart::line);
+  return line != outline.lines.end() && line->line == position.line ? &*line : nullptr;
+}
+
 }  // namespace
+
+std::optional<std::uint16_t> object_at(const SheetOutline& outline, const Position& position) {
+  if (position.file != outline.file || position.line == 0) return std::nullopt;
+  if (const SheetPart* const line = line_at(outline, position)) return line->index;
+  const SheetPart* const part = part_at(outline, position);
+  return part == nullptr ? std::nullopt : part->index;
+}
 
 void Allowances::set_outline(SheetOutline outline) {
   outline_ = std::move(outline);
@@ -30,15 +49,12 @@ std::optional<std::size_t> Allowances::find(RuleId rule, const Position& positio
   if (all_.empty() || position.file != outline_.file) return std::nullopt;
   if (position.line != 0) {
     if (const auto found = find(rule, AllowanceScope{Kind::line, position.line})) return found;
-    const auto line = std::ranges::lower_bound(outline_.lines, position.line, {}, &SheetPart::line);
-    if (line != outline_.lines.end() && line->line == position.line) {
+    if (const SheetPart* const line = line_at(outline_, position)) {
       if (const auto found = find_object(rule, *line)) return found;
     }
-    const auto next = std::ranges::upper_bound(outline_.parts, SheetPart{position.line, position.column}, is_before);
-    if (next != outline_.parts.begin()) {
-      const SheetPart& part = *std::prev(next);
-      if (const auto found = find(rule, AllowanceScope{Kind::part, part.line})) return found;
-      if (const auto found = find_object(rule, part)) return found;
+    if (const SheetPart* const part = part_at(outline_, position)) {
+      if (const auto found = find(rule, AllowanceScope{Kind::part, part->line})) return found;
+      if (const auto found = find_object(rule, *part)) return found;
     }
   }
   return find(rule, AllowanceScope{});

@@ -29,6 +29,9 @@ struct SheetOutline {
   std::vector<SheetPart> lines;  ///< lines that describe another object or entry than their part
 };
 
+/// The index of the object that a position of the file describes, if it is one of an object.
+[[nodiscard]] std::optional<std::uint16_t> object_at(const SheetOutline& outline, const Position& position);
+
 /// The scope of an allowance.
 struct AllowanceScope {
   enum class Kind : std::uint8_t { file, part, line, object, entry };
@@ -54,6 +57,7 @@ struct Allowance {
 class Allowances {
  public:
   void set_outline(SheetOutline outline);
+  [[nodiscard]] const SheetOutline& outline() const { return outline_; }
   void add(Allowance allowance);
 
   /// The index in `all()` of the first allowance of `rule` that applies to `position`, narrowest scope first.

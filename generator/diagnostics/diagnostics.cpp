@@ -8,7 +8,7 @@ namespace edsc {
 
 void Diagnostic::add_place(const Position& place, std::string text) {
   ++places;
-  if (places > max_places) {
+  if (places > max_stored_places) {
     ++unnamed;
   } else {
     notes.push_back({place, std::move(text)});
@@ -16,7 +16,9 @@ void Diagnostic::add_place(const Position& place, std::string text) {
 }
 
 void Diagnostics::report(Diagnostic diagnostic) {
-  if (drop_notes_ && diagnostic.severity == Severity::note) return;
+  const bool is_name = diagnostic.rule.row().is_of_names;
+  if (diagnostic.severity == Severity::note && (notes_ == Notes::none || (notes_ == Notes::of_names && !is_name)))
+    return;
   if (is_tolerated(diagnostic)) diagnostic.severity = Severity::warning;
   if (diagnostic.severity != Severity::error || silence_errors_) {
     const Severity severity = diagnostic.severity;
@@ -25,6 +27,7 @@ void Diagnostics::report(Diagnostic diagnostic) {
       return;
     }
   }
+  if (diagnostic.severity == Severity::note && is_name && notes_ == Notes::without_names) return;
   if (strict_ && diagnostic.severity == Severity::warning) {
     diagnostic.severity = Severity::error;
   }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,11 +33,22 @@ struct Diagnostic {
   std::string cause;
   std::size_t places = 1;
   std::size_t unnamed = 0;  ///< number of places that are neither `position` nor in the notes
+  /// The finding from which this one follows, an index in `Diagnostics::all()`. It is never more severe than that one.
+  std::optional<std::size_t> follows_from = {};
 
-  /// Maximum number of listed places per cause.
+  /// Number of places of a cause that a text shows at first.
   static constexpr std::size_t max_places = 4;
+  /// Maximum number of stored places per cause.
+  static constexpr std::size_t max_stored_places = 1000;
   /// Adds another place with the same cause: to the notes, or only to the numbers.
   void add_place(const Position& place, std::string text);
+};
+
+/// The notes that a command reports.
+enum class Notes : std::uint8_t {
+  none,
+  without_names,  ///< all but those about names of the generated code: `edsc check`
+  of_names,       ///< only those: `edsc generate`
 };
 
 /// The number of findings of each severity.
@@ -74,6 +86,7 @@ class Diagnostics {
   void silence(RuleId rule);
   /// Sets aside the findings to which an allowance applies: warnings and notes, but not errors, as in silence().
   void set_outline(SheetOutline outline) { allowances_.set_outline(std::move(outline)); }
+  [[nodiscard]] const SheetOutline& outline() const { return allowances_.outline(); }
   void allow(Allowance allowance) { allowances_.add(std::move(allowance)); }
   /// From now on, errors are dropped or set aside too: for `edsc check`, which does not generate anything.
   void silence_errors() { silence_errors_ = true; }
@@ -87,8 +100,11 @@ class Diagnostics {
   /// From now on, warnings count as errors (`--strict`); notes do not.
   void treat_warnings_as_errors() { strict_ = true; }
 
-  /// From now on, notes are dropped: only `edsc check` prints them.
-  void drop_notes() { drop_notes_ = true; }
+  /// From now on, only these notes are reported. At first all are, but those about names of the generated code.
+  void limit_notes(Notes notes) { notes_ = notes; }
+
+  /// States that a finding follows from another one; both are indices in `all()`.
+  void set_cause(std::size_t consequence, std::size_t cause) { all_[consequence].follows_from = cause; }
 
   /// The listed findings. `errors()`, `warnings()` and `notes()` also count the omitted ones.
   [[nodiscard]] const std::vector<Diagnostic>& all() const { return all_; }
@@ -156,7 +172,7 @@ class Diagnostics {
   std::vector<Silenced> silenced_;
   SeverityCounts counts_;
   bool strict_ = false;
-  bool drop_notes_ = false;
+  Notes notes_ = Notes::without_names;
   bool silence_errors_ = false;
   bool any_silenced_ = false;
   Allowances allowances_;

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "diagnostics/excerpt.hpp"
 #include "diagnostics/place.hpp"
+#include "diagnostics/report_order.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
 #include "text/source_file.hpp"
@@ -35,8 +38,14 @@ std::string file_name(const SourceFile* file) { return file == nullptr ? std::st
 struct FileSum {
   const SourceFile* file;
   SeverityCounts counts = {};
+  std::size_t causes = 0;  ///< warnings and errors that do not follow from others
   std::size_t allowed = 0;
 };
+
+/// Whether the findings that are only counted follow from another one, as the last listed one of their kind does.
+bool follows(const Diagnostics::Omitted& omitted, const Diagnostics& diagnostics) {
+  return diagnostics.all()[omitted.last_listed].follows_from.has_value();
+}
 
 std::vector<FileSum> sums_by_file(const Diagnostics& diagnostics, bool with_allowed) {
   std::vector<FileSum> sums;
@@ -46,11 +55,16 @@ std::vector<FileSum> sums_by_file(const Diagnostics& diagnostics, bool with_allo
     });
     return found != sums.end() ? *found : sums.emplace_back(FileSum{file});
   };
+  const auto add = [&](const SourceFile* file, Severity severity, std::size_t count, bool follows) {
+    FileSum& sum = sum_of(file);
+    sum.counts[severity] += count;
+    if (severity != Severity::note && !follows) sum.causes += count;
+  };
   for (const Diagnostic& diagnostic : diagnostics.all()) {
-    ++sum_of(diagnostic.position.file).counts[diagnostic.severity];
+    add(diagnostic.position.file, diagnostic.severity, 1, diagnostic.follows_from.has_value());
   }
   for (const Diagnostics::Omitted& omitted : diagnostics.omitted()) {
-    sum_of(omitted.file).counts[omitted.severity] += omitted.count;
+    add(omitted.file, omitted.severity, omitted.count, follows(omitted, diagnostics));
   }
   if (with_allowed && diagnostics.suppressed_findings() > 0) {
     sum_of(diagnostics.suppressed().front().diagnostic.position.file).allowed += diagnostics.suppressed_findings();
@@ -60,22 +74,41 @@ std::vector<FileSum> sums_by_file(const Diagnostics& diagnostics, bool with_allo
 
 class TextPrinter {
  public:
-  TextPrinter(std::string& out, bool colour) : out_(out), palette_(colour ? coloured : plain) {}
+  TextPrinter(std::string& out, const TextStyle& style)
+      : out_(out), style_(style), palette_(style.colour ? coloured : plain) {}
 
   void print(const Diagnostic& diagnostic) {
     print_head(diagnostic.position, diagnostic.severity, diagnostic.message, diagnostic.rule.text());
     print_source(diagnostic.position);
-    for (const Note& note : diagnostic.notes) {
+    const bool are_places = diagnostic.places > 1 && !style_.all;
+    const std::size_t shown =
+        are_places ? std::min(diagnostic.notes.size(), Diagnostic::max_places - 1) : diagnostic.notes.size();
+    for (const Note& note : std::span{diagnostic.notes}.first(shown)) {
       print_head(note.position, Severity::note, note.message, {});
       print_source(note.position);
     }
-    if (diagnostic.unnamed > 0) {
-      print_file(diagnostic.position.file);
-      print_message(Severity::note,
-                    fmt::format("{} more {} with the same cause", diagnostic.unnamed,
-                                diagnostic.unnamed == 1 ? "place" : "places"),
-                    {});
+    const std::size_t more = diagnostic.unnamed + diagnostic.notes.size() - shown;
+    if (more == 0) return;
+    print_file(diagnostic.position.file);
+    print_message(Severity::note, fmt::format("{} more {} with the same cause", more, more == 1 ? "place" : "places"),
+                  {});
+  }
+
+  /// The findings that follow from one, if they are not listed.
+  void print(const SourceFile* file, const std::vector<Consequence>& consequences) {
+    if (consequences.empty() || style_.all) return;
+    std::size_t sum = 0;
+    std::string rules;
+    for (const Consequence& one : consequences) {
+      sum += one.count;
+      rules += fmt::format("{}{} {}", rules.empty() ? "" : ", ", one.count, one.rule.text());
     }
+    print_file(file);
+    print_message(
+        Severity::note,
+        fmt::format("{} from this: {}{}", sum == 1 ? "1 finding follows" : fmt::format("{} findings follow", sum),
+                    rules, style_.of_check ? " (--all lists them)" : ""),
+        {});
   }
 
   void print(const Diagnostics::Omitted& omitted) {
@@ -87,10 +120,14 @@ class TextPrinter {
     if (sum.file != nullptr) {
       append("{}: ", file_name(sum.file));
     }
+    const std::size_t errors = sum.counts[Severity::error];
     const std::size_t notes = sum.counts[Severity::note];
-    append("{}, {}", counted(sum.counts[Severity::error], "error"), counted(sum.counts[Severity::warning], "warning"));
+    if (sum.causes < errors + sum.counts[Severity::warning]) append("{}, ", counted(sum.causes, "cause"));
+    append("{}, {}", counted(errors, "error"), counted(sum.counts[Severity::warning], "warning"));
     if (notes > 0) append(", {}", counted(notes, "note"));
     if (sum.allowed > 0) append(", {} allowed", sum.allowed);
+    if (style_.of_check && errors > 0)
+      append("; {} generate", errors == 1 ? "1 stops" : fmt::format("{} stop", errors));
     out_ += '\n';
   }
 
@@ -134,6 +171,7 @@ class TextPrinter {
   }
 
   std::string& out_;
+  const TextStyle style_;
   const Palette& palette_;
 };
 
@@ -191,33 +229,41 @@ nlohmann::json to_json_array(const Rows& rows) {
 
 }  // namespace
 
-void print_text(std::string& out, const Diagnostics& diagnostics, bool colour, bool with_allowed) {
-  TextPrinter printer(out, colour);
-  const std::vector<Diagnostic>& all = diagnostics.all();
-  for (std::size_t at = 0; at < all.size(); ++at) {
-    printer.print(all[at]);
+void print_text(std::string& out, const Diagnostics& diagnostics, const TextStyle& style) {
+  TextPrinter printer(out, style);
+  for (const std::size_t at : report_order(diagnostics)) {
+    const Diagnostic& one = diagnostics.all()[at];
+    if (one.follows_from && !style.all) continue;
+    printer.print(one);
+    printer.print(one.position.file, consequences_of(at, diagnostics));
     for (const Diagnostics::Omitted& omitted : diagnostics.omitted()) {
-      if (omitted.last_listed == at) {
-        printer.print(omitted);
-      }
+      if (omitted.last_listed == at) printer.print(omitted);
     }
   }
-  for (const FileSum& sum : sums_by_file(diagnostics, with_allowed)) {
-    printer.print(sum);
-  }
+  for (const FileSum& sum : sums_by_file(diagnostics, style.of_check)) printer.print(sum);
 }
 
-void print_text(std::FILE* out, const Diagnostics& diagnostics, bool colour, bool with_allowed) {
+void print_text(std::FILE* out, const Diagnostics& diagnostics, const TextStyle& style) {
   std::string text;
-  print_text(text, diagnostics, colour, with_allowed);
+  print_text(text, diagnostics, style);
   std::fwrite(text.data(), 1, text.size(), out);
 }
 
 nlohmann::json print_json(const Diagnostics& diagnostics) {
+  const std::vector<std::size_t> order = report_order(diagnostics);
+  std::vector<std::size_t> places(order.size());
+  for (std::size_t at = 0; at < order.size(); ++at) places[order[at]] = at;
+  nlohmann::json rows = nlohmann::json::array();
+  for (const std::size_t at : order) {
+    const Diagnostic& one = diagnostics.all()[at];
+    nlohmann::json& row = rows.emplace_back(to_json(one));
+    if (one.follows_from) row["follows_from"] = places[*one.follows_from];
+  }
   return {{"version", 1},
-          {"diagnostics", to_json_array(diagnostics.all())},
+          {"diagnostics", std::move(rows)},
           {"allowed_diagnostics", allowed_rows(diagnostics)},
           {"suppressed", to_json_array(diagnostics.omitted())},
+          {"causes", count_causes(diagnostics)},
           {"errors", diagnostics.errors()},
           {"warnings", diagnostics.warnings()},
           {"notes", diagnostics.notes()},

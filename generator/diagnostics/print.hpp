@@ -9,13 +9,20 @@
 
 namespace edsc {
 
-/// Every finding with its line, then a summary for each file; `with_allowed` adds the number of allowed findings. The
-/// source files must still exist.
-void print_text(std::string& out, const Diagnostics& diagnostics, bool colour, bool with_allowed = false);
-void print_text(std::FILE* out, const Diagnostics& diagnostics, bool colour, bool with_allowed = false);
+struct TextStyle {
+  bool colour = false;
+  bool of_check = false;  ///< the summary adds the number of allowed findings, and the effect on `edsc generate`
+  bool all = false;       ///< findings that follow from others, and all places of a cause, are listed too
+};
 
-/// {"version":1, "diagnostics":[...], "allowed_diagnostics":[...], "suppressed":[...], "errors":n, "warnings":n,
-/// "notes":n, "allowed":n}. File names may contain bytes that are not UTF-8: dump it with
+/// The findings in the order of report_order() with their lines, then a summary for each file. The source files must
+/// still exist.
+void print_text(std::string& out, const Diagnostics& diagnostics, const TextStyle& style);
+void print_text(std::FILE* out, const Diagnostics& diagnostics, const TextStyle& style);
+
+/// {"version":1, "diagnostics":[...], "allowed_diagnostics":[...], "suppressed":[...], "causes":n, "errors":n,
+/// "warnings":n, "notes":n, "allowed":n}. A finding that follows from another one has its index in "diagnostics" as
+/// `follows_from`. File names may contain bytes that are not UTF-8: dump it with
 /// nlohmann::json::error_handler_t::replace.
 [[nodiscard]] nlohmann::json print_json(const Diagnostics& diagnostics);
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "diagnostics/place.hpp"
+#include "diagnostics/report_order.hpp"
 #include "text/ascii.hpp"
 #include "text/counted.hpp"
 #include "text/source_file.hpp"
@@ -49,6 +50,14 @@ json related_locations(const std::vector<Note>& notes) {
   return related;
 }
 
+/// The finding from which a result follows.
+void add_cause(const Diagnostic& cause, json& result) {
+  json location = location_of(cause.position);
+  location["message"] = {{"text", fmt::format("follows from {}: {}", cause.rule.text(), cause.message)}};
+  result["relatedLocations"].push_back(std::move(location));
+  result["properties"] = {{"followsFrom", cause.rule.text()}};
+}
+
 json suppression_of(const Allowance& allowance) {
   return {{"kind", allowance.in_source ? "inSource" : "external"},
           {"justification", allowance.reason},
@@ -85,7 +94,12 @@ nlohmann::ordered_json SarifLog::result_of(const Diagnostic& diagnostic) const {
 }
 
 void SarifLog::add(const Diagnostics& diagnostics) {
-  for (const Diagnostic& diagnostic : diagnostics.all()) results_.push_back(result_of(diagnostic));
+  for (const std::size_t at : report_order(diagnostics)) {
+    const Diagnostic& one = diagnostics.all()[at];
+    json result = result_of(one);
+    if (one.follows_from) add_cause(diagnostics.all()[*one.follows_from], result);
+    results_.push_back(std::move(result));
+  }
   for (const Diagnostics::Suppressed& suppressed : diagnostics.suppressed()) {
     json result = result_of(suppressed.diagnostic);
     result["suppressions"].push_back(suppression_of(diagnostics.allowances()[suppressed.allowance]));

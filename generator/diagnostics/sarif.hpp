@@ -19,7 +19,7 @@ class SarifLog {
   /// `url_of` returns where a rule is documented.
   SarifLog(std::string_view version, std::span<const Rule> rules, std::string (*url_of)(const Rule&));
 
-  /// The source files need not outlive this call.
+  /// Adds findings in the order of report_order(). The source files need not outlive this call.
   void add(const Diagnostics& diagnostics);
 
   /// Adds a notification of the run, which is not a finding.

@@ -63,7 +63,8 @@ class DataSheetReader {
     const Position position = section_position(source_, section);
     if (name.kind == SectionKind::malformed) {
       diagnostics_.error("section-name", position,
-                         fmt::format("{} is not a valid section name: {}", quote(section.name), name.remark));
+                         fmt::format("{} is not a valid section name: {}", quote(section.name), name.remark), {},
+                         std::string{name.remark});
     } else if (name.kind == SectionKind::unknown) {
       diagnostics_.warning(
           "unknown-section", position,

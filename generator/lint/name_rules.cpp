@@ -66,14 +66,15 @@ void check_name(const RuleContext& context, const Named& named, Scope& scope, Fi
     context.report("name-twice", named.position,
                    fmt::format("{} \"{}\" would be {} in C++, which is already used; using {}", named.label, named.name,
                                wanted, named.identifier),
-                   std::move(notes));
+                   std::move(notes), "name");
   } else if (wanted.back() == '_') {
-    context.report("name-reserved", named.position,
-                   fmt::format("{} \"{}\" is reserved in C++ or in the generated code; using {}", named.label,
-                               named.name, wanted));
+    context.report(
+        "name-reserved", named.position,
+        fmt::format("{} \"{}\" is reserved in C++ or in the generated code; using {}", named.label, named.name, wanted),
+        {}, "name");
   } else if (wanted.starts_with("n_") && is_digit(wanted[2])) {
     context.report("name-digit", named.position,
-                   fmt::format("{} \"{}\" begins with a digit; using {}", named.label, named.name, wanted));
+                   fmt::format("{} \"{}\" begins with a digit; using {}", named.label, named.name, wanted), {}, "name");
   }
 }
 

@@ -20,16 +20,19 @@ void check_default(const RuleContext& context, const Entry& entry) {
   }
   if (!below && !above) return;
   context.report("default-outside-limits", entry.default_value->position,
-                 fmt::format("the default value of {} is {} its limit", named(entry), below ? "below" : "above"));
+                 fmt::format("the default value of {} is {} its limit", named(entry), below ? "below" : "above"), {},
+                 fmt::format("{} of {} {}", value, below ? "low" : "high",
+                             below ? entry.low_limit->bits : entry.high_limit->bits));
 }
 
 }  // namespace
 
 void check_objects(const RuleContext& context) {
   for (const std::uint16_t index : mandatory_objects) {
-    if (context.device.find(index) != nullptr) continue;
+    // What is described and left out is reported where it is described.
+    if (context.device.find(index) != nullptr || context.sheet.find(index) != nullptr) continue;
     context.report("mandatory-object", context.whole_file(),
-                   fmt::format("mandatory object {} is missing", index_label(index)));
+                   fmt::format("mandatory object {} is missing", index_label(index)), {}, "missing");
   }
   for (const Object& object : context.device.objects) {
     for (const Entry& entry : object.entries) check_default(context, entry);

@@ -37,7 +37,8 @@ void check_pair(const RuleContext& context, const Pdo& pdo) {
   const auto missing = static_cast<std::uint16_t>(first + pdo.number - 1);
   context.report("pdo-pair", pdo.position,
                  fmt::format("{} has no {} parameter {}", pdo_label(pdo), has_mapping ? "communication" : "mapping",
-                             index_label(missing)));
+                             index_label(missing)),
+                 {}, fmt::format("{} {}", is_receive(pdo), has_mapping));
 }
 
 void check_transmission_type(const RuleContext& context, const Pdo& pdo, std::uint64_t type) {

@@ -26,7 +26,8 @@ void check_entry(const RuleContext& context, const Entry& entry, const StandardO
   if (row == nullptr) {
     context.report("standard-sub-index", entry.position,
                    fmt::format("the {} of CiA 301 has no sub-index {:02X}h (clause {})", standard.name, entry.sub_index,
-                               standard.clause));
+                               standard.clause),
+                   {}, fmt::format("{}", standard.first));
     return;
   }
   if (entry.type->type != row->type) {
@@ -49,7 +50,8 @@ void check_required(const RuleContext& context, const Object& object, const Stan
     if (!row.required || object.find(row.first) != nullptr) continue;
     context.report("standard-sub-index-missing", object.position,
                    fmt::format("{} is missing; CiA 301 requires it for the {} (clause {})",
-                               entry_label(object.index, row.first), standard.name, standard.clause));
+                               entry_label(object.index, row.first), standard.name, standard.clause),
+                   {}, fmt::format("{} {}", standard.first, row.first));
   }
 }
 

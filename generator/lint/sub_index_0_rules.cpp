@@ -18,7 +18,8 @@ void check_value(const RuleContext& context, const Object& object, const Entry& 
   const std::uint8_t highest = object.highest_sub_index();
   if (value == highest) return;
   context.report("sub-index-0-value", count.default_value->position,
-                 fmt::format("{} is {}, but the highest sub-index described is {}", named(count), value, highest));
+                 fmt::format("{} is {}, but the highest sub-index described is {}", named(count), value, highest), {},
+                 fmt::format("{:+}", static_cast<std::int64_t>(value) - highest));
 }
 
 void check_count(const RuleContext& context, const Object& object) {

@@ -12,6 +12,7 @@
 #include "backend/cpp/identifier.hpp"
 #include "device/pdo/locked_parameters.hpp"
 #include "device/resolve.hpp"
+#include "diagnostics/consequences.hpp"
 #include "diagnostics/quote.hpp"
 #include "diagnostics/unknown_rule.hpp"
 #include "eds/allow_comments.hpp"
@@ -95,6 +96,12 @@ void allow_findings(const LoadedDevice& loaded, Diagnostics& diagnostics) {
   for (const AllowComment& comment : found.comments) allow_by_comment(comment, diagnostics);
 }
 
+/// The outline of the data sheet is complete if the sheet is an XDD, or has allowances.
+void mark_consequences_in(const SourceFile& source, Diagnostics& diagnostics) {
+  const bool has_outline = !diagnostics.outline().parts.empty() || !needs_outline(diagnostics, source);
+  mark_consequences(diagnostics, has_outline ? diagnostics.outline() : find_allow_comments(source).outline);
+}
+
 }  // namespace
 
 std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnostics& diagnostics) {
@@ -106,6 +113,7 @@ std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnost
   if (loaded->unreadable) return loaded;
   if (settings.static_mapping) loaded->options.static_mapping.all = true;
   resolve_and_check(*loaded, settings, diagnostics);
+  mark_consequences_in(*loaded->source, diagnostics);
   return loaded;
 }
 

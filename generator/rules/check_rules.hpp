@@ -13,6 +13,11 @@ constexpr Rule fatal(Rule rule) {
   return rule;
 }
 
+constexpr Rule of_names(Rule rule) {
+  rule.is_of_names = true;
+  return rule;
+}
+
 inline constexpr Rule check[] = {
     // The file and its lines.
     fatal({"unreadable-file", error, "the file cannot be read", "edsc"}),
@@ -117,10 +122,13 @@ inline constexpr Rule check[] = {
          "CiA 306-1, 4.6.2.6"},
     Rule{"compact-pdo", warning, "CompactPDO or the number of its PDOs is too large", "CiA 306-1, 4.5"},
     Rule{"object-links", warning, "ObjectLinks contains an invalid index", "CiA 306-1, 4.6.2"},
-    Rule{"sub-index-base", warning, "sub-indices that look decimal: 10h after 9h, and no Ah to Fh", "CiA 306-1, 4.6.2"},
+    Rule{"sub-index-base", error, "sub-indices that look decimal: 10h after 9h, and no Ah to Fh", "CiA 306-1, 4.6.2",
+         warning},
     Rule{"array-data-type", warning, "elements of an ARRAY have different data types", "CiA 301, 7.4.3"},
     Rule{"parameter-name", warning, "an object without a name", "CiA 306-1, 4.6.2"},
     Rule{"data-type", error, "DataType is missing or unknown", "CiA 301, 7.4.7", warning},
+    Rule{"shifted-data-types", error, "the data types of all objects of CiA 301 differ by one number from the standard",
+         "CiA 301, 7.4.7"},
     Rule{"complex-data-type", warning, "an entry of a complex data type", "CiA 301, 7.4.7"},
     Rule{"type-definition", warning, "a DEFTYPE or DEFSTRUCT does not refer to a data type", "CiA 301, 7.4.7"},
     Rule{"type-length", note, "a DEFTYPE whose length differs from that of its basic type", "CiA 301, 7.4.7"},
@@ -152,10 +160,10 @@ inline constexpr Rule check[] = {
     Rule{"const-without-value", note, "a constant without DefaultValue", "CiA 306-1, 4.6.2"},
     // Names.
     Rule{"name-length", note, "a name of more than 241 characters", "CiA 306-1, 4.6.2"},
-    Rule{"name-twice", note, "two names are the same in C++; the second gets a suffix", "edsc"},
+    of_names({"name-twice", note, "two names are the same in C++; the second gets a suffix", "edsc"}),
     Rule{"name-empty", warning, "a name without letters and digits", "edsc"},
-    Rule{"name-reserved", note, "a name is reserved in C++ or in the generated code", "edsc"},
-    Rule{"name-digit", note, "a name begins with a digit", "edsc"},
+    of_names({"name-reserved", note, "a name is reserved in C++ or in the generated code", "edsc"}),
+    of_names({"name-digit", note, "a name begins with a digit", "edsc"}),
     // COB-IDs.
     Rule{"cob-id-missing", note, "a COB-ID without default value, or 0", "CiA 301, 7.3.5"},
     Rule{"cob-id-frame", error, "a CAN-ID with more bits than its frame has", "CiA 301, 7.5.2.35"},

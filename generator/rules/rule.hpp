@@ -48,6 +48,7 @@ struct Rule {
   std::string_view explanation = {};  ///< how it is judged, what to look at, or why a change breaks something
   bool is_fatal = false;              ///< an error stops edsc even with `--keep-going`: no device can be resolved
   Breaks breaks = {};                 ///< of a rule about changes
+  bool is_of_names = false;           ///< notes about names of the generated code, for commands that write it
 
   [[nodiscard]] constexpr bool allows(Severity other) const { return other == severity || other == mildest; }
 };

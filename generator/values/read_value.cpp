@@ -69,15 +69,20 @@ class ValueReader {
     return {.bits = bits, .hexadecimal = hexadecimal, .position = field_.position};
   }
 
-  void error(ErrorRule rule, std::string message) { diagnostics_.error(rule, field_.position, std::move(message)); }
+  void error(ErrorRule rule, std::string message, std::string cause = {}) {
+    diagnostics_.error(rule, field_.position, std::move(message), {}, std::move(cause));
+  }
   void warning(WarningRule rule, std::string message, std::string cause = {}) {
     diagnostics_.warning(rule, field_.position, std::move(message), {}, std::move(cause));
   }
 
   std::optional<Value> not_a_number() {
-    error("number-format", fmt::format("{} is not a value of type {}", quote(field_.text), type_.name));
+    error("number-format", fmt::format("{} is not a value of type {}", quote(field_.text), type_.name), same_text());
     return std::nullopt;
   }
+
+  /// The cause of findings of one text that is not a value of one type, as a tool writes it in many places.
+  [[nodiscard]] std::string same_text() const { return fmt::format("{} {}", type_.name, trim(field_.text)); }
 
   /// `$NODEID`, `$NODEID+0x180`, `0x180 + $NodeID`: CiA 306-1, 4.6.2.3.
   std::optional<Value> formula(std::string_view text) {
@@ -153,11 +158,14 @@ class ValueReader {
   /// `above` or below all values of the type. `condition` is the end of the message.
   std::optional<Value> out_of_range(bool above, std::string_view condition = "") {
     if (limit_ == (above ? Limit::high : Limit::low)) {
-      warning("number-range", fmt::format("{} is outside the range of {}{}; this limit has no effect and is left out",
-                                          quote(field_.text), type_.name, condition));
+      warning("number-range",
+              fmt::format("{} is outside the range of {}{}; this limit has no effect and is left out",
+                          quote(field_.text), type_.name, condition),
+              same_text());
       return std::nullopt;
     }
-    error("number-range", fmt::format("{} does not fit into {}{}", quote(field_.text), type_.name, condition));
+    error("number-range", fmt::format("{} does not fit into {}{}", quote(field_.text), type_.name, condition),
+          same_text());
     return std::nullopt;
   }
 
@@ -169,7 +177,7 @@ class ValueReader {
     const auto number = parse_unsigned(without_c_suffix(text));
     if (!number) return not_a_number();
     if (*number > 1) {
-      warning("number-range", fmt::format("\"{}\" is not a BOOLEAN; reading it as 1", text));
+      warning("number-range", fmt::format("\"{}\" is not a BOOLEAN; reading it as 1", text), same_text());
     }
     return value(*number != 0 ? 1 : 0);
   }
@@ -181,7 +189,8 @@ class ValueReader {
     const auto magnitude = parse_unsigned(plain);
     if (!magnitude) return unusual_integer(text);
     if (is_octal(plain)) {
-      warning("number-spelling", fmt::format("a leading 0 makes {} an octal number: {}", quote(text), *magnitude));
+      warning("number-spelling", fmt::format("a leading 0 makes {} an octal number: {}", quote(text), *magnitude),
+              "octal");
     }
     if (plain.size() != digits.size()) warning("number-spelling", "a C suffix is not allowed in an EDS", "suffix");
     return negative ? negative_integer(*magnitude) : positive_integer(*magnitude, is_hexadecimal(plain));
@@ -193,7 +202,8 @@ class ValueReader {
     if (magnitude > lowest || (limit_ && is_unsigned && magnitude != 0)) return out_of_range(false);
     if (is_unsigned && magnitude != 0) {
       warning("number-range",
-              fmt::format("negative value of the unsigned type {}; using its two's complement", type_.name));
+              fmt::format("negative value of the unsigned type {}; using its two's complement", type_.name),
+              fmt::format("negative {}", type_.name));
       return value((~magnitude + 1) & mask());
     }
     return value(~magnitude + 1);
@@ -207,8 +217,10 @@ class ValueReader {
     if (magnitude < sign) return value(magnitude);
     if (!hexadecimal && limit_) return out_of_range(true);
     if (!hexadecimal) {
-      warning("number-range", fmt::format("{} exceeds the maximum of {}; reading it as two's complement",
-                                          quote(field_.text), type_.name));
+      warning(
+          "number-range",
+          fmt::format("{} exceeds the maximum of {}; reading it as two's complement", quote(field_.text), type_.name),
+          fmt::format("decimal {}", type_.name));
     }
     return value(magnitude | ~mask());
   }
@@ -216,16 +228,19 @@ class ValueReader {
   /// `80h`, or `0.0` or `0089` for an integer: accepted if the value is exact.
   std::optional<Value> unusual_integer(std::string_view text) {
     if (const auto hexadecimal = parse_h_suffix(text)) {
-      warning("number-spelling", fmt::format("a hexadecimal number must be written with 0x, not as {}", quote(text)));
+      warning("number-spelling", fmt::format("a hexadecimal number must be written with 0x, not as {}", quote(text)),
+              "suffix h");
       return positive_integer(*hexadecimal, true);
     }
     const auto number = parse_real(text);
     if (!number || std::trunc(*number) != *number || std::abs(*number) > 9e15) return not_a_number();
     if (text.find_first_of(".eE") == std::string_view::npos) {
       warning("number-spelling",
-              fmt::format("\"{}\" has a leading 0, but is not an octal number; reading it as decimal", text));
+              fmt::format("\"{}\" has a leading 0, but is not an octal number; reading it as decimal", text),
+              "leading 0");
     } else {
-      warning("number-spelling", fmt::format("a value of type {} must be written without a decimal point", type_.name));
+      warning("number-spelling", fmt::format("a value of type {} must be written without a decimal point", type_.name),
+              "point");
     }
     const auto magnitude = static_cast<std::uint64_t>(std::abs(*number));
     return *number < 0 ? negative_integer(magnitude) : positive_integer(magnitude, false);
@@ -247,7 +262,8 @@ class ValueReader {
     const auto single = static_cast<float>(*number);
     if (std::isinf(single) && !std::isinf(*number)) return out_of_range(*number > 0);
     if (single == 0 && *number != 0) {
-      warning("number-range", fmt::format("{} is too close to 0 for {}; reading it as 0", quote(text), type_.name));
+      warning("number-range", fmt::format("{} is too close to 0 for {}; reading it as 0", quote(text), type_.name),
+              same_text());
     }
     return value(std::bit_cast<std::uint32_t>(single));
   }

@@ -28,7 +28,7 @@ inline void require(bool holds, const char* what) {
 /// Prints the findings; they must not contain hidden characters of the file.
 inline void print(const Diagnostics& diagnostics) {
   std::string text;
-  print_text(text, diagnostics, true);
+  print_text(text, diagnostics, {.colour = true, .all = true});
   for (std::size_t end = 0; (end = text.find("\x1B[")) != std::string::npos;) {
     text.erase(end, text.find('m', end) - end + 1);  // written by edsc itself
   }

@@ -32,7 +32,7 @@ struct Settings {
 
 int generate(const Settings& settings) {
   Diagnostics diagnostics;
-  diagnostics.drop_notes();
+  diagnostics.limit_notes(Notes::of_names);
   const auto loaded = load_network(settings.path, diagnostics);
   check_network(loaded->network, diagnostics);
   GeneratedNetwork generated;

@@ -41,6 +41,7 @@ struct CheckSettings {
   std::string format = "text";
   std::vector<std::string> silence;
   bool strict = false;
+  bool all = false;
   bool times = false;
   ColorOption color;
 };
@@ -60,7 +61,7 @@ void add_timing(const Network& network, const CheckSettings& settings, FindingsR
 
 int check(const CheckSettings& settings) {
   int exit_code = exit_fine;
-  FindingsReport report{settings.format, settings.color};
+  FindingsReport report{settings.format, settings.color, settings.all};
   for (const std::string& path : settings.paths) {
     Diagnostics diagnostics;
     if (settings.strict) diagnostics.treat_warnings_as_errors();
@@ -90,6 +91,7 @@ void add_network_check_options(Command command, int& exit_code) {
   command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
       .one_value_each()
       .check(check_rule);
+  command.add_flag("--all", settings.all, all_findings_help);
   command.add_flag("--strict", settings.strict, "warnings count as errors; notes do not");
   command.add_flag("--times", settings.times, "print period, worst-case response time and deadline of each message");
   settings.color.add_to(command);

@@ -102,7 +102,7 @@ int report(const Settings& settings, const SimulatedNetwork& simulated) {
 
 int simulate(const Settings& settings) {
   Diagnostics diagnostics;
-  diagnostics.drop_notes();
+  diagnostics.limit_notes(Notes::none);
   const auto loaded = load_network(settings.path, diagnostics);
   Network& network = loaded->network;
   check_network(network, diagnostics);

@@ -143,7 +143,7 @@ void EntryResolver::check_sub_object_type(const EntryDescription& description) {
     return report_object_type_name(*named, description.object_type, diagnostics_);
   }
   diagnostics_.warning("object-type", description.object_type.position,
-                       "a sub-object must be a VAR or a DOMAIN; ignoring its ObjectType");
+                       "a sub-object must be a VAR or a DOMAIN; ignoring its ObjectType", {}, std::string{text});
 }
 
 std::optional<ValueType> EntryResolver::data_type(const EntryDescription& description, const EntryPlace& place) {
@@ -160,7 +160,8 @@ std::optional<ValueType> EntryResolver::data_type(const EntryDescription& descri
   }
   if (!code) {
     diagnostics_.error("data-type", field.position,
-                       fmt::format("DataType {} is not a number{}", quote(text), number_of_type(text)));
+                       fmt::format("DataType {} is not a number{}", quote(text), number_of_type(text)), {},
+                       std::string{text});
     return ValueType{};
   }
   const ValueType type = types_.find(*code);
@@ -183,7 +184,8 @@ std::optional<ValueType> EntryResolver::data_type(const EntryDescription& descri
   }
   diagnostics_.error(
       "data-type", field.position,
-      fmt::format("DataType 0x{:04X} is not a basic data type of CiA 301, nor a DEFTYPE of this file", *code));
+      fmt::format("DataType 0x{:04X} is not a basic data type of CiA 301, nor a DEFTYPE of this file", *code), {},
+      fmt::format("{}", *code));
   return ValueType{};
 }
 
@@ -191,7 +193,8 @@ std::optional<ValueType> EntryResolver::missing_data_type(const EntryDescription
                                                           const EntryPlace& place) {
   const auto object_type = number_of(description.object_type);
   if (object_type == static_cast<std::uint64_t>(ObjectType::domain)) {
-    diagnostics_.warning("data-type", description.position, "missing DataType; assuming DOMAIN from ObjectType");
+    diagnostics_.warning("data-type", description.position, "missing DataType; assuming DOMAIN from ObjectType", {},
+                         "DOMAIN");
     return types_.find(static_cast<std::uint64_t>(DataType::domain));
   }
   if (place.record_type) {
@@ -209,7 +212,7 @@ std::optional<ValueType> EntryResolver::missing_data_type(const EntryDescription
                          std::string{row.what});
     return type;
   }
-  diagnostics_.error("data-type", description.position, "missing DataType");
+  diagnostics_.error("data-type", description.position, "missing DataType", {}, "missing");
   return ValueType{};
 }
 
@@ -258,7 +261,8 @@ Access EntryResolver::access(const EntryDescription& description, const EntryPla
   const Access assumed = standard != nullptr ? standard->access.assumed() : Access::ro;
   diagnostics_.error("access-type", field.position,
                      fmt::format("AccessType {} is not ro, wo, rw, rwr, rww or const; assuming {}", quote(text),
-                                 canopen::row_of(assumed).name));
+                                 canopen::row_of(assumed).name),
+                     {}, fmt::format("{} {}", text, canopen::row_of(assumed).name));
   return assumed;
 }
 
@@ -269,7 +273,8 @@ bool EntryResolver::pdo_mapping(const EntryDescription& description) {
   const auto number = parse_unsigned(text);
   if (number && *number <= 1) return *number == 1;
   diagnostics_.warning("pdo-mapping", field.position,
-                       fmt::format("PDOMapping must be 0 or 1, not {}; using {}", quote(text), number ? 1 : 0));
+                       fmt::format("PDOMapping must be 0 or 1, not {}; using {}", quote(text), number ? 1 : 0), {},
+                       std::string{text});
   return number.has_value();
 }
 

@@ -73,7 +73,7 @@ std::optional<Object> ObjectResolver::resolve(const ObjectDescription& descripti
   object.denotation = description.denotation.text;
   object.type = object_type(description);
   if (object.name.empty()) {
-    diagnostics_.warning("parameter-name", description.position, "missing ParameterName");
+    diagnostics_.warning("parameter-name", description.position, "missing ParameterName", {}, "missing");
   }
   resolve_links(description, object);
   if (object.has_sub_indices()) {
@@ -95,7 +95,7 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
   if (!field.present || text.empty()) {
     if (has_subs) {
       diagnostics_.warning("object-type", description.position,
-                           "missing ObjectType of an object with sub-objects; assuming RECORD");
+                           "missing ObjectType of an object with sub-objects; assuming RECORD", {}, "missing");
     }
     return fallback;
   }
@@ -107,13 +107,15 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
   if (known == object_types.end()) {
     diagnostics_.warning(
         "object-type", field.position,
-        fmt::format("{} is not an object code of CiA 301; assuming {}", quote(text), to_string(fallback)));
+        fmt::format("{} is not an object code of CiA 301; assuming {}", quote(text), to_string(fallback)), {},
+        std::string{text});
     return fallback;
   }
   if (*known == ObjectType::deftype || *known == ObjectType::defstruct) {
     diagnostics_.warning(
         "object-type", field.position,
-        fmt::format("a {} must have an index below 1000h; assuming {}", to_string(*known), to_string(fallback)));
+        fmt::format("a {} must have an index below 1000h; assuming {}", to_string(*known), to_string(fallback)),
+        {}, std::string{to_string(*known)});
     return fallback;
   }
   const bool is_simple = *known == ObjectType::var || *known == ObjectType::domain;
@@ -123,7 +125,8 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
     return *known;
   }
   diagnostics_.warning("object-type", field.position,
-                       fmt::format("a {} cannot have sub-objects; assuming RECORD", to_string(*known)));
+                       fmt::format("a {} cannot have sub-objects; assuming RECORD", to_string(*known)), {},
+                       fmt::format("{} with sub-objects", to_string(*known)));
   return ObjectType::record;
 }
 
@@ -180,13 +183,17 @@ void ObjectResolver::check_sub_number(const ObjectDescription& description) {
   if (!field.present || number_of(description.compact_sub_obj).value_or(0) > 0) return;
   const std::size_t count = description.sub_objects.size();
   if (number_of(field) == count) return;
+  const auto stated = number_of(field);
+  const std::string cause = stated ? fmt::format("{:+}", static_cast<std::int64_t>(*stated - count)) : std::string{};
   diagnostics_.warning("sub-number", field.position,
                        fmt::format("SubNumber is {}, but {} described; using {}", strip_inline_comment(field.text),
-                                   count == 1 ? "1 sub-object is" : fmt::format("{} sub-objects are", count), count));
+                                   count == 1 ? "1 sub-object is" : fmt::format("{} sub-objects are", count), count),
+                       {}, cause);
 }
 
 /// Sub-indices are hexadecimal (CiA 306-1, 4.6.2). The author may have counted in decimal if 10h follows 9h and no
-/// sub-index of the object has a digit from A to F.
+/// sub-index of the object has a digit from A to F. It is certain if sub-index 0 states the highest one as a decimal
+/// number.
 void ObjectResolver::check_sub_indices(const ObjectDescription& description) {
   const SubObjectDescription* const written = description.find(0x10);
   const auto has_letter = [](const SubObjectDescription& one) {
@@ -194,8 +201,19 @@ void ObjectResolver::check_sub_indices(const ObjectDescription& description) {
   };
   if (written == nullptr || description.find(0x09) == nullptr) return;
   if (std::ranges::any_of(description.sub_objects, has_letter)) return;
-  diagnostics_.warning("sub-index-base", written->position,
-                       "sub-indices are hexadecimal: this is 10h; did you mean Ah, which is missing?");
+  const std::string hexadecimal = "sub-indices are hexadecimal: this is 10h";
+  const SubObjectDescription* const count = description.find(0);
+  const unsigned highest = description.sub_objects.back().sub_index;
+  const unsigned as_decimal = (highest >> 4U) * 10 + (highest & 0x0FU);
+  if (count != nullptr && number_of(count->default_value) == as_decimal) {
+    diagnostics_.error(
+        "sub-index-base", written->position,
+        fmt::format("{}; those of this object are decimal, for sub-index 0 is {}", hexadecimal, as_decimal), {},
+        "decimal");
+  } else {
+    diagnostics_.warning("sub-index-base", written->position, hexadecimal + "; did you mean Ah, which is missing?", {},
+                         "looks decimal");
+  }
 }
 
 void ObjectResolver::supply_sub_index_0(const ObjectDescription& description, Object& object) {

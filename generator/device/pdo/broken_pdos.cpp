@@ -79,7 +79,7 @@ BrokenPdo broken_by_missing(const Device& device, const Pdo& pdo, const PdoEntry
           object == nullptr
               ? fmt::format("{} {}, which does not exist", begin, label)
               : fmt::format("{} {} of \"{}\", a sub-index that does not exist", begin, label, object->name),
-          label};
+          object == nullptr ? index_label(entry.index) : label};
 }
 
 /// An invalid PDO is an error; if it is disabled by default, it is harmless until it is enabled.

@@ -20,10 +20,11 @@ bool have_same_content(const IniSection& a, const IniSection& b) {
 
 void report_duplicate_section(const SourceFile& source, const IniSection& section, const IniSection& first,
                               Diagnostics& diagnostics) {
-  diagnostics.warning("duplicate-section", section_position(source, section),
-                      fmt::format("duplicate section {} with {} content; using the first", quote(section.name),
-                                  have_same_content(section, first) ? "the same" : "different"),
-                      {{section_position(source, first), "the first one"}});
+  const std::string_view content = have_same_content(section, first) ? "the same" : "different";
+  diagnostics.warning(
+      "duplicate-section", section_position(source, section),
+      fmt::format("duplicate section {} with {} content; using the first", quote(section.name), content),
+      {{section_position(source, first), "the first one"}}, std::string{content});
 }
 
 void report_duplicate_key(const SourceFile& source, const IniEntry& entry, const Position& first,

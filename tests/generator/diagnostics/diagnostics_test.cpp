@@ -17,7 +17,7 @@ namespace {
 
 std::string printed(const Diagnostics& diagnostics) {
   std::string text;
-  print_text(text, diagnostics, false);
+  print_text(text, diagnostics, {});
   return text;
 }
 
@@ -160,7 +160,6 @@ TEST(PrintText, PutsTheSuppressedBehindTheirRule) {
   EXPECT_TRUE(
       text.ends_with("a.eds:1:1: warning: again [number-range]\n"
                      "a.eds: warning: 3 more of this kind [number-range]\n"
-                     "a.eds:1:1: error: last [data-type]\n"
                      "a.eds: 1 error, 53 warnings\n"))
       << text;
 }
@@ -184,10 +183,22 @@ TEST(Diagnostics, MakeOneOfTheFindingsOfOneCause) {
   const Diagnostic& first = diagnostics.all().front();
   EXPECT_EQ(first.position.line, 1U);
   EXPECT_EQ(first.places, 160U);
-  ASSERT_EQ(first.notes.size(), Diagnostic::max_places - 1);
-  EXPECT_EQ(first.notes.back().position.line, Diagnostic::max_places);
-  EXPECT_EQ(first.unnamed, 160 - Diagnostic::max_places);
+  ASSERT_EQ(first.notes.size(), 159U);
+  EXPECT_EQ(first.notes.back().position.line, 160U);
+  EXPECT_EQ(first.unnamed, 0U);
   EXPECT_EQ(diagnostics.all().back().places, 1U);
+}
+
+TEST(Diagnostics, StoreAThousandPlacesOfOneCause) {
+  const SourceFile file("a.eds", std::string(2000, '\n'));
+  Diagnostics diagnostics;
+  for (std::uint32_t line = 1; line <= 1500; ++line) {
+    diagnostics.error("number-range", {&file, line, 1}, "again", {}, "cause");
+  }
+  const Diagnostic& first = diagnostics.all().front();
+  EXPECT_EQ(first.places, 1500U);
+  EXPECT_EQ(first.notes.size(), 999U);
+  EXPECT_EQ(first.unnamed, 500U);
 }
 
 TEST(Diagnostics, KeepTheCausesOfOtherFilesAndSeveritiesApart) {
@@ -220,6 +231,14 @@ TEST(PrintText, NamesTheFirstPlacesOfOneCause) {
   EXPECT_NE(text.find("a.eds:4:1: note: maps an rwr\n"), std::string::npos) << text;
   EXPECT_NE(text.find("a.eds: note: 156 more places with the same cause\n"), std::string::npos) << text;
   EXPECT_TRUE(text.ends_with("a.eds: 2 errors, 0 warnings\n")) << text;
+}
+
+TEST(PrintText, NamesAllPlacesOnDemand) {
+  const SourceFile file("a.eds", std::string(200, '\n'));
+  std::string text;
+  print_text(text, findings_of_one_cause(file), {.all = true});
+  EXPECT_NE(text.find("a.eds:160:1: note: maps an rwr\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("more places"), std::string::npos) << text;
 }
 
 TEST(PrintJson, CountsThePlacesOfOneCause) {
@@ -277,7 +296,7 @@ TEST(PrintText, ColoursOnDemand) {
   Diagnostics diagnostics;
   diagnostics.error("number-range", {&file, 1, 1}, "here");
   std::string text;
-  print_text(text, diagnostics, true);
+  print_text(text, diagnostics, {.colour = true});
   EXPECT_NE(text.find("\x1B[1;31merror:\x1B[0m here"), std::string::npos) << text;
 }
 
@@ -333,13 +352,13 @@ TEST(PrintJson, HasAStableShape) {
   const nlohmann::json expected = nlohmann::json::parse(R"({
     "version": 1,
     "diagnostics": [
-      {"file": "a.eds", "line": 2, "column": 2, "length": 4, "severity": "warning", "rule": "duplicate-key",
-       "message": "second", "notes": [{"file": "a.eds", "line": 1, "column": 2, "length": 4, "message": "first"}]},
       {"file": "a.eds", "line": 1, "column": 1, "length": 1, "severity": "error", "rule": "empty-file",
-       "message": "whole", "notes": []}],
+       "message": "whole", "notes": []},
+      {"file": "a.eds", "line": 2, "column": 2, "length": 4, "severity": "warning", "rule": "duplicate-key",
+       "message": "second", "notes": [{"file": "a.eds", "line": 1, "column": 2, "length": 4, "message": "first"}]}],
     "allowed_diagnostics": [],
     "suppressed": [],
-    "errors": 1,
+    "causes": 2, "errors": 1,
     "warnings": 1, "notes": 0, "allowed": 0})");
   EXPECT_EQ(print_json(diagnostics), expected);
 }

@@ -20,10 +20,9 @@ struct CheckedObjects : DeviceFromText {
 
 TEST(ObjectRules, WarnOfEachMandatoryObjectThatIsMissing) {
   const CheckedObjects checked(var("1001", "Error register", "5", "ro"));
-  std::vector<std::string> messages;
-  for (const Diagnostic& diagnostic : checked.diagnostics.all()) {
-    if (diagnostic.rule.text() == "mandatory-object") messages.push_back(diagnostic.message);
-  }
+  const Diagnostic& finding = checked.finding("mandatory-object");
+  std::vector<std::string> messages{finding.message};
+  for (const Note& note : finding.notes) messages.push_back(note.message);
   EXPECT_EQ(messages,
             (std::vector<std::string>{"mandatory object 1000h is missing", "mandatory object 1018h is missing"}));
   EXPECT_EQ(checked.diagnostics.errors(), 0U);
