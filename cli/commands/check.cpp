@@ -9,6 +9,7 @@
 #include "device/options/option_table.hpp"
 #include "diagnostics/unknown_rule.hpp"
 #include "load/load_device.hpp"
+#include "rules/cause_rows.hpp"
 #include "rules/check_rules.hpp"
 #include "rules/rule_examples.hpp"
 #include "shared/common_options.hpp"
@@ -26,6 +27,7 @@ constexpr const char* examples = R"(Examples:
   edsc check drive.eds --format json      the same for a program
   edsc check eds/*.eds --format sarif     the same for a code review (SARIF 2.1.0)
   edsc check drive.eds --strict           warnings count as errors
+  edsc check drive.eds --all              findings that follow from others too
   edsc check --list-rules                 every rule with its meaning
   edsc check --explain pdo-length         one rule, and where it is documented)";
 
@@ -44,6 +46,29 @@ struct Settings {
   ColorOption color;
 };
 
+/// The rules whose findings may follow from one of this rule, in the file or in the same object.
+nlohmann::ordered_json consequences_of(const Rule& rule) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const CauseRow& row : cause_rows()) {
+    if (row.cause != RuleId{rule}) continue;
+    nlohmann::ordered_json rules = nlohmann::ordered_json::array();
+    for (const AnyRule one : row.consequences) rules.push_back(one.text());
+    rows.push_back({{"within", row.reach == CauseReach::file ? "file" : "object"}, {"rules", std::move(rules)}});
+  }
+  return rows;
+}
+
+std::string consequences_text(const Rule& rule) {
+  std::string text;
+  for (const auto& row : consequences_of(rule)) {
+    std::string rules;
+    for (const auto& one : row["rules"]) rules += (rules.empty() ? "" : ", ") + one.get<std::string>();
+    text += fmt::format("Findings that may follow from it, in the {}: {}\n",
+                        row["within"] == "file" ? "same file" : "same object", rules);
+  }
+  return text;
+}
+
 nlohmann::ordered_json to_json(const Rule& rule) {
   nlohmann::ordered_json severities = {to_string(rule.severity)};
   if (rule.mildest != rule.severity) severities.push_back(to_string(rule.mildest));
@@ -52,6 +77,7 @@ nlohmann::ordered_json to_json(const Rule& rule) {
           {"severities", severities},
           {"meaning", rule.title},
           {"source", rule.source},
+          {"consequences", consequences_of(rule)},
           {"url", url_of(rule)}};
 }
 
@@ -62,8 +88,8 @@ void print_example(std::string_view title, const std::vector<std::string>& block
 int explain(const Rule& rule, const std::string& format) {
   const std::vector<RuleExample>& of_rule = examples_of(RuleId{rule});
   if (format == "text") {
-    fmt::print("{}: {}\n{}\nSource: {}\nDocumentation, with examples: {}\n", rule.id, to_string(rule.severity),
-               rule.title, rule.source, url_of(rule));
+    fmt::print("{}: {}\n{}\nSource: {}\n{}Documentation, with examples: {}\n", rule.id, to_string(rule.severity),
+               rule.title, rule.source, consequences_text(rule), url_of(rule));
     for (const RuleExample& example : of_rule) {
       print_example("Wrong", example.wrong);
       print_example("Right", example.right);

@@ -563,8 +563,8 @@ class Check(CommandLine):
         result = self.edsc("check", WRONG, GOOD, "--format", "json")
         self.expect(INPUT_HAS_ERRORS, result)
         report = json.loads(result.stdout)
-        self.assertEqual(set(report), {"version", "diagnostics", "allowed_diagnostics", "suppressed", "left_out", "errors", "warnings",
-                                       "notes", "allowed"})
+        self.assertEqual(set(report), {"version", "diagnostics", "allowed_diagnostics", "suppressed", "left_out", "causes", "errors",
+                                       "warnings", "notes", "allowed"})
         self.assertEqual((report["version"], report["errors"]), (1, 1))
         (finding,) = (row for row in report["diagnostics"] if row["severity"] == "error")
         self.assertEqual(set(finding), {"file", "line", "column", "length", "severity", "rule", "message", "notes"})

@@ -223,7 +223,7 @@ def run(edsc: Path, folder: Path, example: Example, kind: str, base: str) -> tup
         if any(line.column for line in options.lines):
             marked = options.lines
     command = block.option("command", "check")
-    arguments = {"check": [], "generate": ["-o", "out"], "format": ["--check"]}[command]
+    arguments = {"check": ["--all"], "generate": ["-o", "out"], "format": ["--check"]}[command]
     words = ["network", "check", file] if is_network else [command, file, *arguments]
     result = subprocess.run([edsc, *words], cwd=folder, capture_output=True, text=True, timeout=600)
     column = int(block.option("column", "0"))
@@ -269,7 +269,8 @@ The rules of `edsc check`. An error stops `edsc generate`; a warning reports a f
 information and does not change the exit code, not even with `--strict`. `--silence RULE` and `silence` in the
 [options file](options.md) disable a rule for `check`; for `generate`, only its warnings and notes. `allow` in the options
 file, or a comment in the EDS, allows [expected findings](options.md#allowed-findings). `edsc check --list-rules` prints this
-table, `--explain RULE` one row of it with its examples.
+table, `--explain RULE` one row of it with its examples. A finding that follows from another one is counted below it;
+`edsc check --all` lists it.
 
 The examples are changes to an EDS without findings: a line replaces the one with the same key, a section that begins with
 `-` is removed, and `^` marks the position of the finding. `tests/generator/lint/rules_test.py` runs the examples of
@@ -287,6 +288,9 @@ def document(rules: list[dict[str, str]], examples: dict[str, list[Example]]) ->
         out.append(f"| [{rule['id']}](#{rule['id']}) | {severity_of(rule)} | {rule['meaning']} | {rule['source']} |")
     for rule in rules:
         out += ["", f"## {rule['id']}", "", f"{severity_of(rule).capitalize()}: {rule['meaning']} ({rule['source']}).", ""]
+        for row in rule["consequences"]:
+            links = ", ".join(f"[{one}](#{one})" for one in row["rules"])
+            out += [f"May cause, in the same {row['within']}: {links}.", ""]
         for example in examples[rule["id"]]:
             for kind, word in (("bad", "Wrong"), ("good", "Right")):
                 blocks = [*code_block(example.blocks.get(kind)), *code_block(example.blocks.get(f"{kind} options"))]
