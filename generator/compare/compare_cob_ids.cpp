@@ -5,6 +5,8 @@
 #include <canopen/can/cob_id.hpp>
 #include <cstdint>
 
+#include "values/value_text.hpp"
+
 namespace edsc {
 namespace {
 
@@ -82,7 +84,7 @@ class CobIdComparison {
     }
   }
 
-  void add(ChangeRule rule) { changes_.push_back({rule, value_text(before_, type_), value_text(after_, type_)}); }
+  void add(ChangeRule rule) { changes_.push_back({rule, written_value(before_, type_), written_value(after_, type_)}); }
 
   const Value& before_;
   const Value& after_;
@@ -96,8 +98,8 @@ class CobIdComparison {
 std::vector<CobIdChange> compare_cob_ids(const std::optional<Value>& before, const std::optional<Value>& after,
                                          const canopen::DataTypeRow& type, CobIdService service) {
   if (before && after) return CobIdComparison{*before, *after, type, service}.compare();
-  return {{is_pdo(service) ? ChangeRule{"pdo-cob-id"} : ChangeRule{"service-cob-id"}, value_text(before, type),
-           value_text(after, type)}};
+  return {{is_pdo(service) ? ChangeRule{"pdo-cob-id"} : ChangeRule{"service-cob-id"}, written_value(before, type),
+           written_value(after, type)}};
 }
 
 }  // namespace edsc

@@ -193,7 +193,7 @@ class EntryComparison {
     add(major(before_.default_value) != major(after_.default_value) ? ChangeRule{"revision-major"}
                                                                     : ChangeRule{"revision-minor"},
         place_of(before_.default_value, before_), place_of(after_.default_value, after_),
-        value_text(before_.default_value, *before_.type), value_text(after_.default_value, *after_.type));
+        written_value(before_.default_value, *before_.type), written_value(after_.default_value, *after_.type));
   }
 
   const Entry& before_;
@@ -209,7 +209,7 @@ void compare_entries(const Entry& before, const Entry& after, bool in_rpdo, Chan
 }
 
 std::string meant_value_text(const std::optional<Value>& value, const Entry& entry) {
-  std::string text = value_text(value, *entry.type);
+  std::string text = written_value(value, *entry.type);
   const bool has_meaning = entry.meaning && (quantity_of(entry) != nullptr || meaning_of_integer(entry) != nullptr);
   if (!value || value->plus_node_id || !has_meaning) return text;
   const std::string bytes = bytes_of(*value, *entry.type);
@@ -218,22 +218,6 @@ std::string meant_value_text(const std::optional<Value>& value, const Entry& ent
   if (meant == value_text(*entry.type, octets) || meant.find(' ') == std::string::npos) return text;
   const bool is_name = entry.meaning->values || entry.meaning->has_fields();
   return is_name ? meant : fmt::format("{} ({})", text, meant);
-}
-
-std::string value_text(const std::optional<Value>& value, const DataTypeRow& type) {
-  if (!value) return "none";
-  if (value->plus_node_id) return fmt::format("$NODEID+0x{:X}", value->bits);
-  switch (type.kind) {
-    case DataClass::string: return fmt::format("\"{}\"", value->bytes);
-    case DataClass::real: return real_text(value->bits, type);
-    case DataClass::signed_integer: return fmt::format("{}", static_cast<std::int64_t>(value->bits));
-    case DataClass::boolean:
-    case DataClass::unsigned_integer:
-    case DataClass::time:
-    case DataClass::domain: break;
-  }
-  return value->hexadecimal ? fmt::format("0x{:0{}X}", value->bits, (type.bits + 3) / 4)
-                            : fmt::format("{}", value->bits);
 }
 
 bool same_value(const std::optional<Value>& a, const std::optional<Value>& b) {

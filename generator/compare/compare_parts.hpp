@@ -54,9 +54,6 @@ void compare_error_codes(const Device& before, const Device& after, const Compar
 /// A value in EDS spelling, and its meaning: `215 (21.5 °C)`, `1 run`.
 [[nodiscard]] std::string meant_value_text(const std::optional<Value>& value, const Entry& entry);
 
-/// A value in EDS spelling; strings in quotes; `none` if missing.
-[[nodiscard]] std::string value_text(const std::optional<Value>& value, const canopen::DataTypeRow& type);
-
 [[nodiscard]] bool same_value(const std::optional<Value>& a, const std::optional<Value>& b);
 
 void compare_pdos(const Device& before, const Device& after, Changes& changes);

@@ -8,6 +8,7 @@
 
 #include "device/cob_id_parameter.hpp"
 #include "device/pdo/pdo_defaults.hpp"
+#include "values/value_text.hpp"
 
 namespace edsc {
 namespace {
@@ -119,7 +120,7 @@ class PdoComparison {
   void report(std::uint8_t sub_index, ChangeRule rule) {
     const auto text = [&](const Pdo& pdo) {
       const Entry* const entry = parameter(pdo, sub_index);
-      return entry != nullptr ? value_text(entry->default_value, *entry->type) : std::string{"none"};
+      return entry != nullptr ? written_value(entry->default_value, *entry->type) : std::string{"none"};
     };
     const auto place = [&](const Pdo& pdo) {
       const auto value = default_of(parameter(pdo, sub_index));

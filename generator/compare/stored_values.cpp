@@ -12,6 +12,7 @@
 #include "device/options/option_table.hpp"
 #include "text/markdown.hpp"
 #include "text/printable.hpp"
+#include "values/value_text.hpp"
 
 namespace edsc {
 namespace {
@@ -47,8 +48,8 @@ void compare_entry(const StoringDevice& before, const StoringDevice& after, cons
   if (same_value(old_entry.low_limit, new_entry.low_limit) && same_value(old_entry.high_limit, new_entry.high_limit))
     return;
   if (!new_entry.low_limit && !new_entry.high_limit) return;
-  value.why = fmt::format("a value outside {} to {} is not loaded", value_text(new_entry.low_limit, *new_entry.type),
-                          value_text(new_entry.high_limit, *new_entry.type));
+  value.why = fmt::format("a value outside {} to {} is not loaded", written_value(new_entry.low_limit, *new_entry.type),
+                          written_value(new_entry.high_limit, *new_entry.type));
 }
 
 std::size_t count(const std::vector<StoredValueChange>& values, StoredFate fate) {

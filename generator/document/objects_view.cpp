@@ -63,7 +63,7 @@ std::string mapping_text(const Entry& entry) {
 }
 
 std::string shown_value(const std::optional<Value>& value, const canopen::DataTypeRow& type) {
-  return value ? value_text(value, type) : std::string{};
+  return value ? written_value(value, type) : std::string{};
 }
 
 /// The number as hexadecimal if the EDS writes it in decimal, and the reverse; empty if that says nothing new.

@@ -10,6 +10,7 @@
 #include "document/views.hpp"
 #include "text/counted.hpp"
 #include "text/utf8.hpp"
+#include "values/value_text.hpp"
 
 namespace edsc::document {
 namespace {
@@ -143,7 +144,7 @@ Json pdo_properties(const Pdo& pdo, const Options& options) {
   if (const Value* const cob_id = parameter(pdo, cob_id_sub_index)) {
     add_property(rows, "CAN-ID", pdo_can_id(*cob_id));
     const Entry& entry = *pdo.communication->find(cob_id_sub_index);
-    add_property(rows, "COB-ID", value_text(entry.default_value, *entry.type));
+    add_property(rows, "COB-ID", written_value(entry.default_value, *entry.type));
   }
   const std::uint64_t type =
       communication_default(pdo, transmission_type_sub_index).value_or(default_transmission_type);

@@ -8,6 +8,7 @@
 #include "eds/number.hpp"
 #include "lint/rule_groups.hpp"
 #include "text/utf8.hpp"
+#include "values/value_text.hpp"
 
 namespace edsc {
 namespace {
@@ -50,7 +51,8 @@ void check_live(const RuleContext& context, const Object& object, const Entry& e
   if (entry.default_value->bits == 0 && entry.default_value->bytes.empty()) return;
   if (shows_a_setting(context, entry)) return;
   context.report("live-default", entry.default_value->position,
-                 fmt::format("{} has a default value, but the running device sets another one", named(entry)));
+                 fmt::format("{} has the {} {}, but the running device sets another one", named(entry),
+                             context.value_word(entry), written_value(entry.default_value, *entry.type)));
 }
 
 void check_mapping(const RuleContext& context, const Entry& entry) {

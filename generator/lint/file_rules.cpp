@@ -155,7 +155,11 @@ void check_commissioning(const RuleContext& context) {
     context.report("section-spelling", place, "CiA 306 spells this section [DeviceComissioning]");
   }
   if (!context.device.node_id) {
-    context.report("commissioned-node-id", commissioning.node_id.position, "missing NodeID; expected 1..127");
+    const Field& stated = commissioning.node_id;
+    context.report("commissioned-node-id", stated.position,
+                   stated.empty() ? "missing NodeID; expected 1..127"
+                                  : fmt::format("NodeID {} means that the node has none yet; expected 1..127",
+                                                quote(strip_inline_comment(stated.text))));
   }
   check_commissioned_baud_rate(context);
 }

@@ -126,10 +126,9 @@ class MeaningCheck {
     }
     if (!values.closed || !entry_.default_value || entry_.default_value->plus_node_id || !is_integer(type)) return;
     if (values.find(integer_of(entry_.default_value->bits)) != nullptr) return;
-    context_.report(
-        "meaning-default", entry_.default_value->position,
-        fmt::format("{} is the default value of {}, but not one of its named values, and others are rejected",
-                    integer_of(entry_.default_value->bits), named(entry_)));
+    context_.report("meaning-default", entry_.default_value->position,
+                    fmt::format("{} is the {} of {}, but not one of its named values, and others are rejected",
+                                integer_of(entry_.default_value->bits), context_.value_word(entry_), named(entry_)));
   }
 
   void check_value(const NamedValue& one) const {

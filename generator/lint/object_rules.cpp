@@ -4,6 +4,7 @@
 #include "device/objects/standard_objects.hpp"
 #include "lint/rule_groups.hpp"
 #include "values/read_value.hpp"
+#include "values/value_text.hpp"
 
 namespace edsc {
 namespace {
@@ -16,11 +17,15 @@ void check_default(const RuleContext& context, const Entry& entry) {
   const bool above = entry.high_limit && is_less(*entry.type, entry.high_limit->bits, value);
   if (!accepts_mode(context.device, context.options, entry, value)) {
     context.report("default-outside-limits", entry.default_value->position,
-                   fmt::format("the default value of {} is not one of the supported drive modes", named(entry)));
+                   fmt::format("the {} {} of {} is not one of the supported drive modes", context.value_word(entry),
+                               written_value(entry.default_value, *entry.type), named(entry)));
   }
   if (!below && !above) return;
   context.report("default-outside-limits", entry.default_value->position,
-                 fmt::format("the default value of {} is {} its limit", named(entry), below ? "below" : "above"), {},
+                 fmt::format("the {} {} of {} is {} its limit {}", context.value_word(entry),
+                             written_value(entry.default_value, *entry.type), named(entry), below ? "below" : "above",
+                             written_value(below ? entry.low_limit : entry.high_limit, *entry.type)),
+                 {},
                  fmt::format("{} of {} {}", value, below ? "low" : "high",
                              below ? entry.low_limit->bits : entry.high_limit->bits));
 }

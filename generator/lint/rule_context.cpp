@@ -16,6 +16,12 @@ const EntryDescription* RuleContext::describe(const Entry& entry) const {
   return sub_object != nullptr ? sub_object : static_cast<const EntryDescription*>(object);
 }
 
+std::string_view RuleContext::value_word(const Entry& entry) const {
+  const EntryDescription* const description = describe(entry);
+  const bool is_configured = sheet.is_dcf && description != nullptr && !description->parameter_value.empty();
+  return is_configured ? "ParameterValue" : "default value";
+}
+
 Position RuleContext::place_of(const Entry& entry, Field EntryDescription::*key) const {
   const EntryDescription* description = describe(entry);
   if (description == nullptr || !(description->*key).present) return entry.position;

@@ -31,6 +31,9 @@ struct RuleContext {
   /// The section that describes an entry; for an element of a compact object, that of the object.
   [[nodiscard]] const EntryDescription* describe(const Entry& entry) const;
 
+  /// What the value with which an entry starts is called: its default value, or the ParameterValue of a DCF.
+  [[nodiscard]] std::string_view value_word(const Entry& entry) const;
+
   /// The position of a key of an entry, or of its section if the key is missing.
   [[nodiscard]] Position place_of(const Entry& entry, Field EntryDescription::*key) const;
 };

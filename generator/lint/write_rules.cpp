@@ -109,7 +109,8 @@ void check_cycle_period(const RuleContext& context) {
   const auto value = static_cast<std::uint32_t>(period->default_value->bits);
   if (canopen::is_sync_period(value)) return;
   report_default(context, *period,
-                 fmt::format("its default value {} us is above the maximum, 2147483647 us; SYNC is never sent", value),
+                 fmt::format("its {} {} us is above the maximum, 2147483647 us; SYNC is never sent",
+                             context.value_word(*period), value),
                  "1006h");
 }
 
@@ -122,7 +123,8 @@ void check_cob_id_bits(const RuleContext& context) {
   }
   const Entry* const emcy = context.device.find(cob_id_emcy, 0);
   if (emcy != nullptr && emcy->default_value && (emcy->default_value->bits & CobId::no_rtr_bit) != 0) {
-    report_default(context, *emcy, "bit 30 of its default value is 1, but is reserved and must be 0",
+    report_default(context, *emcy,
+                   fmt::format("bit 30 of its {} is 1, but is reserved and must be 0", context.value_word(*emcy)),
                    "bit 30 of 1014h");
   }
 }
@@ -135,8 +137,8 @@ void check_disabled_cob_id(const RuleContext& context, const Entry& entry) {
   const CobId cob_id{static_cast<std::uint32_t>(entry.default_value->bits) + added};
   if (cob_id.valid() || canopen::may_be_written(cob_id, false, true)) return;
   report_default(context, entry,
-                 fmt::format("its default value {:08X}h has more than 11 bits, but bit 29 selects an 11-bit CAN-ID",
-                             cob_id.value()),
+                 fmt::format("its {} {:08X}h has more than 11 bits, but bit 29 selects an 11-bit CAN-ID",
+                             context.value_word(entry), cob_id.value()),
                  "a disabled COB-ID");
 }
 

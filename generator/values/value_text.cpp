@@ -13,6 +13,7 @@
 #include "text/utf8.hpp"
 #include "values/append.hpp"
 #include "values/little_endian.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {
@@ -155,6 +156,22 @@ std::string value_text(const DataTypeRow& type, Bytes bytes) {
   std::string text;
   append_value(text, type, bytes);
   return text;
+}
+
+std::string written_value(const std::optional<Value>& value, const DataTypeRow& type) {
+  if (!value) return "none";
+  if (value->plus_node_id) return fmt::format("$NODEID+0x{:X}", value->bits);
+  switch (type.kind) {
+    case DataClass::string: return fmt::format("\"{}\"", value->bytes);
+    case DataClass::real: return real_text(value->bits, type);
+    case DataClass::signed_integer: return fmt::format("{}", static_cast<std::int64_t>(value->bits));
+    case DataClass::boolean:
+    case DataClass::unsigned_integer:
+    case DataClass::time:
+    case DataClass::domain: break;
+  }
+  return value->hexadecimal ? fmt::format("0x{:0{}X}", value->bits, (type.bits + 3) / 4)
+                            : fmt::format("{}", value->bits);
 }
 
 std::string limit_text(const Value& limit, const DataTypeRow& type) {

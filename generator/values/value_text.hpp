@@ -12,6 +12,7 @@
 #include <canopen/od/data_type.hpp>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -40,6 +41,9 @@ void append_quoted(std::string& out, std::string_view text);
 
 /// The same as a separate string.
 [[nodiscard]] std::string value_text(const canopen::DataTypeRow& type, std::span<const std::uint8_t> bytes);
+
+/// A value of an EDS as it is written there, with strings in quotes; `none` without a value.
+[[nodiscard]] std::string written_value(const std::optional<Value>& value, const canopen::DataTypeRow& type);
 
 /// A limit; with an unknown node-ID, as a formula.
 [[nodiscard]] std::string limit_text(const Value& limit, const canopen::DataTypeRow& type);

@@ -15,6 +15,7 @@
 #include "eds/ini.hpp"
 #include "eds/number.hpp"
 #include "values/read_value.hpp"
+#include "values/value_text.hpp"
 
 namespace edsc {
 namespace {
@@ -305,7 +306,10 @@ void EntryResolver::resolve_limits(const EntryDescription& description, const Va
   drop_limit_formula(entry.high_limit);
   if (!entry.low_limit || !entry.high_limit) return;
   if (!is_less(*entry.type, entry.high_limit->bits, entry.low_limit->bits)) return;
-  diagnostics_.warning("limits-order", entry.low_limit->position, "LowLimit is above HighLimit; neither is checked");
+  diagnostics_.warning(
+      "limits-order", entry.low_limit->position,
+      fmt::format("LowLimit {} is above HighLimit {}; neither is checked", written_value(entry.low_limit, *entry.type),
+                  written_value(entry.high_limit, *entry.type)));
   entry.low_limit.reset();
   entry.high_limit.reset();
 }

@@ -114,8 +114,8 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
   if (*known == ObjectType::deftype || *known == ObjectType::defstruct) {
     diagnostics_.warning(
         "object-type", field.position,
-        fmt::format("a {} must have an index below 1000h; assuming {}", to_string(*known), to_string(fallback)),
-        {}, std::string{to_string(*known)});
+        fmt::format("a {} must have an index below 1000h; assuming {}", to_string(*known), to_string(fallback)), {},
+        std::string{to_string(*known)});
     return fallback;
   }
   const bool is_simple = *known == ObjectType::var || *known == ObjectType::domain;

@@ -65,9 +65,15 @@ TEST(ObjectRules, WarnOfADefaultBeyondItsLimits) {
   const CheckedObjects below(var("2000", "Value", "3", "rw", "LowLimit=-5\nHighLimit=10\nDefaultValue=-6\n"));
   EXPECT_EQ(findings(below.diagnostics, "default-outside-limits"),
             (std::vector{warning_at(8, 14, "default-outside-limits")}));
-  EXPECT_NE(below.finding("default-outside-limits").message.find("2000h:00 \"Value\" is below"), std::string::npos);
+  EXPECT_EQ(below.finding("default-outside-limits").message,
+            "the default value -6 of 2000h:00 \"Value\" is below its limit -5");
   const CheckedObjects above(var("2000", "Value", "3", "rw", "HighLimit=10\nDefaultValue=11\n"));
-  EXPECT_NE(above.finding("default-outside-limits").message.find("above"), std::string::npos);
+  EXPECT_NE(above.finding("default-outside-limits").message.find("is above its limit 10"), std::string::npos);
+  const CheckedObjects configured(
+      "[DeviceComissioning]\nNodeID=5\n" +
+      var("2000", "Value", "6", "rw", "HighLimit=0x000A\nDefaultValue=1\nParameterValue=0x000B\n"));
+  EXPECT_EQ(configured.finding("default-outside-limits").message,
+            "the ParameterValue 0x000B of 2000h:00 \"Value\" is above its limit 0x000A");
 }
 
 /// CiA 301, 7.5.2.37: 255 if the file has no value.
@@ -97,6 +103,7 @@ TEST(ObjectRules, CompareLimitsAsTheTypeDoes) {
 TEST(UnusableLimits, AreDroppedWhereLowIsAboveHigh) {
   const DeviceFromText read(var("2000", "Value", "3", "rw", "LowLimit=1000\nHighLimit=10\nDefaultValue=0\n"));
   EXPECT_EQ(findings(read.diagnostics, "limits-order"), (std::vector{warning_at(6, 10, "limits-order")}));
+  EXPECT_EQ(read.finding("limits-order").message, "LowLimit 1000 is above HighLimit 10; neither is checked");
   EXPECT_FALSE(read.entry(0x2000).low_limit);
   EXPECT_FALSE(read.entry(0x2000).high_limit);
   EXPECT_EQ(parse_value_text(read.entry(0x2000), "500").problem, "");
