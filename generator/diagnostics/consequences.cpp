@@ -51,6 +51,7 @@ class Marker {
 
   void apply(const CauseRow& row) {
     for (const std::size_t cause : findings_of(rules_, row.cause)) {
+      if (at(cause).severity < row.min_severity) continue;
       // What is itself a consequence passes its own on to its cause.
       const std::size_t root = diagnostics_.all()[cause].follows_from.value_or(cause);
       for (const AnyRule rule : row.consequences) {

@@ -11,24 +11,27 @@
 namespace edsc {
 namespace {
 
-/// Reports the first of the sub-indices 1..count that is missing or empty.
+/// Reports the first of the sub-indices 1..count that is missing, else the first one that is empty.
 void check_gaps(const RuleContext& context, const Pdo& pdo, const Entry& count) {
-  const std::uint64_t entries = count.default_value->bits;
-  for (std::uint64_t i = 1; i <= std::min<std::uint64_t>(entries, classical_can.objects); ++i) {
-    const Entry* entry = pdo.mapping->find(static_cast<std::uint8_t>(i));
+  const std::uint64_t stated = count.default_value->bits;
+  const auto last = static_cast<std::uint8_t>(std::min<std::uint64_t>(stated, classical_can.objects));
+  const Entry* empty = nullptr;
+  for (std::uint8_t i = 1; i <= last; ++i) {
+    const Entry* const entry = pdo.mapping->find(i);
     if (entry == nullptr) {
       context.report("pdo-mapping-count", count.default_value->position,
-                     fmt::format("{} maps {}, but {} is missing", pdo_label(pdo), counted(entries, "object"),
-                                 entry_label(pdo.mapping->index, static_cast<std::uint8_t>(i))));
+                     fmt::format("{} maps {}, but {} is missing", pdo_label(pdo), counted(stated, "object"),
+                                 entry_label(pdo.mapping->index, i)));
       return;
     }
-    if (entry->default_value && entry->default_value->bits != 0) continue;
-    context.report(
-        "pdo-mapping-gap", default_place(*entry),
-        fmt::format("{} maps {}, but {} is empty", pdo_label(pdo), counted(entries, "object"), named(*entry)),
-        {{count.default_value->position, "the number of objects"}}, i == 1 ? "counted, but not mapped" : "");
-    return;
+    const bool has_value = entry->default_value && entry->default_value->bits != 0;
+    if (empty == nullptr && !has_value) empty = entry;
   }
+  if (empty == nullptr) return;
+  context.report("pdo-mapping-gap", default_place(*empty),
+                 fmt::format("{} maps {}, but {} is empty", pdo_label(pdo), counted(stated, "object"), named(*empty)),
+                 {{count.default_value->position, "the number of objects"}},
+                 empty->sub_index == 1 ? "counted, but not mapped" : fmt::format("last {}", last - empty->sub_index));
 }
 
 /// Dummies may be mapped more than once.

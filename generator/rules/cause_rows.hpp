@@ -18,6 +18,7 @@ struct CauseRow {
   AnyRule cause;
   CauseReach reach;
   std::vector<AnyRule> consequences;
+  Severity min_severity = Severity::note;  ///< of the cause
 };
 
 /// The table, in the order in which causes are tried.

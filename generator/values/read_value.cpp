@@ -77,11 +77,12 @@ class ValueReader {
   }
 
   std::optional<Value> not_a_number() {
-    error("number-format", fmt::format("{} is not a value of type {}", quote(field_.text), type_.name), same_text());
+    error("number-format", fmt::format("{} is not a value of type {}", quote(field_.text), type_.name),
+          std::string{trim(field_.text)});
     return std::nullopt;
   }
 
-  /// The cause of findings of one text that is not a value of one type, as a tool writes it in many places.
+  /// The cause of findings of one text that is not in the range of one type, as a tool writes it in many places.
   [[nodiscard]] std::string same_text() const { return fmt::format("{} {}", type_.name, trim(field_.text)); }
 
   /// `$NODEID`, `$NODEID+0x180`, `0x180 + $NodeID`: CiA 306-1, 4.6.2.3.

@@ -156,7 +156,7 @@ std::optional<ValueType> EntryResolver::data_type(const EntryDescription& descri
     diagnostics_.warning("data-type", field.position,
                          fmt::format("DataType must be a number; that of {} is 0x{:04X}", named->name,
                                      static_cast<unsigned>(named->type)),
-                         {}, std::string{named->name});
+                         {}, "name");
     return types_.find(static_cast<std::uint64_t>(named->type));
   }
   if (!code) {
