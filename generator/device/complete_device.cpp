@@ -215,7 +215,8 @@ class Completion {
         "storage-autonomous", entry.default_value->position,
         fmt::format("{} is {}: the device stores by itself (bit 1), but a node stores on command; using {}; the option "
                     "storage.autonomous keeps the bit for an application that stores by itself",
-                    named(entry), bits, bits & on_command));
+                    named(entry), bits, bits & on_command),
+        {}, "bit 1");
     set(entry, bits & on_command, clause);
   }
 

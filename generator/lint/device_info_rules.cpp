@@ -79,7 +79,8 @@ void check_pdo_counts(const RuleContext& context) {
     if (field.empty() || number_of(field) == described) continue;
     context.report("pdo-count", field.position,
                    fmt::format("{} is {}, but {} {} described", row.key, quote(field.text), described,
-                               described == 1 ? "is" : "are"));
+                               described == 1 ? "is" : "are"),
+                   {}, "counts");
   }
 }
 

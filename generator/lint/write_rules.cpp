@@ -32,8 +32,10 @@ bool is_set(const RuleContext& context, std::string_view option) {
 
 void report_never(const RuleContext& context, const Entry& entry, std::string_view why, const Entry& by,
                   std::string cause) {
+  std::vector<Note> notes;
+  if (&by != &entry) notes.push_back({by.access_position, named(by)});
   context.report("never-writable", entry.access_position, fmt::format("no write can change {}: {}", named(entry), why),
-                 {{by.access_position, named(by)}}, std::move(cause));
+                 std::move(notes), std::move(cause));
 }
 
 /// Parameters of PDOs that are always valid, if other PDOs of the device can be disabled: no option is implied then.
@@ -60,6 +62,8 @@ struct StaticMappingCause {
 
 StaticMappingCause cause_of(const RuleContext& context, const Pdo& pdo) {
   const Entry* const count = pdo.mapping->find(0);
+  if (pdo.mapping->entries.size() == 1)
+    return {"it has no sub-indices for mapped objects", &pdo.mapping->entries.front()};
   if (count == nullptr) return {"its sub-index 0 is missing", &pdo.mapping->entries.front()};
   if (!canopen::writable(count->access)) return {fmt::format("its sub-index 0 is {}", access_name(*count)), count};
   for (const Entry& entry : pdo.mapping->entries) {

@@ -173,14 +173,14 @@ std::optional<ValueType> EntryResolver::data_type(const EntryDescription& descri
         "complex-data-type", field.position,
         fmt::format("DataType 0x{:04X} is the data type of a RECORD, not of a value; its sub-index {} is {}", *code,
                     place.sub_index, member.row->name),
-        {}, fmt::format("read {}", *code));
+        {}, "read");
     return member;
   }
   if (types_.is_complex(*code)) {
     diagnostics_.warning(
         "complex-data-type", field.position,
         fmt::format("DataType 0x{:04X} is the data type of a RECORD, not of a value; the entry is left out", *code), {},
-        fmt::format("left out {}", *code));
+        "left out");
     return std::nullopt;
   }
   diagnostics_.error(

@@ -71,6 +71,13 @@ BrokenPdo broken_object(MappingFault fault, const Pdo& pdo, const PdoEntry& entr
                              named(*entry.object), object.type->name, object.type->bits)};
 }
 
+/// Whether the device has objects in the same block of 4096 indices, such as 6000h to 6FFFh. If it has none, the file
+/// describes a part of its objects only.
+bool has_objects_near(const Device& device, std::uint16_t index) {
+  const auto block = [](std::uint16_t one) { return one >> 12U; };
+  return std::ranges::any_of(device.objects, [&](const Object& object) { return block(object.index) == block(index); });
+}
+
 BrokenPdo broken_by_missing(const Device& device, const Pdo& pdo, const PdoEntry& entry) {
   const Object* object = device.find(entry.index);
   const std::string label = entry_label(entry.index, entry.sub_index);
@@ -79,7 +86,9 @@ BrokenPdo broken_by_missing(const Device& device, const Pdo& pdo, const PdoEntry
           object == nullptr
               ? fmt::format("{} {}, which does not exist", begin, label)
               : fmt::format("{} {} of \"{}\", a sub-index that does not exist", begin, label, object->name),
-          object == nullptr ? index_label(entry.index) : label};
+          object != nullptr                       ? label
+          : has_objects_near(device, entry.index) ? index_label(entry.index)
+                                                  : "none near"};
 }
 
 /// An invalid PDO is an error; if it is disabled by default, it is harmless until it is enabled.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -83,24 +82,17 @@ class ObjectListReader {
   std::unordered_map<std::uint16_t, Position> first_place_;
 };
 
-/// Reports objects in no list. If many are missing from one list, they have the same cause.
+/// Reports objects in no list.
 void report_not_listed(const DataSheet& sheet, Diagnostics& diagnostics) {
   std::unordered_set<std::uint16_t> listed;
   for (const ListedObject& object : sheet.listed) listed.insert(object.index);
-  std::map<std::optional<ObjectListKind>, std::vector<const ObjectDescription*>> missing;
   for (const ObjectDescription& object : sheet.objects) {
     if (!object.has_section || listed.contains(object.index)) continue;
-    missing[list_of(object.index)].push_back(&object);
-  }
-  for (const auto& [list, objects] : missing) {
-    const std::string list_name{list ? name_of(*list) : ""};
-    const bool one_cause = objects.size() > Diagnostic::max_places;
-    for (const ObjectDescription* object : objects) {
-      diagnostics.warning("object-not-listed", object->position,
-                          fmt::format("{:04X}h is not in any object list{}", object->index,
-                                      list ? fmt::format("; it belongs in [{}]", list_name) : ""),
-                          {}, one_cause ? list_name : "");
-    }
+    const auto list = list_of(object.index);
+    diagnostics.warning("object-not-listed", object.position,
+                        fmt::format("{:04X}h is not in any object list{}", object.index,
+                                    list ? fmt::format("; it belongs in [{}]", name_of(*list)) : ""),
+                        {}, "not listed");
   }
 }
 
