@@ -101,6 +101,8 @@ class Completion {
                          fmt::format("{} is {}, but the highest sub-index described is {}; using {}", named(count),
                                      count.default_value->bits, highest, highest),
                          {}, fmt::format("{:+}", static_cast<std::int64_t>(count.default_value->bits) - highest));
+    diagnostics_.offer_value("sub-index-0-value", count.default_value->position, fmt::format("{}", highest),
+                             fmt::format("highest sub-index of {} (CiA 301, 7.4.4)", index_label(object.index)));
     set(count, highest, sub_index_0_clause);
   }
 
@@ -141,6 +143,9 @@ class Completion {
                            fmt::format("{} is {}, but that of the default SDO is {}; using that ({})", named(entry),
                                        spelled(*value), spelled(own), by(own.clause)),
                            {}, "CAN-IDs");
+      diagnostics_.offer_value("default-sdo-cob-id", value->position,
+                               fmt::format("$NODEID+0x{:X}", parameter.predefined_of(entry.index)),
+                               fmt::format("CAN-ID of the default SDO (CiA 301, {})", own.clause));
     }
     entry.default_value = std::move(own);
   }

@@ -48,6 +48,12 @@ void Diagnostics::report(Diagnostic diagnostic) {
   ++omitted_[tally.omitted_row].count;
 }
 
+void Diagnostics::offer(Remedy remedy) {
+  const bool is_unwanted = std::ranges::find(silenced_, remedy.rule, &Silenced::rule) != silenced_.end() ||
+                           allowances_.find(remedy.rule, remedy.place).has_value();
+  if (collects_remedies_ && !is_unwanted) remedies_.push_back(std::move(remedy));
+}
+
 bool Diagnostics::join(const Kind& kind, Diagnostic& diagnostic) {
   if (diagnostic.cause.empty()) return false;
   const bool is_listed = tallies_[kind].found < max_per_rule;

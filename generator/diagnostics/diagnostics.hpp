@@ -13,6 +13,7 @@
 
 #include "diagnostics/allowances.hpp"
 #include "diagnostics/position.hpp"
+#include "diagnostics/remedy.hpp"
 #include "rules/check_rules.hpp"
 
 namespace edsc {
@@ -106,6 +107,20 @@ class Diagnostics {
   /// States that a finding follows from another one; both are indices in `all()`.
   void set_cause(std::size_t consequence, std::size_t cause) { all_[consequence].follows_from = cause; }
 
+  /// From now on, remedies are stored: for `edsc check --repair`.
+  void collect_remedies() { collects_remedies_ = true; }
+  /// Offers the remedy of a finding that is reported too. That of a silenced or allowed finding is not stored.
+  void offer(Remedy remedy);
+  /// `text` replaces the value of a field.
+  void offer_value(AnyRule rule, const Position& value, std::string text, std::string reason) {
+    offer({Remedy::Kind::value, rule, value, {}, std::move(text), std::move(reason)});
+  }
+  /// A section gets a key.
+  void offer_key(AnyRule rule, const Position& section, std::string key, std::string text, std::string reason) {
+    offer({Remedy::Kind::key, rule, section, std::move(key), std::move(text), std::move(reason)});
+  }
+  [[nodiscard]] const std::vector<Remedy>& remedies() const { return remedies_; }
+
   /// The listed findings. `errors()`, `warnings()` and `notes()` also count the omitted ones.
   [[nodiscard]] const std::vector<Diagnostic>& all() const { return all_; }
   [[nodiscard]] std::size_t errors() const { return counts_[Severity::error]; }
@@ -175,6 +190,8 @@ class Diagnostics {
   Notes notes_ = Notes::without_names;
   bool silence_errors_ = false;
   bool any_silenced_ = false;
+  bool collects_remedies_ = false;
+  std::vector<Remedy> remedies_;
   Allowances allowances_;
   std::vector<Suppressed> suppressed_;
   std::size_t suppressed_findings_ = 0;

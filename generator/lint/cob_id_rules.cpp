@@ -97,6 +97,18 @@ std::string hint(const CobIdUse& use) {
   return fmt::format("; use $NODEID+0x{:X} to add the node-ID", use.cob_id.value());
 }
 
+/// The CAN-ID of the pre-defined connection set, with the flags that the COB-ID has.
+std::string formula_of(const CobIdUse& use) {
+  const std::uint32_t flags = use.cob_id.value() & 0xE000'0000U;
+  return fmt::format("$NODEID+0x{:X}", use.parameter->predefined_of(use.entry->index) + flags);
+}
+
+void offer_formula(const RuleContext& context, AnyRule rule, const CobIdUse& use) {
+  context.diagnostics.offer_value(
+      rule, use.place(), formula_of(use),
+      fmt::format("CAN-ID of {:04X}h for any node (CiA 301, {})", use.entry->index, use.parameter->clause));
+}
+
 /// `CAN-ID 6E0h for node-ID 96`, and the other node-IDs with a restricted CAN-ID.
 struct RestrictedNodeIds {
   std::uint32_t first = 0, last = 0, count = 0;
@@ -123,6 +135,7 @@ void check_restricted(const RuleContext& context, const CobIdUse& use) {
       context.report("cob-id-restricted", use.place(),
                      fmt::format("{} is CAN-ID {:03X}h, which is restricted ({}){}", named(*use.entry), can_id, reason,
                                  hint(use)));
+      if (!hint(use).empty()) offer_formula(context, "cob-id-restricted", use);
     }
     return;
   }
@@ -151,6 +164,7 @@ void check_added_twice(const RuleContext& context, const CobIdUse& use, std::uin
                   "node {}; use $NODEID+0x{:X} to add it once",
                   named(*use.entry), base, can_id + 1, extra + 1, base - extra),
       {}, "added twice");
+  offer_formula(context, "cob-id-node-id", use);
 }
 
 /// The EDS states a number where the pre-defined connection set adds the node-ID: 181h for TPDO 1 is that of node 1,
@@ -166,17 +180,19 @@ void check_node_id(const RuleContext& context, const CobIdUse& use) {
   const std::uint32_t node_id = can_id - function_code;
   const auto& given = context.device.node_id;
   if (given && node_id == *given) return;
-  const std::string formula = fmt::format("use $NODEID+0x{:X}", function_code + (use.cob_id.value() & 0xE000'0000U));
+  const std::string formula = "use " + formula_of(use);
   if (node_id != 0) {
     context.report("cob-id-node-id", use.place(),
                    fmt::format("{} is {:03X}h, the CAN-ID of node {} {}; {} for any node", named(*use.entry), can_id,
                                node_id, given ? fmt::format("and not of node {}", *given) : "only", formula),
                    {}, fmt::format("node {}", node_id));
+    offer_formula(context, "cob-id-node-id", use);
   } else if (restriction_of(use, can_id) == nullptr) {
     context.report(
         "cob-id-node-id", use.place(),
         fmt::format("{} is {:03X}h for each node; {} to add the node-ID", named(*use.entry), can_id, formula), {},
         "each node");
+    offer_formula(context, "cob-id-node-id", use);
   }
 }
 

@@ -81,6 +81,9 @@ void check_pdo_counts(const RuleContext& context) {
                    fmt::format("{} is {}, but {} {} described", row.key, quote(field.text), described,
                                described == 1 ? "is" : "are"),
                    {}, "counts");
+    context.diagnostics.offer_value("pdo-count", field.position, fmt::format("{}", described),
+                                    fmt::format("number of the {}s that the file describes",
+                                                row.direction == PdoDirection::receive ? "RPDO" : "TPDO"));
   }
 }
 

@@ -51,8 +51,10 @@ class ValueReader {
     }
     const std::string_view written = strip_inline_comment(field_.text);
     const std::string_view text = without_quotes(written);
-    if (text.size() != written.size())
+    if (text.size() != written.size()) {
       warning("number-spelling", "a number must be written without quotation marks", "quotes");
+      spell(std::string{text}, "a number without quotation marks (CiA 306-1, 4.2)");
+    }
     if (text.find('$') != std::string_view::npos) return formula(text);
     if (type_.kind == DataClass::real) return real(text);
     if (type_.kind == DataClass::boolean) return boolean(text);
@@ -74,6 +76,11 @@ class ValueReader {
   }
   void warning(WarningRule rule, std::string message, std::string cause = {}) {
     diagnostics_.warning(rule, field_.position, std::move(message), {}, std::move(cause));
+  }
+
+  /// Offers another spelling of the same number.
+  void spell(std::string text, std::string reason) {
+    diagnostics_.offer_value("number-spelling", field_.position, std::move(text), std::move(reason));
   }
 
   std::optional<Value> not_a_number() {
@@ -231,6 +238,7 @@ class ValueReader {
     if (const auto hexadecimal = parse_h_suffix(text)) {
       warning("number-spelling", fmt::format("a hexadecimal number must be written with 0x, not as {}", quote(text)),
               "suffix h");
+      spell(fmt::format("0x{:0{}X}", *hexadecimal, (type_.bits + 3) / 4), "a hexadecimal number (CiA 306-1, 4.2)");
       return positive_integer(*hexadecimal, true);
     }
     const auto number = parse_real(text);
@@ -242,6 +250,7 @@ class ValueReader {
     } else {
       warning("number-spelling", fmt::format("a value of type {} must be written without a decimal point", type_.name),
               "point");
+      spell(fmt::format("{:.0f}", *number), "an integer without decimal point (CiA 306-1, 4.2)");
     }
     const auto magnitude = static_cast<std::uint64_t>(std::abs(*number));
     return *number < 0 ? negative_integer(magnitude) : positive_integer(magnitude, false);

@@ -157,6 +157,8 @@ std::optional<ValueType> EntryResolver::data_type(const EntryDescription& descri
                          fmt::format("DataType must be a number; that of {} is 0x{:04X}", named->name,
                                      static_cast<unsigned>(named->type)),
                          {}, "name");
+    diagnostics_.offer_value("data-type", field.position, fmt::format("0x{:04X}", static_cast<unsigned>(named->type)),
+                             fmt::format("the number of {}", named->name));
     return types_.find(static_cast<std::uint64_t>(named->type));
   }
   if (!code) {
@@ -211,6 +213,9 @@ std::optional<ValueType> EntryResolver::missing_data_type(const EntryDescription
     diagnostics_.warning("data-type", description.position,
                          fmt::format("missing DataType of {}; assuming {}", row.what, type.row->name), {},
                          std::string{row.what});
+    diagnostics_.offer_key("data-type", description.position, "DataType",
+                           fmt::format("0x{:04X}", static_cast<unsigned>(row.type)),
+                           fmt::format("data type of {}", row.what));
     return type;
   }
   diagnostics_.error("data-type", description.position, "missing DataType", {}, "missing");
@@ -232,6 +237,9 @@ std::optional<ValueType> EntryResolver::type_of_service(const EntryDescription& 
       fmt::format("{} is {}; the service of the device needs the {} of CiA 301 (clause {})",
                   entry_label(place.index, place.sub_index), found.row->name, needed.row->name, object->clause),
       {}, fmt::format("{} {}", object->first, found.row->name));
+  diagnostics_.offer_value("standard-data-type", description.data_type.position,
+                           fmt::format("0x{:04X}", static_cast<unsigned>(entry->type)),
+                           fmt::format("{} (CiA 301, {})", needed.row->name, object->clause));
   return needed;
 }
 
@@ -248,6 +256,10 @@ Access EntryResolver::access(const EntryDescription& description, const EntryPla
     const std::string_view name = canopen::row_of(assumed).name;
     diagnostics_.warning("access-type", description.position, fmt::format("missing AccessType; assuming {}", name), {},
                          fmt::format("missing {}", name));
+    if (standard != nullptr) {
+      diagnostics_.offer_key("access-type", description.position, "AccessType", std::string{name},
+                             fmt::format("access of {} in CiA 301", entry_label(place.index, place.sub_index)));
+    }
     return assumed;
   }
   if (const auto* const letter = std::ranges::find_if(
@@ -257,6 +269,8 @@ Access EntryResolver::access(const EntryDescription& description, const EntryPla
         "access-type", field.position,
         fmt::format("reading the AccessType {} as {}", quote(text), canopen::row_of(letter->access).name), {},
         std::string{letter->letter});
+    diagnostics_.offer_value("access-type", field.position, std::string{canopen::row_of(letter->access).name},
+                             fmt::format("{} means {}", quote(text), canopen::row_of(letter->access).name));
     return letter->access;
   }
   const Access assumed = standard != nullptr ? standard->access.assumed() : Access::ro;
@@ -264,6 +278,10 @@ Access EntryResolver::access(const EntryDescription& description, const EntryPla
                      fmt::format("AccessType {} is not ro, wo, rw, rwr, rww or const; assuming {}", quote(text),
                                  canopen::row_of(assumed).name),
                      {}, fmt::format("{} {}", text, canopen::row_of(assumed).name));
+  if (standard != nullptr) {
+    diagnostics_.offer_value("access-type", field.position, std::string{canopen::row_of(assumed).name},
+                             fmt::format("access of {} in CiA 301", entry_label(place.index, place.sub_index)));
+  }
   return assumed;
 }
 

@@ -7,10 +7,12 @@
 #include <deque>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "device/index_range.hpp"
 #include "device/objects/compact_sub_objects.hpp"
 #include "device/objects/object_type_name.hpp"
+#include "device/objects/standard_objects.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
 
@@ -42,6 +44,15 @@ std::string_view implied_count_clause(std::uint16_t index) {
   if (index == 0x1003) return "7.5.2.4";
   if (!contains(mapping_parameters, index)) return "7.4.4";
   return index < 0x1A00 ? "7.5.2.36" : "7.5.2.38";
+}
+
+/// The object code of an object with sub-objects, and where it comes from.
+std::pair<std::string, std::string> object_code_for(std::uint16_t index) {
+  const StandardObject* const standard = find_standard_object(index);
+  const bool is_array = standard != nullptr && standard->type == ObjectType::array;
+  return {is_array ? "0x8" : "0x9",
+          standard == nullptr ? fmt::format("{} has sub-objects", index_label(index))
+                              : fmt::format("object code of {} (CiA 301, {})", index_label(index), standard->clause)};
 }
 
 /// Whether a VAR or DOMAIN with sub-objects is a value, and the index of the sub-objects is wrong: it has its own data
@@ -96,6 +107,8 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
     if (has_subs) {
       diagnostics_.warning("object-type", description.position,
                            "missing ObjectType of an object with sub-objects; assuming RECORD", {}, "missing");
+      const auto [text, reason] = object_code_for(description.index);
+      diagnostics_.offer_key("object-type", description.position, "ObjectType", text, reason);
     }
     return fallback;
   }
@@ -127,6 +140,8 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
   diagnostics_.warning("object-type", field.position,
                        fmt::format("a {} cannot have sub-objects; assuming RECORD", to_string(*known)), {},
                        fmt::format("{} with sub-objects", to_string(*known)));
+  const auto [code_text, reason] = object_code_for(description.index);
+  diagnostics_.offer_value("object-type", field.position, code_text, reason);
   return ObjectType::record;
 }
 
@@ -189,6 +204,8 @@ void ObjectResolver::check_sub_number(const ObjectDescription& description) {
                        fmt::format("SubNumber is {}, but {} described; using {}", strip_inline_comment(field.text),
                                    count == 1 ? "1 sub-object is" : fmt::format("{} sub-objects are", count), count),
                        {}, cause);
+  diagnostics_.offer_value("sub-number", field.position, fmt::format("{}", count),
+                           fmt::format("number of the sub-objects of {}", index_label(description.index)));
 }
 
 /// Sub-indices are hexadecimal (CiA 306-1, 4.6.2). The author may have counted in decimal if 10h follows 9h and no
@@ -210,6 +227,8 @@ void ObjectResolver::check_sub_indices(const ObjectDescription& description) {
         "sub-index-base", written->position,
         fmt::format("{}; those of this object are decimal, for sub-index 0 is {}", hexadecimal, as_decimal), {},
         "decimal");
+    diagnostics_.offer_value("sub-index-base", {description.position.file}, "decimal",
+                             "sub-index 0 states the highest sub-index as a decimal number");
   } else {
     diagnostics_.warning("sub-index-base", written->position, hexadecimal + "; did you mean Ah, which is missing?", {},
                          "looks decimal");

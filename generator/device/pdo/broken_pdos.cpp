@@ -110,6 +110,19 @@ void report_boolean_byte(const Pdo& pdo, const PdoEntry& entry, Diagnostics& dia
       {}, "bytes");
 }
 
+/// What the mapping of an existing object says for certain: that the object can be mapped, and its length.
+void offer_mapping(MappingFault fault, const PdoEntry& entry, const MappableObject& object, Diagnostics& diagnostics) {
+  const std::string label = entry_label(entry.index, entry.sub_index);
+  if (fault == MappingFault::not_mappable) {
+    diagnostics.offer_key(rule_of(fault), entry.object->mapping_position, "PDOMapping", "1",
+                          fmt::format("a PDO maps {} by default", label));
+  } else if (fault == MappingFault::wrong_length && object.type->bits > 0) {
+    diagnostics.offer_value(rule_of(fault), entry.place,
+                            fmt::format("0x{:04X}{:02X}{:02X}", entry.index, entry.sub_index, object.type->bits),
+                            fmt::format("{} has {} bits", label, object.type->bits));
+  }
+}
+
 void check_entry(const Device& device, const Options& options, Pdo& pdo, const PdoEntry& entry,
                  Diagnostics& diagnostics) {
   std::optional<MappableObject> object;
@@ -121,6 +134,7 @@ void check_entry(const Device& device, const Options& options, Pdo& pdo, const P
                   : object               ? broken_object(*fault, pdo, entry, *object)
                                          : broken_by_missing(device, pdo, entry),
                   entry.place, diagnostics);
+    if (object && entry.dummy == nullptr) offer_mapping(*fault, entry, *object, diagnostics);
   } else if (entry.dummy == nullptr && is_boolean_in_a_byte(entry, *object->type)) {
     report_boolean_byte(pdo, entry, diagnostics);
   }

@@ -76,6 +76,18 @@ void report_shifted_types(const DataSheet& sheet, Diagnostics& diagnostics) {
       "shifted-data-types", shifted->first,
       fmt::format("the data types of this file are {} too {}: those of {} entries of CiA 301 show it",
                   std::abs(shifted->difference), shifted->difference > 0 ? "high" : "low", shifted->count));
+  const auto offer = [&](const EntryDescription& entry) {
+    const auto code = number_of(entry.data_type);
+    if (!code || *code > 0xFFFF || static_cast<int>(*code) <= shifted->difference) return;
+    diagnostics.offer_value("shifted-data-types", entry.data_type.position,
+                            fmt::format("0x{:04X}", static_cast<int>(*code) - shifted->difference),
+                            fmt::format("all data types of the file are {} too {}", std::abs(shifted->difference),
+                                        shifted->difference > 0 ? "high" : "low"));
+  };
+  for (const ObjectDescription& object : sheet.objects) {
+    offer(object);
+    for (const SubObjectDescription& sub : object.sub_objects) offer(sub);
+  }
 }
 
 }  // namespace edsc

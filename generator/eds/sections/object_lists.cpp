@@ -93,6 +93,10 @@ void report_not_listed(const DataSheet& sheet, Diagnostics& diagnostics) {
                         fmt::format("{:04X}h is not in any object list{}", object.index,
                                     list ? fmt::format("; it belongs in [{}]", name_of(*list)) : ""),
                         {}, "not listed");
+    if (!list) continue;
+    diagnostics.offer({Remedy::Kind::listing, RuleId{WarningRule{"object-not-listed"}.row()}, object.position,
+                       std::string{name_of(*list)}, fmt::format("0x{:04X}", object.index),
+                       fmt::format("{:04X}h is described", object.index)});
   }
 }
 
