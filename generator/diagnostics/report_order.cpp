@@ -43,6 +43,7 @@ std::vector<Consequence> consequences_of(std::size_t cause, const Diagnostics& d
     if (diagnostics.all()[omitted.last_listed].follows_from == cause) counts[omitted.rule] += omitted.count;
   }
   std::vector<Consequence> consequences;
+  consequences.reserve(counts.size());
   for (const auto& [rule, count] : counts) consequences.push_back({rule, count});
   std::ranges::stable_sort(consequences, std::ranges::greater{}, &Consequence::count);
   return consequences;

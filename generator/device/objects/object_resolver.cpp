@@ -107,8 +107,8 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
     if (has_subs) {
       diagnostics_.warning("object-type", description.position,
                            "missing ObjectType of an object with sub-objects; assuming RECORD", {}, "missing");
-      const auto [text, reason] = object_code_for(description.index);
-      diagnostics_.offer_key("object-type", description.position, "ObjectType", text, reason);
+      const auto [type_text, reason] = object_code_for(description.index);
+      diagnostics_.offer_key("object-type", description.position, "ObjectType", type_text, reason);
     }
     return fallback;
   }
