@@ -185,6 +185,7 @@ int run_monitor(const Settings& settings) {
       fail(fmt::format("--node {}: node {} is given twice", text, node->node_id));
     }
     devices.push_back(load_live_device(node->path, node->node_id));
+    report_default_scales(node->node_id, *devices.back()->device);
     known.push_back({node->node_id, &*devices.back()->device});
   }
   return with_bus(settings.bus, [&](LiveBus& bus) {

@@ -8,6 +8,7 @@
 #include "commands/commands.hpp"
 #include "monitor/progress_line.hpp"
 #include "online/live_bus.hpp"
+#include "online/live_scales.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_device.hpp"
@@ -172,6 +173,7 @@ int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chose
   bool heard = false;
   EntryCount count;
   Selectors selectors{node, settings};
+  LiveScales scales{node};
   for (std::size_t i = 0; i < entries.size(); ++i) {
     LiveEntry entry = entries[i].entry;
     if (has_no_entry(entries[i], count)) continue;
@@ -179,7 +181,11 @@ int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chose
     if (!settings.file.empty()) return save(settings, entry, outcome);
     count.take(entry, outcome);
     const bool shows_fields = !settings.raw || settings.format == "json";
-    if (outcome.done() && shows_fields) entry.other = selectors.value_for(entry);
+    if (outcome.done() && shows_fields) {
+      entry.other = selectors.value_for(entry);
+      scales.apply(entry);
+      static_cast<void>(report_live_scales(scales));
+    }
     const bool excused = may_be_refused(entries[i], count, outcome);
     if (settings.format == "json") {
       json["entries"].push_back(as_json(entry, outcome, outcome.bytes));

@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "commands/commands.hpp"
 #include "decode/compose_pdo.hpp"
 #include "decode/log/log_line.hpp"
+#include "device/entry_text.hpp"
 #include "online/live_bus.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
@@ -92,6 +94,12 @@ canopen::Frame compose_pdo_of_file(const Settings& settings, std::uint32_t /*sen
   }
   std::vector<PdoValue> values;
   for (const std::string& text : settings.values) values.push_back(pdo_value(*loaded, text));
+  const bool has_default_scale = std::ranges::any_of(values, [&](const PdoValue& value) {
+    const Entry* const entry = loaded->device->find(value.index, value.sub_index);
+    const Quantity* const quantity = entry != nullptr ? quantity_of(*entry) : nullptr;
+    return quantity != nullptr && !quantity->stated_by.empty();
+  });
+  if (has_default_scale) report_default_scales(settings.node.node_id, *loaded->device);
   const ComposedPdo composed = compose_pdo(*pdo, values);
   if (!composed.ok()) fail(composed.problem);
   return composed.frame;

@@ -3,8 +3,10 @@
 
 #include "commands/commands.hpp"
 #include "device/entry_text.hpp"
+#include "device/meaning/profile_scales.hpp"
 #include "monitor/progress_line.hpp"
 #include "online/live_bus.hpp"
+#include "online/live_scales.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_device.hpp"
@@ -78,9 +80,8 @@ SdoOutcome download(SdoAccess& node, const LiveEntry& entry, const Settings& set
   fail(title(entry) + ": " + what, exit_device_failed);
 }
 
-int write_entry(LiveBus& bus, const Settings& settings, const LiveEntry& entry,
+int write_entry(SdoAccess& node, const Settings& settings, const LiveEntry& entry,
                 const std::vector<std::uint8_t>& bytes) {
-  SdoAccess node{bus, canopen::NodeId{settings.node}, settings.sdo};
   const SdoOutcome outcome = download(node, entry, settings, bytes);
   report_broken_block(entry, outcome);
   if (!outcome.done()) fail_at(entry, failure_text(outcome));
@@ -100,15 +101,38 @@ int write_entry(LiveBus& bus, const Settings& settings, const LiveEntry& entry,
   return exit_fine;
 }
 
+/// Whether other objects of the device state the unit and scale of the value.
+bool depends_on_device(const Settings& settings, const LiveEntry& entry) {
+  return !settings.raw && settings.file.empty() && entry.entry != nullptr &&
+         has_profile_scale(*entry.device, *entry.entry);
+}
+
+/// Writes a value in the unit that the device states.
+int write_scaled(LiveBus& bus, const Settings& settings, LiveEntry entry) {
+  SdoAccess node{bus, canopen::NodeId{settings.node}, settings.sdo};
+  LiveScales scales{node};
+  scales.apply(entry);
+  const bool is_known = report_live_scales(scales);
+  const ParsedValue value = value_to_write(settings, entry);
+  if (!value.ok()) fail(value.problem, is_known ? exit_wrong_usage : exit_device_failed);
+  return write_entry(node, settings, entry, value.bytes);
+}
+
 int run_write(const Settings& settings) {
   if (settings.file.empty() && settings.value.empty()) throw_required("VALUE or --file");
   const auto loaded = settings.sheet.empty() ? nullptr : load_live_device(settings.sheet, settings.node);
   LiveEntry entry = name_entry(loaded.get(), settings.object);
   if (settings.type != nullptr) set_type(entry, *settings.type);
   if (!settings.force) check_access(entry);
+  if (depends_on_device(settings, entry)) {
+    return with_bus(settings.bus, [&](LiveBus& bus) { return write_scaled(bus, settings, entry); });
+  }
   const ParsedValue value = value_to_write(settings, entry);
   if (!value.ok()) fail(value.problem);
-  return with_bus(settings.bus, [&](LiveBus& bus) { return write_entry(bus, settings, entry, value.bytes); });
+  return with_bus(settings.bus, [&](LiveBus& bus) {
+    SdoAccess node{bus, canopen::NodeId{settings.node}, settings.sdo};
+    return write_entry(node, settings, entry, value.bytes);
+  });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "load/load_device.hpp"
 #include "online/live_entry.hpp"
+#include "online/live_scales.hpp"
 
 namespace edsc {
 
@@ -36,6 +37,13 @@ void report_not_compared(const SdoAccess& node, const std::string& what);
 
 /// Reports a failed block transfer that was followed by a segmented transfer.
 void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome);
+
+/// Reports values of the device that state a unit or scale and are not those of the EDS, each once, and one that could
+/// not be read. Returns whether all could be read.
+bool report_live_scales(LiveScales& scales);
+
+/// Reports that units and scales are those of the default values of the EDS, if the node can have others.
+void report_default_scales(std::uint8_t node, const Device& device);
 
 /// Reads the bytes of a file; returns false with the reason if it cannot be read.
 [[nodiscard]] bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes, std::string& problem);

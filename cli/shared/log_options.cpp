@@ -9,6 +9,7 @@
 #include "eds/number.hpp"
 #include "pdo/mapping_fault.hpp"
 #include "shared/exit_code.hpp"
+#include "shared/live_device.hpp"
 #include "system/input_file.hpp"
 #include "system/waiting_signals.hpp"
 
@@ -99,6 +100,7 @@ LogNodes load_log_nodes(const LogSettings& settings) {
     if (const auto& commissioning = loaded->device->information.commissioning) {
       nodes.labels.set_name(*argument.node_id, commissioning->node_name);
     }
+    report_default_scales(*argument.node_id, *loaded->device);
     nodes.loaded.emplace(*argument.node_id, std::move(loaded));
   }
   return nodes;

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "device/meaning/profile_scales.hpp"
 #include "device/pdo/resolve_pdos.hpp"
 
 namespace edsc {
@@ -29,6 +30,7 @@ Device with_values(const Device& device, const ValueOverlay& values, const Optio
         entry.default_value = setting->value;
     }
   }
+  resolve_profile_scales(result);
   result.pdos.clear();
   resolve_pdos(result, options);
   mark_broken_pdos(result, options, of_mapping);

@@ -59,6 +59,7 @@ std::string quantity_line(const Entry& entry) {
     line += (quantity.symbol.empty() ? "" : ", scale ") + fraction_text(quantity.scale);
   }
   if (quantity.offset != Rational{0}) line += ", offset " + fraction_text(quantity.offset);
+  if (!quantity.stated_by.empty()) line += ", " + quantity.text;
   const auto known = [](const std::optional<Value>& value) { return value && !value->plus_node_id; };
   std::string separator = ": ";
   const auto add = [&](std::string_view text, const std::optional<Value>& value) {

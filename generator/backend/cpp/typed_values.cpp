@@ -24,7 +24,10 @@ const Meaning* meaning_of(const Entry& entry) {
   return is_signed(entry) || entry.type->kind == DataClass::unsigned_integer ? entry.meaning.get() : nullptr;
 }
 
-bool has_quantity(const Meaning& meaning) { return meaning.quantity && meaning.quantity->unit != nullptr; }
+/// A scale that the device can change is not a type.
+bool has_quantity(const Meaning& meaning) {
+  return meaning.quantity && meaning.quantity->unit != nullptr && meaning.quantity->stated_by.empty();
+}
 
 EntryKey key_of(const Entry& entry) { return {entry.index, entry.sub_index}; }
 

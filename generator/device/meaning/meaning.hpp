@@ -34,6 +34,8 @@ struct Quantity : MeaningText {
   std::string symbol;                      ///< of the unit; as written if it is unknown; empty without one
   Rational scale{1};
   Rational offset{0};
+  /// Entries that can change and whose default values state this unit and scale; empty for a fixed quantity.
+  std::vector<EntryKey> stated_by;
 
   /// Whether a raw number is the number of units.
   [[nodiscard]] bool is_raw() const { return scale == Rational{1} && offset == Rational{0}; }

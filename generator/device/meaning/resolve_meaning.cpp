@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "device/meaning/profile_scales.hpp"
 #include "device/meaning/profiles.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/number.hpp"
@@ -432,6 +433,7 @@ std::optional<Enumeration> names_of_values(const EntryDescription& description, 
 
 void resolve_meaning(Device& device, const Options& options, Diagnostics& diagnostics) {
   Resolver{device, options, diagnostics}.resolve();
+  resolve_profile_scales(device);
 }
 
 }  // namespace edsc

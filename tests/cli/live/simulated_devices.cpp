@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <every_service/device.hpp>
 #include <live_device/device.hpp>
+#include <scaled_drive/device.hpp>
 #include <tuple>
 
 namespace od = live_device::od;
@@ -35,9 +36,10 @@ class Motor {
   std::int32_t velocity_ = 0;
 };
 
-constexpr std::array<canopen::SimulatedDevice, 3> devices = {{
+constexpr std::array<canopen::SimulatedDevice, 4> devices = {{
     {"live", &canopen::make_simulated_node<live_device::Device>},
     {"motor", &canopen::make_simulated_node<live_device::Device, Motor>},
+    {"scaled_drive", &canopen::make_simulated_node<scaled_drive::Device>},
     {"every_service", &canopen::make_simulated_node<every_service::Device>},
 }};
 

@@ -9,6 +9,7 @@ A frame of n bytes takes 47 + 8 n us at 1 Mbit/s (ISO 11898-1, without stuff bit
 
 from __future__ import annotations
 
+import json
 import shutil
 import signal
 import subprocess
@@ -22,7 +23,10 @@ SOURCE_DIR = Path(sys.argv[1]).resolve()
 EDSC = Path(sys.argv[2]).resolve()
 DEVICES = Path(sys.argv[3]).resolve()
 SHEET = SOURCE_DIR / "tests/fixtures/live_device.eds"
+SCALED_SHEET = SOURCE_DIR / "tests/fixtures/scaled_drive.eds"
 FINE, FAILED, WRONG_USAGE, INTERRUPTED = 0, 1, 2, 130
+INCREMENTS_DIFFER = ("edsc: 608Fh:01 Position encoder resolution, Encoder increments = 4000 (00000FA0h) "
+                     "(EDS: 2000 (000007D0h)); units are those of the device\n")
 
 
 class Protocol(unittest.TestCase):
@@ -156,6 +160,62 @@ class Commands(unittest.TestCase):
     def test_write_with_an_application(self) -> None:
         self.expect(self.edsc("write", "simulated:devices@5,motor", 5, "60FFh", 3001, "--eds", SHEET), FAILED, "",
                     "edsc: 60FFh:00 Target velocity: refused by the device: 0609 0031h, value too high\n")
+
+    def scaled_sheet(self, *changes: tuple[str, str]) -> str:
+        """The EDS of the device `scaled_drive` with other texts."""
+        text = SCALED_SHEET.read_text()
+        for before, after in changes:
+            self.assertEqual(text.count(before), 1)
+            text = text.replace(before, after)
+        (self.folder / "scaled.eds").write_text(text)
+        return "scaled.eds"
+
+    def test_scales_are_those_of_the_device(self) -> None:
+        """The device has 4000 increments per revolution and rpm."""
+        bus, entries = "simulated:devices@5,scaled_drive", ("6064h", "606Ch", "6083h")
+        values = ("6064h:00 Position actual value = 1.5 rev\n606Ch:00 Velocity actual value = 1500 rpm\n"
+                  "6083h:00 Profile acceleration = 250 rev/s²\n")
+        self.expect(self.edsc("read", bus, 5, *entries, "--eds", SCALED_SHEET), FINE, values)
+        other = self.scaled_sheet(("DefaultValue=4000", "DefaultValue=2000"), ("0x00B44700", "0xFFB44700"))
+        differences = (INCREMENTS_DIFFER + "edsc: 60A9h:00 SI unit velocity = 11814656 (00B44700h) (EDS: 4290004736 (FFB44700h)); units are those of the device\n")
+        self.expect(self.edsc("read", bus, 5, *entries, "--eds", other), FINE, values, differences)
+        json_result = json.loads(self.edsc("read", bus, 5, "6064h", "--eds", other, "--format", "json").stdout)
+        entry = json_result["entries"][0]
+        self.assertEqual((entry["value"], entry["physical"], entry["unit"], entry["text"]), (6000, 1.5, "rev", "1.5 rev"))
+
+    def test_a_value_is_written_in_the_scale_of_the_device(self) -> None:
+        bus, other = "simulated:devices@5,scaled_drive", self.scaled_sheet(("DefaultValue=4000", "DefaultValue=2000"))
+        difference = INCREMENTS_DIFFER
+        sending = self.script("tee sent | ./devices") + ",scaled_drive"
+        self.expect(self.edsc("write", sending, 5, "607Ah", "90 deg", "--eds", other, "--verify"), FINE,
+                    "607Ah:00 Target position = 0.25 rev, verified\n", difference)
+        self.assertIn("send 605 237A6000E8030000", (self.folder / "sent").read_text(), "1000 increments")
+        self.expect(self.edsc("write", bus, 5, "607Ah", "90.01 deg", "--eds", other), WRONG_USAGE, "", difference
+                    + 'edsc: 90.01 deg is between 0.25 rev and 0.25025 rev: 607Ah:00 "Target position"\n')
+
+    def test_a_scale_that_the_device_does_not_have(self) -> None:
+        """The EDS has 60A8h, which the device refuses: its positions are raw numbers, not those of the EDS."""
+        bus = "simulated:devices@5,scaled_drive"
+        sheet = self.scaled_sheet(("SupportedObjects=7", "SupportedObjects=8\n8=0x60A8"))
+        with (self.folder / sheet).open("a") as file:
+            file.write("\n[60A8]\nParameterName=SI unit position\nObjectType=7\nDataType=7\nAccessType=rw\nDefaultValue=0xFD010000\n")
+        refused = ("edsc: 60A8h:00 SI unit position: refused by the device: 0602 0000h, object does not exist; "
+                   "values in its unit are raw numbers\n")
+        self.expect(self.edsc("read", bus, 5, "6064h", "--eds", sheet), FINE, "6064h:00 Position actual value = 6000\n", refused)
+        result = self.edsc("write", bus, 5, "607Ah", "2 m", "--eds", sheet)
+        self.assertEqual((result.stdout, result.returncode), ("", FAILED))
+        self.assertTrue(result.stderr.startswith(refused), result.stderr)
+
+    def test_commands_that_listen_name_the_scale(self) -> None:
+        note = "edsc: node 5: units by the default values of {} in the EDS\n"
+        notes = "".join(note.format(objects) for objects in ("608Fh", "60A9h", "60AAh"))
+        (self.folder / "bus.log").write_text("(1.0) can0 605#4064600000000000\n(1.1) can0 585#4364600070170000\n")
+        shown = subprocess.run([EDSC, "decode", "--node", f"5={SCALED_SHEET}", "bus.log"], cwd=self.folder,
+                               capture_output=True, text=True, timeout=600)
+        self.assertIn("6064h:00 Position actual value = 1.5 rev", shown.stdout)
+        self.assertEqual(shown.stderr, notes)
+        shown = self.edsc("monitor", "simulated:devices@5,scaled_drive", "--once", "0.1", "--node", f"5={SCALED_SHEET}")
+        self.assertEqual((shown.returncode, shown.stderr), (FINE, notes))
 
     def test_nmt(self) -> None:
         self.expect(self.edsc("nmt", "simulated:devices@5,motor", "start", 5, "--wait", 1000), FINE)
