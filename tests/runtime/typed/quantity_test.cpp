@@ -54,6 +54,43 @@ TEST(Quantity, IsCountedInWholeStepsRoundedToNearest) {
   EXPECT_EQ(energy{canopen::raw(std::uint64_t{2'499})}.count<unit::kilowatt_hour>(), 2);
 }
 
+/// The nearest raw number by long division, halves upwards.
+int nearest(long long dividend, long long divisor) {
+  const long long doubled = 2 * dividend + divisor, twice = 2 * divisor;
+  return static_cast<int>(doubled / twice - (doubled % twice < 0 ? 1 : 0));
+}
+
+TEST(Quantity, IsRoundedFromStepsOfAUnit) {
+  for (int hundredths = -20'000; hundredths <= 60'000; ++hundredths) {
+    // Tenths of °C: (K - 273.15) * 10.
+    const auto value = temperature::rounded<unit::kelvin, std::ratio<1, 100>>(hundredths);
+    ASSERT_TRUE(value) << hundredths;
+    ASSERT_EQ(value->raw(), nearest(hundredths - 27'315, 10)) << hundredths;
+  }
+  // Each value is the nearest to the count of its own steps.
+  for (int tenths = -32768; tenths <= 32767; ++tenths) {
+    const int count = celsius(tenths).count<unit::kelvin, std::ratio<1, 100>>();
+    ASSERT_EQ((temperature::rounded<unit::kelvin, std::ratio<1, 100>>(count))->raw(), tenths);
+  }
+  EXPECT_EQ(temperature::rounded(21)->raw(), 210);
+  EXPECT_EQ((temperature::rounded<unit::degree_celsius, std::ratio<1, 100>>(2145))->raw(), 215) << "a half";
+  EXPECT_EQ((temperature::rounded<unit::degree_celsius, std::ratio<1, 100>>(-2145))->raw(), -214) << "a half";
+  EXPECT_EQ(position::rounded<unit::degree>(90)->raw(), 2'500);
+  EXPECT_EQ(position::rounded<unit::degree>(std::int16_t{-1})->raw(), -28) << "-27.8";
+  EXPECT_EQ(depth::rounded<unit::kelvin>(16'384)->raw(), -32768) << "a falling scale";
+  EXPECT_EQ(energy::rounded<unit::kilowatt_hour>(4'294'967'295U)->raw(), 4'294'967'295'000U);
+}
+
+TEST(Quantity, IsNotRoundedBeyondItsType) {
+  EXPECT_EQ(temperature::rounded(3'276)->raw(), 32'760);
+  EXPECT_EQ(temperature::rounded(3'277).abort_code(), canopen::AbortCode::value_too_high);
+  EXPECT_EQ(temperature::rounded(-3'277).abort_code(), canopen::AbortCode::value_too_low);
+  EXPECT_EQ(temperature::rounded(INT32_MAX).abort_code(), canopen::AbortCode::value_too_high);
+  EXPECT_EQ(temperature::rounded(INT32_MIN).abort_code(), canopen::AbortCode::value_too_low);
+  EXPECT_EQ(energy::rounded<unit::kilowatt_hour>(-1).abort_code(), canopen::AbortCode::value_too_low);
+  static_assert(temperature::rounded<unit::kelvin>(295)->raw() == 219, "21.85 °C, a half");
+}
+
 TEST(Quantity, IsComparedWithConstantsBetweenItsValues) {
   EXPECT_TRUE(celsius(268) < 300_K);   // 26.8 °C is 299.95 K
   EXPECT_FALSE(celsius(269) < 300_K);  // 26.9 °C is 300.05 K

@@ -50,6 +50,16 @@ TEST(TypedExample, UsesUnitsNamesAndFields) {
   EXPECT_EQ(hundredths, 29'465);
   EXPECT_EQ(node.get(od::temperature{}).raw(), 215);
 
+  // The value that is nearest to 29,465 hundredths of K, with integers only; value_too_high or value_too_low if the
+  // object's type does not have it.
+  const auto measured = od::temperature::type::rounded<canopen::unit::kelvin, std::ratio<1, 100>>(29'465);
+  if (measured) node.set(od::temperature{}, *measured);
+  EXPECT_EQ(node.get(od::temperature{}).raw(), 215);
+
+  const bool is_day = hundredths > 29'000;
+  node.set(od::temperature{}, is_day ? od::temperature::type{20_degC} : 15_degC);
+  EXPECT_EQ(node.get(od::temperature{}).raw(), 200);
+
   using state = od::statusword::type::state_value;
   node.modify(od::statusword{}, [](auto& word) { word.state(state::operation_enabled); });
   const auto status = node.get(od::statusword{});

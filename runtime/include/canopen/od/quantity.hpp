@@ -318,6 +318,36 @@ struct Quantity {
     }
   }
 
+  /// Returns the value that is nearest to a number of steps of a unit, the inverse of `count`:
+  /// `rounded<unit::kelvin>(295)` of K, `rounded<unit::kelvin, std::ratio<1, 100>>(29515)` of hundredths of K. A number
+  /// halfway between two values gives the one with the higher raw number. value_too_high or value_too_low if the raw
+  /// number does not fit. Uses integers only; `count` has at most 32 bits.
+  template <class In = Unit, class Step = std::ratio<1>, std::integral Count>
+  [[nodiscard]] static constexpr Result<Quantity> rounded(Count count) {
+    if constexpr (!quantity_detail::same_dimension<Unit, In>) {
+      constant_error::other_dimension<Quantity, In>();
+      return Quantity{};
+    } else {
+      // As in count(): nearest(x) = floor(x + 1/2).
+      constexpr Fraction own_scale = Fraction::of<Scale>();
+      constexpr Fraction factor = Fraction::of<Step>() * In::row.factor / Unit::row.factor / own_scale;
+      constexpr Fraction at_zero = convert(Fraction{0, 1}, In::row, Unit::row);
+      constexpr Fraction summand = (at_zero - Fraction::of<Offset>()) / own_scale + Fraction{1, 2};
+      constexpr std::int64_t whole = (summand * Fraction{factor.denominator, 1}).floor();
+      if constexpr (sizeof(Count) <= 4 &&
+                    quantity_detail::is_wide_enough<std::int64_t>(sizeof(Count) * 8, factor.numerator, whole)) {
+        const std::int64_t number = quantity_detail::divide_rounding_down(
+            static_cast<std::int64_t>(count) * factor.numerator + whole, factor.denominator);
+        if (std::cmp_greater(number, std::numeric_limits<Number>::max())) return AbortCode::value_too_high;
+        if (std::cmp_less(number, std::numeric_limits<Number>::lowest())) return AbortCode::value_too_low;
+        return Quantity{RawNumber<Number>{static_cast<Number>(number)}};
+      } else {
+        constant_error::too_wide<Quantity, In>();
+        return Quantity{};
+      }
+    }
+  }
+
   Number number_{};  ///< public, for template arguments
 };
 
