@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "diagnostics/quote.hpp"
 #include "eds/ini.hpp"
@@ -63,6 +66,46 @@ pugi::xml_node find_label(pugi::xml_node element) {
     }
   });
   return label;
+}
+
+/// A decimal as an integer and the number of its decimals; nothing for other texts.
+struct DecimalNumber {
+  std::int64_t digits = 0;
+  unsigned decimals = 0;
+};
+
+std::optional<DecimalNumber> parse_decimal(std::string_view text) {
+  DecimalNumber number;
+  const bool is_negative = text.starts_with('-');
+  if (is_negative || text.starts_with('+')) text.remove_prefix(1);
+  bool has_point = false, has_digit = false;
+  for (const char one : text) {
+    if (one == '.' && !has_point) {
+      has_point = true;
+    } else if (one < '0' || one > '9' || __builtin_mul_overflow(number.digits, 10, &number.digits) ||
+               __builtin_add_overflow(number.digits, one - '0', &number.digits)) {
+      return std::nullopt;
+    } else {
+      has_digit = true;
+      if (has_point) ++number.decimals;
+    }
+  }
+  if (!has_digit) return std::nullopt;
+  if (is_negative) number.digits = -number.digits;
+  return number;
+}
+
+/// The exact product as a decimal; nothing if one of the texts is not a decimal, or has too many digits.
+std::optional<std::string> product_of_decimals(std::string_view a, std::string_view b) {
+  const auto one = parse_decimal(a), other = parse_decimal(b);
+  std::int64_t digits = 0;
+  if (!one || !other || __builtin_mul_overflow(one->digits, other->digits, &digits)) return std::nullopt;
+  unsigned decimals = one->decimals + other->decimals;
+  for (; decimals > 0 && digits % 10 == 0; --decimals) digits /= 10;
+  std::string text = fmt::format(
+      "{:0{}}", digits < 0 ? 0 - static_cast<std::uint64_t>(digits) : static_cast<std::uint64_t>(digits), decimals + 1);
+  if (decimals > 0) text.insert(text.size() - decimals, ".");
+  return (digits < 0 ? "-" : "") + text;
 }
 
 void set_if_missing(Field& field, const Field& value) {
@@ -179,8 +222,9 @@ void ApplicationProcess::read_part(pugi::xml_node element, Parameter& parameter)
   for_each_element(element, [&](pugi::xml_node child) { read_child(child, parameter); });
 }
 
-/// The unit by its label. The multiplier of the unit or that of the parameter is the scale; both together, or an
-/// offset, are not read: their order is not certain.
+/// The unit by its label, and the multiplier of the parameter or that of the unit. By CiA 311, the engineering value is
+/// (value + offset) * multiplier; an EDS has value * Factor + Offset. Two multipliers are not read: CiA 311 does not
+/// state how they are combined.
 void ApplicationProcess::read_unit(pugi::xml_node element, pugi::xml_node unit, EntryDescription& entry) {
   if (entry.unit.present) return;
   const auto differs_from = [](const Field& field, double neutral) {
@@ -189,15 +233,27 @@ void ApplicationProcess::read_unit(pugi::xml_node element, pugi::xml_node unit, 
   };
   const Field of_unit = xml_.value(find_attribute(unit, "multiplier"));
   const Field of_parameter = xml_.value(find_attribute(element, "multiplier"));
-  const Field offset = xml_.value(find_attribute(element, "offset"));
-  const bool is_of_parameter = differs_from(of_parameter, 1);
-  if (differs_from(offset, 0) || (is_of_parameter && differs_from(of_unit, 1))) {
+  Field offset = xml_.value(find_attribute(element, "offset"));
+  const bool is_of_parameter = differs_from(of_parameter, 1), has_offset = differs_from(offset, 0);
+  if (is_of_parameter && differs_from(of_unit, 1)) {
     xml_.note_once("xml-element", "unit", xml_.position(unit),
-                   "a unit with an offset or with two multipliers is not read, here and elsewhere");
+                   "a unit with two multipliers is not read, here and elsewhere");
     return;
   }
+  const Field& multiplier = is_of_parameter ? of_parameter : of_unit;
+  if (has_offset && differs_from(multiplier, 1)) {
+    const auto product = product_of_decimals(trim(offset.text), trim(multiplier.text));
+    if (!product) {
+      xml_.note_once("xml-element", "offset", offset.position,
+                     "a unit whose offset times multiplier is not a decimal is not read, here and elsewhere");
+      return;
+    }
+    offset.text = xml_.keep(*product);
+  }
   entry.unit = xml_.text(find_label(unit));
-  if (entry.unit.present) entry.factor = is_of_parameter ? of_parameter : of_unit;
+  if (!entry.unit.present) return;
+  entry.factor = multiplier;
+  if (has_offset) entry.offset = offset;
 }
 
 void ApplicationProcess::read_access(pugi::xml_node element, Parameter& parameter) {

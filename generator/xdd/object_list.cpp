@@ -48,6 +48,7 @@ constexpr Field EntryDescription::*parameter_fields[] = {
     &EntryDescription::data_type,  &EntryDescription::access_type,   &EntryDescription::low_limit,
     &EntryDescription::high_limit, &EntryDescription::default_value, &EntryDescription::parameter_value,
     &EntryDescription::denotation, &EntryDescription::unit,          &EntryDescription::factor,
+    &EntryDescription::offset,
 };
 
 /// Values that may be true or false for a BOOLEAN.

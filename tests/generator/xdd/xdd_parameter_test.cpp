@@ -152,8 +152,25 @@ TEST(XddParameter, HasAUnitWithOneMultiplier) {
   EXPECT_EQ(unit("", "0.1"), "°C 0.1");
   EXPECT_EQ(unit("multiplier='0.5'", "1"), "°C 0.5");
   EXPECT_EQ(unit("offset='0' multiplier='1'", "0.1"), "°C 0.1");
-  EXPECT_EQ(unit("offset='20'", "0.1"), " ") << "the order of offset and multiplier is not certain";
-  EXPECT_EQ(unit("multiplier='0.5'", "0.1"), " ");
+  EXPECT_EQ(unit("multiplier='0.5'", "0.1"), " ") << "two multipliers";
+}
+
+/// (value + offset) * multiplier is value * Factor + Offset.
+TEST(XddParameter, HasAnOffsetBeforeItsMultiplier) {
+  const auto unit = [](const std::string& attributes) {
+    const ReadXdd read(Profile{referring_object,
+                               "<parameterList><parameter uniqueID='p' " + attributes +
+                                   "><INT/><unit><label lang='en'>°C</label></unit></parameter></parameterList>",
+                               "", ""});
+    return std::string{read.object().factor.text} + " " + std::string{read.object().offset.text};
+  };
+  EXPECT_EQ(unit("offset='-40' multiplier='0.5'"), "0.5 -20");
+  EXPECT_EQ(unit("offset='-400' multiplier='0.125'"), "0.125 -50");
+  EXPECT_EQ(unit("offset='3' multiplier='0.05'"), "0.05 0.15");
+  EXPECT_EQ(unit("offset='-0.3' multiplier='-0.01'"), "-0.01 0.003");
+  EXPECT_EQ(unit("offset='20' multiplier='1'"), " 20") << "without a multiplier, the offset is in the unit";
+  EXPECT_EQ(unit("offset='20'"), " 20");
+  EXPECT_EQ(unit("offset='1e3' multiplier='0.5'"), " ") << "not a decimal";
 }
 
 TEST(XddParameter, EndsAtATypeThatIsDerivedFromItself) {
