@@ -138,6 +138,11 @@ const Quantity* quantity_of(const Entry& entry) {
   return is_number(*entry.type) && entry.meaning && entry.meaning->quantity ? &*entry.meaning->quantity : nullptr;
 }
 
+const Quantity* quantity_with_unit(const Entry& entry) {
+  const Quantity* const quantity = quantity_of(entry);
+  return quantity != nullptr && !quantity->symbol.empty() ? quantity : nullptr;
+}
+
 void append_value(std::string& text, const Entry& entry, Bytes bytes, std::optional<std::int64_t> other) {
   const bool is_communication = entry.index >= 0x1000 && entry.index < 0x2000;
   const bool has_meaning =

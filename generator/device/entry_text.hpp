@@ -28,6 +28,8 @@ void append_value(std::string& text, const Entry& entry, std::span<const std::ui
 
 /// The quantity of a number with a unit, scale or offset; null for other entries.
 [[nodiscard]] const Quantity* quantity_of(const Entry& entry);
+/// The same, but null for a quantity without a unit.
+[[nodiscard]] const Quantity* quantity_with_unit(const Entry& entry);
 
 /// `0..3000 rpm`: the limits in the EDS; empty if it has none.
 [[nodiscard]] std::string limits_text(const Entry& entry);

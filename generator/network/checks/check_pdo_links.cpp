@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "device/entry_text.hpp"
 #include "device/meaning/raw_unit.hpp"
 #include "network/checks/check_groups.hpp"
 #include "network/checks/merged_note.hpp"
@@ -14,12 +15,6 @@ namespace {
 
 std::string text(const PdoEntry& entry) {
   return entry.object != nullptr ? named(*entry.object) : entry_label(entry.index, entry.sub_index);
-}
-
-/// The quantity of an entry with a unit; null without one.
-const Quantity* quantity_of(const Entry& entry) {
-  const bool has_unit = entry.meaning && entry.meaning->quantity && !entry.meaning->quantity->symbol.empty();
-  return has_unit ? &*entry.meaning->quantity : nullptr;
 }
 
 /// A TPDO and an RPDO with one CAN-ID.
@@ -71,8 +66,8 @@ class PdoLink {
                                                named(sender_), named(from), from.type->name),
                                    {{same->place, named(sender_)}});
     }
-    const Quantity* const sent_quantity = quantity_of(from);
-    const Quantity* const quantity = quantity_of(to);
+    const Quantity* const sent_quantity = quantity_with_unit(from);
+    const Quantity* const quantity = quantity_with_unit(to);
     if (sent_quantity == nullptr || quantity == nullptr || has_same_raw_numbers(*sent_quantity, *quantity)) return;
     context_.diagnostics.warning(
         "network-pdo-unit", entry.place,

@@ -16,6 +16,7 @@
 #include "backend/cpp/identifier.hpp"
 #include "backend/cpp/views.hpp"
 #include "backend/render.hpp"
+#include "device/entry_text.hpp"
 #include "device/meaning/raw_unit.hpp"
 #include "format/dcf/concise_dcf.hpp"
 #include "network/cob_id_use.hpp"
@@ -237,8 +238,8 @@ class PlantHeader {
   [[nodiscard]] ordered_json signal_row(const NetworkNode& node, const PdoLink& link, const LinkedValue& value,
                                         const PdoEntry& entry, const std::string& name) const {
     const Meaning* const meaning = entry.object->meaning.get();
-    const bool has_unit = meaning != nullptr && meaning->quantity && !meaning->quantity->symbol.empty();
-    const std::string unit = has_unit ? " in " + raw_unit_text(*meaning->quantity) : "";
+    const Quantity* const quantity = quantity_with_unit(*entry.object);
+    const std::string unit = quantity != nullptr ? " in " + raw_unit_text(*quantity) : "";
     const std::string values = meaning != nullptr && meaning->values ? ", " + values_text(*meaning->values) : "";
     const bool is_limited = entry.object->low_limit || entry.object->high_limit;
     return {{"name", name},
