@@ -4,10 +4,14 @@
 
 #include <string_view>
 
+#include <canopen/profile/cia402_text.hpp>
+
 #include "meaning.hpp"
 
 /// The names of the values as text; empty for a value without a name.
 namespace cpc_tc1::meaning {
+
+using canopen::cia402::to_text;
 
 [[nodiscard]] constexpr std::string_view to_text(manufacturer_status_register::state_value value) {
   switch (value) {
@@ -129,30 +133,6 @@ namespace cpc_tc1::meaning {
     case tpdo_communication_parameter_1_transmission_type::rtr_only_event_driven: return "rtr_only_event_driven";
     case tpdo_communication_parameter_1_transmission_type::event_driven_manufacturer_specific: return "event_driven_manufacturer_specific";
     case tpdo_communication_parameter_1_transmission_type::event_driven_device_profile: return "event_driven_device_profile";
-  }
-  return {};
-}
-[[nodiscard]] constexpr std::string_view to_text(controlword::command_value value) {
-  switch (value) {
-    case controlword::command_value::fault_reset: return "fault_reset";
-    case controlword::command_value::disable_voltage: return "disable_voltage";
-    case controlword::command_value::quick_stop: return "quick_stop";
-    case controlword::command_value::shutdown: return "shutdown";
-    case controlword::command_value::switch_on: return "switch_on";
-    case controlword::command_value::enable_operation: return "enable_operation";
-  }
-  return {};
-}
-[[nodiscard]] constexpr std::string_view to_text(statusword::state_value value) {
-  switch (value) {
-    case statusword::state_value::not_ready_to_switch_on: return "not_ready_to_switch_on";
-    case statusword::state_value::switch_on_disabled: return "switch_on_disabled";
-    case statusword::state_value::ready_to_switch_on: return "ready_to_switch_on";
-    case statusword::state_value::switched_on: return "switched_on";
-    case statusword::state_value::operation_enabled: return "operation_enabled";
-    case statusword::state_value::quick_stop_active: return "quick_stop_active";
-    case statusword::state_value::fault_reaction_active: return "fault_reaction_active";
-    case statusword::state_value::fault: return "fault";
   }
   return {};
 }

@@ -4,6 +4,7 @@
 
 #include <canopen/od/quantity.hpp>
 #include <canopen/od/typed_value.hpp>
+#include <canopen/profile/cia402_types.hpp>
 #include <cstdint>
 #include <ratio>
 
@@ -275,136 +276,7 @@ struct monitoring_status_active_monitoring_signals : canopen::Fields<std::uint16
 };
 
 /// Controlword.  6040h:00: CiA 402-2, 8.4.1
-struct controlword : canopen::Fields<std::uint16_t> {
-  using Fields::Fields;
-
-  /// Bit 0.
-  [[nodiscard]] constexpr bool switch_on() const { return has_(0x0001); }
-  constexpr controlword& switch_on(bool on) { return assign_(0x0001, on), *this; }
-  /// Bit 1.
-  [[nodiscard]] constexpr bool enable_voltage() const { return has_(0x0002); }
-  constexpr controlword& enable_voltage(bool on) { return assign_(0x0002, on), *this; }
-  /// Bit 2: 0 stops.
-  [[nodiscard]] constexpr bool quick_stop() const { return has_(0x0004); }
-  constexpr controlword& quick_stop(bool on) { return assign_(0x0004, on), *this; }
-  /// Bit 3.
-  [[nodiscard]] constexpr bool enable_operation() const { return has_(0x0008); }
-  constexpr controlword& enable_operation(bool on) { return assign_(0x0008, on), *this; }
-  /// Bit 7: with its rising edge.
-  [[nodiscard]] constexpr bool fault_reset() const { return has_(0x0080); }
-  constexpr controlword& fault_reset(bool on) { return assign_(0x0080, on), *this; }
-  /// Bit 8.
-  [[nodiscard]] constexpr bool halt() const { return has_(0x0100); }
-  constexpr controlword& halt(bool on) { return assign_(0x0100, on), *this; }
-  /// The values of some bits together.
-  enum class command_value : std::uint8_t {
-    fault_reset,
-    disable_voltage,
-    quick_stop,
-    shutdown,
-    switch_on,
-    enable_operation,
-  };
-  [[nodiscard]] constexpr bool is(command_value value) const {
-    switch (value) {
-      case command_value::fault_reset: return (number_ & 0x0080) == 0x0080;
-      case command_value::disable_voltage: return (number_ & 0x0082) == 0x0000;
-      case command_value::quick_stop: return (number_ & 0x0086) == 0x0002;
-      case command_value::shutdown: return (number_ & 0x0087) == 0x0006;
-      case command_value::switch_on: return (number_ & 0x008F) == 0x0007;
-      case command_value::enable_operation: return (number_ & 0x008F) == 0x000F;
-    }
-    return false;
-  }
-  /// The other bits keep their values.
-  constexpr controlword& command(command_value value) {
-    switch (value) {
-      case command_value::fault_reset: return assign_part_(0, 0x0080, 0x0080), *this;
-      case command_value::disable_voltage: return assign_part_(0, 0x0082, 0x0000), *this;
-      case command_value::quick_stop: return assign_part_(0, 0x0086, 0x0002), *this;
-      case command_value::shutdown: return assign_part_(0, 0x0087, 0x0006), *this;
-      case command_value::switch_on: return assign_part_(0, 0x008F, 0x0007), *this;
-      case command_value::enable_operation: return assign_part_(0, 0x008F, 0x000F), *this;
-    }
-    return *this;
-  }
-  /// The fields for profile_position: 6060h:00 is 1.
-  struct profile_position_fields : Fields {
-    using Fields::Fields;
-    /// Bit 4.
-    [[nodiscard]] constexpr bool new_set_point() const { return has_(0x0010); }
-    /// Bit 5.
-    [[nodiscard]] constexpr bool change_set_immediately() const { return has_(0x0020); }
-    /// Bit 6: 0: 607Ah is absolute.
-    [[nodiscard]] constexpr bool relative() const { return has_(0x0040); }
-    /// Bit 9.
-    [[nodiscard]] constexpr bool change_on_set_point() const { return has_(0x0200); }
-  };
-  /// The same fields of a word that can be changed.
-  struct profile_position_reference {
-    controlword& word;
-    [[nodiscard]] constexpr bool new_set_point() const { return word.has_(0x0010); }
-    constexpr profile_position_reference& new_set_point(bool on) { return word.assign_(0x0010, on), *this; }
-    [[nodiscard]] constexpr bool change_set_immediately() const { return word.has_(0x0020); }
-    constexpr profile_position_reference& change_set_immediately(bool on) { return word.assign_(0x0020, on), *this; }
-    [[nodiscard]] constexpr bool relative() const { return word.has_(0x0040); }
-    constexpr profile_position_reference& relative(bool on) { return word.assign_(0x0040, on), *this; }
-    [[nodiscard]] constexpr bool change_on_set_point() const { return word.has_(0x0200); }
-    constexpr profile_position_reference& change_on_set_point(bool on) { return word.assign_(0x0200, on), *this; }
-  };
-  [[nodiscard]] constexpr profile_position_fields profile_position() const& { return profile_position_fields{canopen::raw(number_)}; }
-  [[nodiscard]] constexpr profile_position_reference profile_position() & { return {*this}; }
-  /// The fields for velocity: 6060h:00 is 2.
-  struct velocity_fields : Fields {
-    using Fields::Fields;
-    /// Bit 4: 0 stops.
-    [[nodiscard]] constexpr bool enable_ramp() const { return has_(0x0010); }
-    /// Bit 5: 0 keeps the present velocity.
-    [[nodiscard]] constexpr bool unlock_ramp() const { return has_(0x0020); }
-    /// Bit 6: 0: the target velocity is 0.
-    [[nodiscard]] constexpr bool reference_ramp() const { return has_(0x0040); }
-  };
-  /// The same fields of a word that can be changed.
-  struct velocity_reference {
-    controlword& word;
-    [[nodiscard]] constexpr bool enable_ramp() const { return word.has_(0x0010); }
-    constexpr velocity_reference& enable_ramp(bool on) { return word.assign_(0x0010, on), *this; }
-    [[nodiscard]] constexpr bool unlock_ramp() const { return word.has_(0x0020); }
-    constexpr velocity_reference& unlock_ramp(bool on) { return word.assign_(0x0020, on), *this; }
-    [[nodiscard]] constexpr bool reference_ramp() const { return word.has_(0x0040); }
-    constexpr velocity_reference& reference_ramp(bool on) { return word.assign_(0x0040, on), *this; }
-  };
-  [[nodiscard]] constexpr velocity_fields velocity() const& { return velocity_fields{canopen::raw(number_)}; }
-  [[nodiscard]] constexpr velocity_reference velocity() & { return {*this}; }
-  /// The fields for homing: 6060h:00 is 6.
-  struct homing_fields : Fields {
-    using Fields::Fields;
-    /// Bit 4.
-    [[nodiscard]] constexpr bool homing_operation_start() const { return has_(0x0010); }
-  };
-  /// The same fields of a word that can be changed.
-  struct homing_reference {
-    controlword& word;
-    [[nodiscard]] constexpr bool homing_operation_start() const { return word.has_(0x0010); }
-    constexpr homing_reference& homing_operation_start(bool on) { return word.assign_(0x0010, on), *this; }
-  };
-  [[nodiscard]] constexpr homing_fields homing() const& { return homing_fields{canopen::raw(number_)}; }
-  [[nodiscard]] constexpr homing_reference homing() & { return {*this}; }
-  /// The fields for interpolated_position: 6060h:00 is 7.
-  struct interpolated_position_fields : Fields {
-    using Fields::Fields;
-    /// Bit 4.
-    [[nodiscard]] constexpr bool enable_interpolation() const { return has_(0x0010); }
-  };
-  /// The same fields of a word that can be changed.
-  struct interpolated_position_reference {
-    controlword& word;
-    [[nodiscard]] constexpr bool enable_interpolation() const { return word.has_(0x0010); }
-    constexpr interpolated_position_reference& enable_interpolation(bool on) { return word.assign_(0x0010, on), *this; }
-  };
-  [[nodiscard]] constexpr interpolated_position_fields interpolated_position() const& { return interpolated_position_fields{canopen::raw(number_)}; }
-  [[nodiscard]] constexpr interpolated_position_reference interpolated_position() & { return {*this}; }
-};
+using controlword = canopen::cia402::Controlword;
 
 /// Statusword.  6041h:00: 7.2.2; 6.4.6
 struct statusword : canopen::Fields<std::uint16_t> {
@@ -612,88 +484,13 @@ enum class modes_of_operation : std::int8_t {
 };
 
 /// Motion profile type.  6086h:00: CiA 402-2, motion profile type
-enum class motion_profile_type : std::int16_t {
-  linear_ramp = 0,
-  sin2_ramp = 1,
-  jerk_free_ramp = 2,
-  jerk_limited_ramp = 3,
-};
+using motion_profile_type = canopen::cia402::MotionProfileType;
 
 /// Homing method.  6098h:00: CiA 402-2, 11.4
-enum class homing_method : std::int8_t {
-  no_homing = 0,
-  negative_limit_switch_and_index_pulse = 1,
-  positive_limit_switch_and_index_pulse = 2,
-  home_switch_at_positive_end_off_and_index_pulse = 3,
-  home_switch_at_positive_end_on_and_index_pulse = 4,
-  home_switch_at_negative_end_off_and_index_pulse = 5,
-  home_switch_at_negative_end_on_and_index_pulse = 6,
-  home_switch_lower_edge_off_start_positive_and_index_pulse = 7,
-  home_switch_lower_edge_on_start_positive_and_index_pulse = 8,
-  home_switch_upper_edge_on_start_positive_and_index_pulse = 9,
-  home_switch_upper_edge_off_start_positive_and_index_pulse = 10,
-  home_switch_upper_edge_off_start_negative_and_index_pulse = 11,
-  home_switch_upper_edge_on_start_negative_and_index_pulse = 12,
-  home_switch_lower_edge_on_start_negative_and_index_pulse = 13,
-  home_switch_lower_edge_off_start_negative_and_index_pulse = 14,
-  negative_limit_switch = 17,
-  positive_limit_switch = 18,
-  home_switch_at_positive_end_off = 19,
-  home_switch_at_positive_end_on = 20,
-  home_switch_at_negative_end_off = 21,
-  home_switch_at_negative_end_on = 22,
-  home_switch_lower_edge_off_start_positive = 23,
-  home_switch_lower_edge_on_start_positive = 24,
-  home_switch_upper_edge_on_start_positive = 25,
-  home_switch_upper_edge_off_start_positive = 26,
-  home_switch_upper_edge_off_start_negative = 27,
-  home_switch_upper_edge_on_start_negative = 28,
-  home_switch_lower_edge_on_start_negative = 29,
-  home_switch_lower_edge_off_start_negative = 30,
-  index_pulse_in_negative_direction = 33,
-  index_pulse_in_positive_direction = 34,
-  present_position_35 = 35,  ///< obsolete, see 37
-  present_position = 37,
-};
+using homing_method = canopen::cia402::HomingMethodNumber;
 
 /// Supported drive modes.  6502h:00: CiA 402-2, 8.4.10
-struct supported_drive_modes : canopen::Fields<std::uint32_t> {
-  using Fields::Fields;
-
-  /// Bit 0.
-  [[nodiscard]] constexpr bool profile_position() const { return has_(0x00000001); }
-  constexpr supported_drive_modes& profile_position(bool on) { return assign_(0x00000001, on), *this; }
-  /// Bit 1.
-  [[nodiscard]] constexpr bool velocity() const { return has_(0x00000002); }
-  constexpr supported_drive_modes& velocity(bool on) { return assign_(0x00000002, on), *this; }
-  /// Bit 2.
-  [[nodiscard]] constexpr bool profile_velocity() const { return has_(0x00000004); }
-  constexpr supported_drive_modes& profile_velocity(bool on) { return assign_(0x00000004, on), *this; }
-  /// Bit 3.
-  [[nodiscard]] constexpr bool profile_torque() const { return has_(0x00000008); }
-  constexpr supported_drive_modes& profile_torque(bool on) { return assign_(0x00000008, on), *this; }
-  /// Bit 5.
-  [[nodiscard]] constexpr bool homing() const { return has_(0x00000020); }
-  constexpr supported_drive_modes& homing(bool on) { return assign_(0x00000020, on), *this; }
-  /// Bit 6.
-  [[nodiscard]] constexpr bool interpolated_position() const { return has_(0x00000040); }
-  constexpr supported_drive_modes& interpolated_position(bool on) { return assign_(0x00000040, on), *this; }
-  /// Bit 7.
-  [[nodiscard]] constexpr bool cyclic_synchronous_position() const { return has_(0x00000080); }
-  constexpr supported_drive_modes& cyclic_synchronous_position(bool on) { return assign_(0x00000080, on), *this; }
-  /// Bit 8.
-  [[nodiscard]] constexpr bool cyclic_synchronous_velocity() const { return has_(0x00000100); }
-  constexpr supported_drive_modes& cyclic_synchronous_velocity(bool on) { return assign_(0x00000100, on), *this; }
-  /// Bit 9.
-  [[nodiscard]] constexpr bool cyclic_synchronous_torque() const { return has_(0x00000200); }
-  constexpr supported_drive_modes& cyclic_synchronous_torque(bool on) { return assign_(0x00000200, on), *this; }
-  /// Bit 10.
-  [[nodiscard]] constexpr bool cyclic_synchronous_torque_with_commutation_angle() const { return has_(0x00000400); }
-  constexpr supported_drive_modes& cyclic_synchronous_torque_with_commutation_angle(bool on) { return assign_(0x00000400, on), *this; }
-  /// Bits 16..31.
-  [[nodiscard]] constexpr std::uint16_t manufacturer_specific_modes() const { return static_cast<std::uint16_t>(part_(16, 0x0000FFFF)); }
-  constexpr supported_drive_modes& manufacturer_specific_modes(canopen::FieldNumber<16> value) { return assign_part_(16, 0x0000FFFF, static_cast<std::uint32_t>(value.number)), *this; }
-};
+using supported_drive_modes = canopen::cia402::SupportedDriveModes;
 
 }  // namespace cpd::meaning
 

@@ -4,10 +4,14 @@
 
 #include <string_view>
 
+#include <canopen/profile/cia402_text.hpp>
+
 #include "meaning.hpp"
 
 /// The names of the values as text; empty for a value without a name.
 namespace cpd::meaning {
+
+using canopen::cia402::to_text;
 
 [[nodiscard]] constexpr std::string_view to_text(device_type::device_profile_value value) {
   switch (value) {
@@ -121,17 +125,6 @@ namespace cpd::meaning {
   }
   return {};
 }
-[[nodiscard]] constexpr std::string_view to_text(controlword::command_value value) {
-  switch (value) {
-    case controlword::command_value::fault_reset: return "fault_reset";
-    case controlword::command_value::disable_voltage: return "disable_voltage";
-    case controlword::command_value::quick_stop: return "quick_stop";
-    case controlword::command_value::shutdown: return "shutdown";
-    case controlword::command_value::switch_on: return "switch_on";
-    case controlword::command_value::enable_operation: return "enable_operation";
-  }
-  return {};
-}
 [[nodiscard]] constexpr std::string_view to_text(statusword::state_value value) {
   switch (value) {
     case statusword::state_value::not_ready_to_switch_on: return "not_ready_to_switch_on";
@@ -154,53 +147,6 @@ namespace cpd::meaning {
     case modes_of_operation::profile_position: return "profile_position";
     case modes_of_operation::profile_velocity: return "profile_velocity";
     case modes_of_operation::homing: return "homing";
-  }
-  return {};
-}
-[[nodiscard]] constexpr std::string_view to_text(motion_profile_type value) {
-  switch (value) {
-    case motion_profile_type::linear_ramp: return "linear_ramp";
-    case motion_profile_type::sin2_ramp: return "sin2_ramp";
-    case motion_profile_type::jerk_free_ramp: return "jerk_free_ramp";
-    case motion_profile_type::jerk_limited_ramp: return "jerk_limited_ramp";
-  }
-  return {};
-}
-[[nodiscard]] constexpr std::string_view to_text(homing_method value) {
-  switch (value) {
-    case homing_method::no_homing: return "no_homing";
-    case homing_method::negative_limit_switch_and_index_pulse: return "negative_limit_switch_and_index_pulse";
-    case homing_method::positive_limit_switch_and_index_pulse: return "positive_limit_switch_and_index_pulse";
-    case homing_method::home_switch_at_positive_end_off_and_index_pulse: return "home_switch_at_positive_end_off_and_index_pulse";
-    case homing_method::home_switch_at_positive_end_on_and_index_pulse: return "home_switch_at_positive_end_on_and_index_pulse";
-    case homing_method::home_switch_at_negative_end_off_and_index_pulse: return "home_switch_at_negative_end_off_and_index_pulse";
-    case homing_method::home_switch_at_negative_end_on_and_index_pulse: return "home_switch_at_negative_end_on_and_index_pulse";
-    case homing_method::home_switch_lower_edge_off_start_positive_and_index_pulse: return "home_switch_lower_edge_off_start_positive_and_index_pulse";
-    case homing_method::home_switch_lower_edge_on_start_positive_and_index_pulse: return "home_switch_lower_edge_on_start_positive_and_index_pulse";
-    case homing_method::home_switch_upper_edge_on_start_positive_and_index_pulse: return "home_switch_upper_edge_on_start_positive_and_index_pulse";
-    case homing_method::home_switch_upper_edge_off_start_positive_and_index_pulse: return "home_switch_upper_edge_off_start_positive_and_index_pulse";
-    case homing_method::home_switch_upper_edge_off_start_negative_and_index_pulse: return "home_switch_upper_edge_off_start_negative_and_index_pulse";
-    case homing_method::home_switch_upper_edge_on_start_negative_and_index_pulse: return "home_switch_upper_edge_on_start_negative_and_index_pulse";
-    case homing_method::home_switch_lower_edge_on_start_negative_and_index_pulse: return "home_switch_lower_edge_on_start_negative_and_index_pulse";
-    case homing_method::home_switch_lower_edge_off_start_negative_and_index_pulse: return "home_switch_lower_edge_off_start_negative_and_index_pulse";
-    case homing_method::negative_limit_switch: return "negative_limit_switch";
-    case homing_method::positive_limit_switch: return "positive_limit_switch";
-    case homing_method::home_switch_at_positive_end_off: return "home_switch_at_positive_end_off";
-    case homing_method::home_switch_at_positive_end_on: return "home_switch_at_positive_end_on";
-    case homing_method::home_switch_at_negative_end_off: return "home_switch_at_negative_end_off";
-    case homing_method::home_switch_at_negative_end_on: return "home_switch_at_negative_end_on";
-    case homing_method::home_switch_lower_edge_off_start_positive: return "home_switch_lower_edge_off_start_positive";
-    case homing_method::home_switch_lower_edge_on_start_positive: return "home_switch_lower_edge_on_start_positive";
-    case homing_method::home_switch_upper_edge_on_start_positive: return "home_switch_upper_edge_on_start_positive";
-    case homing_method::home_switch_upper_edge_off_start_positive: return "home_switch_upper_edge_off_start_positive";
-    case homing_method::home_switch_upper_edge_off_start_negative: return "home_switch_upper_edge_off_start_negative";
-    case homing_method::home_switch_upper_edge_on_start_negative: return "home_switch_upper_edge_on_start_negative";
-    case homing_method::home_switch_lower_edge_on_start_negative: return "home_switch_lower_edge_on_start_negative";
-    case homing_method::home_switch_lower_edge_off_start_negative: return "home_switch_lower_edge_off_start_negative";
-    case homing_method::index_pulse_in_negative_direction: return "index_pulse_in_negative_direction";
-    case homing_method::index_pulse_in_positive_direction: return "index_pulse_in_positive_direction";
-    case homing_method::present_position_35: return "present_position_35";
-    case homing_method::present_position: return "present_position";
   }
   return {};
 }

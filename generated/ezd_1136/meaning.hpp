@@ -4,6 +4,7 @@
 
 #include <canopen/od/quantity.hpp>
 #include <canopen/od/typed_value.hpp>
+#include <canopen/profile/cia402_types.hpp>
 #include <cstdint>
 #include <ratio>
 
@@ -541,19 +542,10 @@ enum class quick_stop_option_code : std::int16_t {
 };
 
 /// Shutdown option code.  605Bh:00: CiA 402-2, 8.4.4
-enum class shutdown_option_code : std::int16_t {
-  disable_drive_function = 0,
-  slow_down_ramp = 1,
-};
+using shutdown_option_code = canopen::cia402::ShutdownOptionCode;
 
 /// Fault reaction option code.  605Eh:00: CiA 402-2, 8.4.7
-enum class fault_reaction_option_code : std::int16_t {
-  disable_drive_function = 0,
-  slow_down_ramp = 1,
-  quick_stop_ramp = 2,
-  current_limit = 3,
-  voltage_limit = 4,
-};
+using fault_reaction_option_code = canopen::cia402::FaultReactionOptionCode;
 
 /// Modes of operation.  6060h:00: Motion parameters, 6060h, and glossary
 enum class modes_of_operation : std::int8_t {
@@ -564,107 +556,10 @@ enum class modes_of_operation : std::int8_t {
 };
 
 /// Homing method.  6098h:00: CiA 402-2, 11.4
-enum class homing_method : std::int8_t {
-  no_homing = 0,
-  negative_limit_switch_and_index_pulse = 1,
-  positive_limit_switch_and_index_pulse = 2,
-  home_switch_at_positive_end_off_and_index_pulse = 3,
-  home_switch_at_positive_end_on_and_index_pulse = 4,
-  home_switch_at_negative_end_off_and_index_pulse = 5,
-  home_switch_at_negative_end_on_and_index_pulse = 6,
-  home_switch_lower_edge_off_start_positive_and_index_pulse = 7,
-  home_switch_lower_edge_on_start_positive_and_index_pulse = 8,
-  home_switch_upper_edge_on_start_positive_and_index_pulse = 9,
-  home_switch_upper_edge_off_start_positive_and_index_pulse = 10,
-  home_switch_upper_edge_off_start_negative_and_index_pulse = 11,
-  home_switch_upper_edge_on_start_negative_and_index_pulse = 12,
-  home_switch_lower_edge_on_start_negative_and_index_pulse = 13,
-  home_switch_lower_edge_off_start_negative_and_index_pulse = 14,
-  negative_limit_switch = 17,
-  positive_limit_switch = 18,
-  home_switch_at_positive_end_off = 19,
-  home_switch_at_positive_end_on = 20,
-  home_switch_at_negative_end_off = 21,
-  home_switch_at_negative_end_on = 22,
-  home_switch_lower_edge_off_start_positive = 23,
-  home_switch_lower_edge_on_start_positive = 24,
-  home_switch_upper_edge_on_start_positive = 25,
-  home_switch_upper_edge_off_start_positive = 26,
-  home_switch_upper_edge_off_start_negative = 27,
-  home_switch_upper_edge_on_start_negative = 28,
-  home_switch_lower_edge_on_start_negative = 29,
-  home_switch_lower_edge_off_start_negative = 30,
-  index_pulse_in_negative_direction = 33,
-  index_pulse_in_positive_direction = 34,
-  present_position_35 = 35,  ///< obsolete, see 37
-  present_position = 37,
-};
+using homing_method = canopen::cia402::HomingMethodNumber;
 
 /// Digital inputs.  60FDh:00: CiA 402-2, 10.5.7
-struct digital_inputs : canopen::Fields<std::uint32_t> {
-  using Fields::Fields;
-
-  /// Bit 0.
-  [[nodiscard]] constexpr bool negative_limit_switch() const { return has_(0x00000001); }
-  constexpr digital_inputs& negative_limit_switch(bool on) { return assign_(0x00000001, on), *this; }
-  /// Bit 1.
-  [[nodiscard]] constexpr bool positive_limit_switch() const { return has_(0x00000002); }
-  constexpr digital_inputs& positive_limit_switch(bool on) { return assign_(0x00000002, on), *this; }
-  /// Bit 2.
-  [[nodiscard]] constexpr bool home_switch() const { return has_(0x00000004); }
-  constexpr digital_inputs& home_switch(bool on) { return assign_(0x00000004, on), *this; }
-  /// Bit 3.
-  [[nodiscard]] constexpr bool interlock() const { return has_(0x00000008); }
-  constexpr digital_inputs& interlock(bool on) { return assign_(0x00000008, on), *this; }
-  /// Bit 16.
-  [[nodiscard]] constexpr bool input_1() const { return has_(0x00010000); }
-  constexpr digital_inputs& input_1(bool on) { return assign_(0x00010000, on), *this; }
-  /// Bit 17.
-  [[nodiscard]] constexpr bool input_2() const { return has_(0x00020000); }
-  constexpr digital_inputs& input_2(bool on) { return assign_(0x00020000, on), *this; }
-  /// Bit 18.
-  [[nodiscard]] constexpr bool input_3() const { return has_(0x00040000); }
-  constexpr digital_inputs& input_3(bool on) { return assign_(0x00040000, on), *this; }
-  /// Bit 19.
-  [[nodiscard]] constexpr bool input_4() const { return has_(0x00080000); }
-  constexpr digital_inputs& input_4(bool on) { return assign_(0x00080000, on), *this; }
-  /// Bit 20.
-  [[nodiscard]] constexpr bool input_5() const { return has_(0x00100000); }
-  constexpr digital_inputs& input_5(bool on) { return assign_(0x00100000, on), *this; }
-  /// Bit 21.
-  [[nodiscard]] constexpr bool input_6() const { return has_(0x00200000); }
-  constexpr digital_inputs& input_6(bool on) { return assign_(0x00200000, on), *this; }
-  /// Bit 22.
-  [[nodiscard]] constexpr bool input_7() const { return has_(0x00400000); }
-  constexpr digital_inputs& input_7(bool on) { return assign_(0x00400000, on), *this; }
-  /// Bit 23.
-  [[nodiscard]] constexpr bool input_8() const { return has_(0x00800000); }
-  constexpr digital_inputs& input_8(bool on) { return assign_(0x00800000, on), *this; }
-  /// Bit 24.
-  [[nodiscard]] constexpr bool input_9() const { return has_(0x01000000); }
-  constexpr digital_inputs& input_9(bool on) { return assign_(0x01000000, on), *this; }
-  /// Bit 25.
-  [[nodiscard]] constexpr bool input_10() const { return has_(0x02000000); }
-  constexpr digital_inputs& input_10(bool on) { return assign_(0x02000000, on), *this; }
-  /// Bit 26.
-  [[nodiscard]] constexpr bool input_11() const { return has_(0x04000000); }
-  constexpr digital_inputs& input_11(bool on) { return assign_(0x04000000, on), *this; }
-  /// Bit 27.
-  [[nodiscard]] constexpr bool input_12() const { return has_(0x08000000); }
-  constexpr digital_inputs& input_12(bool on) { return assign_(0x08000000, on), *this; }
-  /// Bit 28.
-  [[nodiscard]] constexpr bool input_13() const { return has_(0x10000000); }
-  constexpr digital_inputs& input_13(bool on) { return assign_(0x10000000, on), *this; }
-  /// Bit 29.
-  [[nodiscard]] constexpr bool input_14() const { return has_(0x20000000); }
-  constexpr digital_inputs& input_14(bool on) { return assign_(0x20000000, on), *this; }
-  /// Bit 30.
-  [[nodiscard]] constexpr bool input_15() const { return has_(0x40000000); }
-  constexpr digital_inputs& input_15(bool on) { return assign_(0x40000000, on), *this; }
-  /// Bit 31.
-  [[nodiscard]] constexpr bool input_16() const { return has_(0x80000000); }
-  constexpr digital_inputs& input_16(bool on) { return assign_(0x80000000, on), *this; }
-};
+using digital_inputs = canopen::cia402::DigitalInputs;
 
 /// Digital outputs.  60FEh: CiA 402-2, digital outputs
 struct digital_outputs : canopen::Fields<std::uint32_t> {
@@ -724,43 +619,7 @@ struct digital_outputs : canopen::Fields<std::uint32_t> {
 };
 
 /// Supported drive modes.  6502h:00: CiA 402-2, 8.4.10
-struct supported_drive_modes : canopen::Fields<std::uint32_t> {
-  using Fields::Fields;
-
-  /// Bit 0.
-  [[nodiscard]] constexpr bool profile_position() const { return has_(0x00000001); }
-  constexpr supported_drive_modes& profile_position(bool on) { return assign_(0x00000001, on), *this; }
-  /// Bit 1.
-  [[nodiscard]] constexpr bool velocity() const { return has_(0x00000002); }
-  constexpr supported_drive_modes& velocity(bool on) { return assign_(0x00000002, on), *this; }
-  /// Bit 2.
-  [[nodiscard]] constexpr bool profile_velocity() const { return has_(0x00000004); }
-  constexpr supported_drive_modes& profile_velocity(bool on) { return assign_(0x00000004, on), *this; }
-  /// Bit 3.
-  [[nodiscard]] constexpr bool profile_torque() const { return has_(0x00000008); }
-  constexpr supported_drive_modes& profile_torque(bool on) { return assign_(0x00000008, on), *this; }
-  /// Bit 5.
-  [[nodiscard]] constexpr bool homing() const { return has_(0x00000020); }
-  constexpr supported_drive_modes& homing(bool on) { return assign_(0x00000020, on), *this; }
-  /// Bit 6.
-  [[nodiscard]] constexpr bool interpolated_position() const { return has_(0x00000040); }
-  constexpr supported_drive_modes& interpolated_position(bool on) { return assign_(0x00000040, on), *this; }
-  /// Bit 7.
-  [[nodiscard]] constexpr bool cyclic_synchronous_position() const { return has_(0x00000080); }
-  constexpr supported_drive_modes& cyclic_synchronous_position(bool on) { return assign_(0x00000080, on), *this; }
-  /// Bit 8.
-  [[nodiscard]] constexpr bool cyclic_synchronous_velocity() const { return has_(0x00000100); }
-  constexpr supported_drive_modes& cyclic_synchronous_velocity(bool on) { return assign_(0x00000100, on), *this; }
-  /// Bit 9.
-  [[nodiscard]] constexpr bool cyclic_synchronous_torque() const { return has_(0x00000200); }
-  constexpr supported_drive_modes& cyclic_synchronous_torque(bool on) { return assign_(0x00000200, on), *this; }
-  /// Bit 10.
-  [[nodiscard]] constexpr bool cyclic_synchronous_torque_with_commutation_angle() const { return has_(0x00000400); }
-  constexpr supported_drive_modes& cyclic_synchronous_torque_with_commutation_angle(bool on) { return assign_(0x00000400, on), *this; }
-  /// Bits 16..31.
-  [[nodiscard]] constexpr std::uint16_t manufacturer_specific_modes() const { return static_cast<std::uint16_t>(part_(16, 0x0000FFFF)); }
-  constexpr supported_drive_modes& manufacturer_specific_modes(canopen::FieldNumber<16> value) { return assign_part_(16, 0x0000FFFF, static_cast<std::uint32_t>(value.number)), *this; }
-};
+using supported_drive_modes = canopen::cia402::SupportedDriveModes;
 
 }  // namespace ezd_1136::meaning
 

@@ -4,10 +4,14 @@
 
 #include <string_view>
 
+#include <canopen/profile/cia402_text.hpp>
+
 #include "meaning.hpp"
 
 /// The names of the values as text; empty for a value without a name.
 namespace ezd_1136::meaning {
+
+using canopen::cia402::to_text;
 
 [[nodiscard]] constexpr std::string_view to_text(device_type::device_profile_number_value value) {
   switch (value) {
@@ -121,67 +125,12 @@ namespace ezd_1136::meaning {
   }
   return {};
 }
-[[nodiscard]] constexpr std::string_view to_text(shutdown_option_code value) {
-  switch (value) {
-    case shutdown_option_code::disable_drive_function: return "disable_drive_function";
-    case shutdown_option_code::slow_down_ramp: return "slow_down_ramp";
-  }
-  return {};
-}
-[[nodiscard]] constexpr std::string_view to_text(fault_reaction_option_code value) {
-  switch (value) {
-    case fault_reaction_option_code::disable_drive_function: return "disable_drive_function";
-    case fault_reaction_option_code::slow_down_ramp: return "slow_down_ramp";
-    case fault_reaction_option_code::quick_stop_ramp: return "quick_stop_ramp";
-    case fault_reaction_option_code::current_limit: return "current_limit";
-    case fault_reaction_option_code::voltage_limit: return "voltage_limit";
-  }
-  return {};
-}
 [[nodiscard]] constexpr std::string_view to_text(modes_of_operation value) {
   switch (value) {
     case modes_of_operation::profile_position: return "profile_position";
     case modes_of_operation::profile_velocity: return "profile_velocity";
     case modes_of_operation::home: return "home";
     case modes_of_operation::csp: return "csp";
-  }
-  return {};
-}
-[[nodiscard]] constexpr std::string_view to_text(homing_method value) {
-  switch (value) {
-    case homing_method::no_homing: return "no_homing";
-    case homing_method::negative_limit_switch_and_index_pulse: return "negative_limit_switch_and_index_pulse";
-    case homing_method::positive_limit_switch_and_index_pulse: return "positive_limit_switch_and_index_pulse";
-    case homing_method::home_switch_at_positive_end_off_and_index_pulse: return "home_switch_at_positive_end_off_and_index_pulse";
-    case homing_method::home_switch_at_positive_end_on_and_index_pulse: return "home_switch_at_positive_end_on_and_index_pulse";
-    case homing_method::home_switch_at_negative_end_off_and_index_pulse: return "home_switch_at_negative_end_off_and_index_pulse";
-    case homing_method::home_switch_at_negative_end_on_and_index_pulse: return "home_switch_at_negative_end_on_and_index_pulse";
-    case homing_method::home_switch_lower_edge_off_start_positive_and_index_pulse: return "home_switch_lower_edge_off_start_positive_and_index_pulse";
-    case homing_method::home_switch_lower_edge_on_start_positive_and_index_pulse: return "home_switch_lower_edge_on_start_positive_and_index_pulse";
-    case homing_method::home_switch_upper_edge_on_start_positive_and_index_pulse: return "home_switch_upper_edge_on_start_positive_and_index_pulse";
-    case homing_method::home_switch_upper_edge_off_start_positive_and_index_pulse: return "home_switch_upper_edge_off_start_positive_and_index_pulse";
-    case homing_method::home_switch_upper_edge_off_start_negative_and_index_pulse: return "home_switch_upper_edge_off_start_negative_and_index_pulse";
-    case homing_method::home_switch_upper_edge_on_start_negative_and_index_pulse: return "home_switch_upper_edge_on_start_negative_and_index_pulse";
-    case homing_method::home_switch_lower_edge_on_start_negative_and_index_pulse: return "home_switch_lower_edge_on_start_negative_and_index_pulse";
-    case homing_method::home_switch_lower_edge_off_start_negative_and_index_pulse: return "home_switch_lower_edge_off_start_negative_and_index_pulse";
-    case homing_method::negative_limit_switch: return "negative_limit_switch";
-    case homing_method::positive_limit_switch: return "positive_limit_switch";
-    case homing_method::home_switch_at_positive_end_off: return "home_switch_at_positive_end_off";
-    case homing_method::home_switch_at_positive_end_on: return "home_switch_at_positive_end_on";
-    case homing_method::home_switch_at_negative_end_off: return "home_switch_at_negative_end_off";
-    case homing_method::home_switch_at_negative_end_on: return "home_switch_at_negative_end_on";
-    case homing_method::home_switch_lower_edge_off_start_positive: return "home_switch_lower_edge_off_start_positive";
-    case homing_method::home_switch_lower_edge_on_start_positive: return "home_switch_lower_edge_on_start_positive";
-    case homing_method::home_switch_upper_edge_on_start_positive: return "home_switch_upper_edge_on_start_positive";
-    case homing_method::home_switch_upper_edge_off_start_positive: return "home_switch_upper_edge_off_start_positive";
-    case homing_method::home_switch_upper_edge_off_start_negative: return "home_switch_upper_edge_off_start_negative";
-    case homing_method::home_switch_upper_edge_on_start_negative: return "home_switch_upper_edge_on_start_negative";
-    case homing_method::home_switch_lower_edge_on_start_negative: return "home_switch_lower_edge_on_start_negative";
-    case homing_method::home_switch_lower_edge_off_start_negative: return "home_switch_lower_edge_off_start_negative";
-    case homing_method::index_pulse_in_negative_direction: return "index_pulse_in_negative_direction";
-    case homing_method::index_pulse_in_positive_direction: return "index_pulse_in_positive_direction";
-    case homing_method::present_position_35: return "present_position_35";
-    case homing_method::present_position: return "present_position";
   }
   return {};
 }

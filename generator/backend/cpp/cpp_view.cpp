@@ -8,6 +8,7 @@
 
 #include "backend/cpp/cpp_text.hpp"
 #include "backend/cpp/json_object.hpp"
+#include "backend/cpp/profile_types.hpp"
 #include "backend/cpp/views.hpp"
 #include "device/stored_eds.hpp"
 #include "system/path.hpp"
@@ -79,12 +80,18 @@ ordered_json cpp_view(const NamedDevice& named, const Options& options, Diagnost
   OptionsView view = options_view(device, options);
   const TypedValues typed{named, options};
   std::string closed_objects = typed.closed_objects(named);
+  ordered_json profile;
+  if (typed.uses_profile_types()) {
+    profile = json_object("types", cia402_types.types_file, "text", cia402_types.text_file, "namespace",
+                          cia402_types.name_space);
+  }
   return json_object(
       "file", cpp_comment(file_name_of(device.source->name())), "namespace", space, "guard",
       upper_case("edsc_" + space), "product_name",
       cpp_string(device.product_name.empty() ? space : device.product_name), "types",
       object_types_view(named, typed, options), "typed_values", typed.any(), "meaning", typed.definitions(),
-      "meaning_text", typed.names_of_values(), "closed_objects",
+      "meaning_text", typed.names_of_values(), "meaning_namespace", space + "::meaning", "meaning_header",
+      "\"meaning.hpp\"", "profile", std::move(profile), "closed_objects",
       closed_objects.empty() ? ordered_json(nullptr) : ordered_json(std::move(closed_objects)), "object_rows",
       object_rows_view(named), "memory", layout_view(lay_out(named, options, diagnostics)), "zero_terminated_strings",
       options.zero_terminated_strings, "pdos", pdo_rows(named), "distinct_pdos", table(distinct_pdos(device)),

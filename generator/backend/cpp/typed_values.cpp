@@ -8,6 +8,7 @@
 #include "backend/cpp/cpp_text.hpp"
 #include "backend/cpp/identifier.hpp"
 #include "backend/cpp/json_object.hpp"
+#include "backend/cpp/profile_types.hpp"
 #include "backend/cpp/word_view.hpp"
 #include "device/uniform_array.hpp"
 
@@ -36,21 +37,6 @@ bool is_of_all_elements(const Object& object, const Entry& entry) {
   return entry.sub_index != 0 && describes_uniform_array(object) &&
          std::all_of(object.entries.begin() + 1, object.entries.end(),
                      [&](const Entry& other) { return other.meaning == entry.meaning; });
-}
-
-/// What makes a type another one: numbers and names, without texts.
-std::string contents(const ordered_json& node) {
-  std::string text;
-  if (node.is_array()) {
-    for (const ordered_json& one : node) text += "[" + contents(one) + "]";
-  } else if (node.is_object()) {
-    for (const auto& [name, value] : node.items()) {
-      if (name != "comment") text += contents(value) + ";";
-    }
-  } else if (node.is_string()) {
-    text += node.get_ref<const std::string&>();
-  }
-  return text;
 }
 
 }  // namespace
@@ -91,8 +77,7 @@ TypedValue TypedValues::type_of(const NamedDevice& named, const Object& object, 
   ordered_json enumeration, word;
   if (meaning->values) {
     value.values = &*meaning->values;
-    enumeration = json_object("number", entry.type->cpp_type, "values",
-                              enumerator_rows(*meaning->values, entry.type->bits, is_signed(entry)));
+    enumeration = enumeration_view(entry);
     if (enumeration["values"].empty()) return {};
     for (const ordered_json& one : enumeration["values"]) value.enumerators.push_back(one["identifier"]);
   } else if (meaning->has_fields() && !is_signed(entry)) {
@@ -101,7 +86,8 @@ TypedValue TypedValues::type_of(const NamedDevice& named, const Object& object, 
   } else {
     return {};
   }
-  const auto [known, is_new] = defined_.try_emplace(contents(enumeration) + contents(word));
+  const std::string contents = contents_of_type(enumeration, word);
+  const auto [known, is_new] = defined_.try_emplace(contents);
   if (is_new) {
     const bool is_element = is_of_all_elements(object, entry);
     const std::string name = is_element ? named.names.of(object) : named.names.identifiers().full(entry);
@@ -111,20 +97,22 @@ TypedValue TypedValues::type_of(const NamedDevice& named, const Object& object, 
     comment.push_back(fmt::format("{}.  {}{}", cpp_comment(is_element ? object.name : entry.name),
                                   is_element ? index_label(entry.index) : entry_label(entry.index, entry.sub_index),
                                   comment_of(*meaning)));
-    if (!enumeration.is_null()) {
+    const std::string_view of_profile = find_profile_type(contents);
+    ordered_json alias;
+    if (!of_profile.empty()) {
+      uses_profile_types_ = true;
+      alias = json_object("identifier", identifier, "type", of_profile);
+      enumeration = word = nullptr;
+    } else if (!enumeration.is_null()) {
       enumeration["identifier"] = identifier;
-      names_of_values_.push_back(json_object("type", identifier, "values", enumeration["values"]));
     } else {
       word = word_view(entry, identifier);
       word["identifier"] = identifier;
-      for (const ordered_json& one : enumerations_of(word)) {
-        names_of_values_.push_back(
-            json_object("type", fmt::format("{}::{}", identifier, one["identifier"].get_ref<const std::string&>()),
-                        "values", one["values"]));
-      }
     }
-    definitions_.push_back(
-        json_object("comment", std::move(comment), "enumeration", std::move(enumeration), "word", std::move(word)));
+    if (names_of_values_.is_null()) names_of_values_ = ordered_json::array();
+    if (alias.is_null()) add_names_of_values(names_of_values_, identifier, enumeration, word);
+    definitions_.push_back(json_object("comment", std::move(comment), "alias", std::move(alias), "enumeration",
+                                       std::move(enumeration), "word", std::move(word)));
   }
   value.type = "meaning::" + known->second;
   return value;

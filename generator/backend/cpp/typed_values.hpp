@@ -47,6 +47,8 @@ class TypedValues {
   [[nodiscard]] const nlohmann::ordered_json& definitions() const { return definitions_; }
   /// The names of the values of each enumeration; null if there are none.
   [[nodiscard]] const nlohmann::ordered_json& names_of_values() const { return names_of_values_; }
+  /// Whether types of a profile are among them.
+  [[nodiscard]] bool uses_profile_types() const { return uses_profile_types_; }
   /// The objects with closed enumerations, as arguments of canopen::ObjectList; empty if there are none.
   [[nodiscard]] std::string closed_objects(const NamedDevice& named) const;
 
@@ -60,6 +62,7 @@ class TypedValues {
   std::map<std::pair<const Meaning*, const canopen::DataTypeRow*>, TypedValue> of_meanings_;
   std::map<std::string, std::string> defined_;  ///< names of types by what they contain
   nlohmann::ordered_json definitions_, names_of_values_;
+  bool uses_profile_types_ = false;
 };
 
 }  // namespace edsc

@@ -234,13 +234,24 @@ ordered_json word_view(const Entry& entry, const std::string& identifier) {
   return WordBuilder{entry, identifier}.build();
 }
 
-std::vector<ordered_json> enumerations_of(const ordered_json& word) {
-  std::vector<ordered_json> rows;
-  for (const ordered_json& one : word["enumerations"]) rows.push_back(one);
-  for (const ordered_json& one : word["masked"]) {
-    rows.push_back(json_object("identifier", one["enumeration"], "values", one["values"]));
+ordered_json enumeration_view(const Entry& entry) {
+  const bool is_signed = entry.type->kind == canopen::DataClass::signed_integer;
+  return json_object("number", entry.type->cpp_type, "values",
+                     enumerator_rows(*entry.meaning->values, entry.type->bits, is_signed));
+}
+
+void add_names_of_values(ordered_json& rows, const std::string& identifier, const ordered_json& enumeration,
+                         const ordered_json& word) {
+  if (!enumeration.is_null()) {
+    rows.push_back(json_object("type", identifier, "values", enumeration["values"]));
+    return;
   }
-  return rows;
+  const auto add = [&](const ordered_json& name, const ordered_json& values) {
+    rows.push_back(
+        json_object("type", fmt::format("{}::{}", identifier, name.get_ref<const std::string&>()), "values", values));
+  };
+  for (const ordered_json& one : word["enumerations"]) add(one["identifier"], one["values"]);
+  for (const ordered_json& one : word["masked"]) add(one["enumeration"], one["values"]);
 }
 
 }  // namespace edsc

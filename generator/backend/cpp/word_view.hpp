@@ -32,7 +32,11 @@ namespace edsc {
 /// The struct for the fields of an entry.
 [[nodiscard]] nlohmann::ordered_json word_view(const Entry& entry, const std::string& identifier);
 
-/// The enumerations in it, for the names of their values.
-[[nodiscard]] std::vector<nlohmann::ordered_json> enumerations_of(const nlohmann::ordered_json& word);
+/// The enumeration of an entry: number, values. It does not have a name yet.
+[[nodiscard]] nlohmann::ordered_json enumeration_view(const Entry& entry);
+
+/// Adds rows with the names of the values of a type: of the enumeration, or of those in the word.
+void add_names_of_values(nlohmann::ordered_json& rows, const std::string& identifier,
+                         const nlohmann::ordered_json& enumeration, const nlohmann::ordered_json& word);
 
 }  // namespace edsc

@@ -56,13 +56,12 @@ class TouchProbes {
   /// Stores the positions of new edges.
   template <class Node, class AxisType>
   void step(Node& node, AxisType& axis) {
-    using namespace object;
     if (!enabled()) return;
-    store<TouchProbe1Positive>(node, axis, 0, true);
-    store<TouchProbe1Negative>(node, axis, 0, false);
-    store<TouchProbe2Positive>(node, axis, 1, true);
-    store<TouchProbe2Negative>(node, axis, 1, false);
-    DriveParameters::template set<TouchProbeStatus>(node, status_);
+    store<object::TouchProbe1Positive>(node, axis, 0, true);
+    store<object::TouchProbe1Negative>(node, axis, 0, false);
+    store<object::TouchProbe2Positive>(node, axis, 1, true);
+    store<object::TouchProbe2Negative>(node, axis, 1, false);
+    DriveParameters::template set<object::TouchProbeStatus>(node, status_);
   }
 
  private:

@@ -31,10 +31,10 @@ struct Velocity {
   /// Returns 6048h and 6049h; without them, 6083h and 6084h.
   template <class Node>
   [[nodiscard]] static Profile ramps(const Node& node) {
-    using namespace object;
     const Profile profile = DriveParameters::profile(node);
-    return {profile.velocity, slope<VelocityAccelerationSpeed, VelocityAccelerationTime>(node, profile.acceleration),
-            slope<VelocityDecelerationSpeed, VelocityDecelerationTime>(node, profile.deceleration)};
+    return {profile.velocity,
+            slope<object::VelocityAccelerationSpeed, object::VelocityAccelerationTime>(node, profile.acceleration),
+            slope<object::VelocityDecelerationSpeed, object::VelocityDecelerationTime>(node, profile.deceleration)};
   }
 
   /// Returns 604Ah; `otherwise` without it.
