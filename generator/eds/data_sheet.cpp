@@ -153,9 +153,22 @@ class DataSheetReader {
         diagnostics_);
   }
 
+  /// The EDS of the Common Industrial Protocol has the same extension: [File] and [Device] with VendCode.
+  [[nodiscard]] bool is_of_cip() const {
+    const auto has_key = [&](std::string_view section, std::string_view key) {
+      return std::ranges::any_of(ini_.sections, [&](const IniSection& one) {
+        return equal_ignoring_case(one.name, section) && one.find(key) != nullptr;
+      });
+    };
+    return has_key("Device", "VendCode") || has_key("File", "DescText");
+  }
+
   void read_objects() {
     if (object_sections_.empty()) {
-      diagnostics_.error("no-objects", {&source_}, "the file does not have an object section such as [1000]");
+      diagnostics_.error("no-objects", {&source_},
+                         is_of_cip() ? "this is an EDS of EtherNet/IP, DeviceNet or ControlNet (ODVA), not of CANopen "
+                                       "(CiA 306): it has no object section such as [1000]"
+                                     : "the file does not have an object section such as [1000]");
       return;
     }
     sheet_.objects = edsc::read_objects(source_, std::move(object_sections_), {}, diagnostics_);

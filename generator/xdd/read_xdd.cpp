@@ -9,6 +9,7 @@
 
 #include "diagnostics/quote.hpp"
 #include "eds/ini.hpp"
+#include "eds/number.hpp"
 #include "eds/sections/object_lists.hpp"
 #include "text/source_file.hpp"
 #include "xdd/application_process.hpp"
@@ -24,7 +25,7 @@ namespace {
 struct Parts {
   pugi::xml_node body;  ///< of the device profile, if any
   pugi::xml_node identity, application_process;
-  pugi::xml_node application_layers, object_list, dummy_usage;
+  pugi::xml_node application_layers, object_list, dummy_usage, object_identity;
   pugi::xml_node transport_layers, physical_layer, baud_rate;
   pugi::xml_node network_management, general_features, master_features, commissioning;
 };
@@ -45,7 +46,7 @@ constexpr PartRow part_rows[] = {
     {"ProfileBody", "ApplicationLayers", &Parts::application_layers},
     {"ApplicationLayers", "CANopenObjectList", &Parts::object_list},
     {"ApplicationLayers", "dummyUsage", &Parts::dummy_usage},
-    {"ApplicationLayers", "identity", nullptr},
+    {"ApplicationLayers", "identity", &Parts::object_identity},
     {"ProfileBody", "TransportLayers", &Parts::transport_layers},
     {"TransportLayers", "PhysicalLayer", &Parts::physical_layer},
     {"PhysicalLayer", "baudRate", &Parts::baud_rate},
@@ -114,8 +115,9 @@ class XddReader {
     const std::string_view type = body_type(body);
     if (type.empty()) return true;
     for (const std::string_view known : body_types) {
-      if (type.starts_with(known)) return true;
+      if (type.starts_with(known) && type.find("FD", known.size()) == std::string_view::npos) return true;
     }
+    if (other_type_.empty()) other_type_ = type;
     xml_.diagnostics().note("xml-element", xml_.position(body),
                             fmt::format("profile type {} is not CANopen; it is left out", quote(type)));
     return false;
@@ -142,7 +144,7 @@ class XddReader {
         if (row.parent != local_name(parent) || row.name != local_name(child)) continue;
         if (row.part != nullptr) {
           take_part(child, parts_.*row.part);
-        } else if (row.name != "identity") {  // that of ApplicationLayers repeats 1018h
+        } else {
           note_silent(xml_, child);
         }
         return;
@@ -161,7 +163,35 @@ class XddReader {
                                {{xml_.position(part), "the first one"}});
   }
 
+  /// The file of another network, by its root or by the types of its profiles; empty if it is not known.
+  [[nodiscard]] std::string_view other_format() const {
+    struct Row {
+      std::string_view mark;
+      std::string_view name;
+    };
+    constexpr Row roots[] = {{"EtherCATInfo", "an EtherCAT slave information file"},
+                             {"IODevice", "an IO-Link device description"},
+                             {"CANopenProject", "a project of a CANopen editor"}};
+    constexpr Row bodies[] = {{"Powerlink", "an Ethernet POWERLINK XDD"},
+                              {"CANopenFD", "a CANopen FD device description (CiA 1301)"},
+                              {"CANopen_FD", "a CANopen FD device description (CiA 1301)"},
+                              {"EtherNetIP", "an EtherNet/IP device description"},
+                              {"ProfileBody_DeviceNet", "a DeviceNet device description"}};
+    for (const Row& row : roots) {
+      if (local_name(xml_.root()) == row.mark) return row.name;
+    }
+    for (const Row& row : bodies) {
+      if (other_type_.find(row.mark) != std::string_view::npos) return row.name;
+    }
+    return {};
+  }
+
   void report_no_profile() {
+    if (const std::string_view format = other_format(); !format.empty()) {
+      return xml_.diagnostics().error(
+          "xml-profile", xml_.position(xml_.root()),
+          fmt::format("this is {}, not an XDD or XDC of CiA 311; it does not describe a CANopen device", format));
+    }
     const bool is_container = local_name(xml_.root()) == container_name || local_name(xml_.root()) == profile_name;
     xml_.diagnostics().error(
         "xml-profile", xml_.position(xml_.root()),
@@ -180,9 +210,34 @@ class XddReader {
     xml_.diagnostics().set_outline(outline_of(xml_, parts_.object_list));
     ApplicationProcess process{xml_, parts_.application_process};
     sheet_.objects = read_object_list(xml_, parts_.object_list, process);
+    complete_identity();
     list_objects();
     if (sheet_.objects.empty()) {
       xml_.diagnostics().error("no-objects", xml_.position(parts_.object_list), "the object list is empty");
+    }
+  }
+
+  /// VendorNumber, ProductNumber and RevisionNumber that DeviceIdentity does not state: those of the identity of
+  /// ApplicationLayers, else of 1018h.
+  void complete_identity() {
+    struct Row {
+      Field DeviceInfo::*field;
+      std::string_view element;
+      std::uint8_t sub_index;
+    };
+    constexpr Row rows[] = {{&DeviceInfo::vendor_number, "vendorID", 1},
+                            {&DeviceInfo::product_number, "productID", 2},
+                            {&DeviceInfo::revision_number, "revisionNumber", 3}};
+    const ObjectDescription* const identity = sheet_.find(0x1018);
+    for (const Row& row : rows) {
+      Field& field = sheet_.device_info.*row.field;
+      if (!field.empty()) continue;
+      if (const pugi::xml_node element = find_child(parts_.object_identity, row.element)) {
+        const Field stated = xml_.text(element);
+        if (number_of(stated)) field = stated;
+      }
+      const SubObjectDescription* const entry = identity != nullptr ? identity->find(row.sub_index) : nullptr;
+      if (field.empty() && entry != nullptr && number_of(entry->default_value)) field = entry->default_value;
     }
   }
 
@@ -195,6 +250,7 @@ class XddReader {
   }
 
   XmlDocument xml_;
+  std::string_view other_type_;  ///< of the first body that is not of CANopen
   Parts parts_;
   DataSheet sheet_;
 };

@@ -184,6 +184,13 @@ TEST(DataSheet, ReportsAFileWithoutObjects) {
   EXPECT_EQ(findings(ReadSheet("[FileInfo]\n").diagnostics), (Findings{error_at(0, 0, "no-objects")}));
 }
 
+TEST(DataSheetErrors, NameAnEdsOfAnotherNetwork) {
+  const ReadSheet read("[File]\nDescText = \"Drive EDS\";\n[Device]\nVendCode = 1;\nProdCode = 2;\n");
+  EXPECT_EQ(messages(read.diagnostics).back(),
+            "this is an EDS of EtherNet/IP, DeviceNet or ControlNet (ODVA), not of CANopen (CiA 306): it has no object "
+            "section such as [1000]");
+}
+
 TEST(DataSheet, AddsNothingToWhatTheIniReaderReported) {
   EXPECT_EQ(findings(ReadSheet("").diagnostics), (Findings{error_at(0, 0, "empty-file")}));
 }

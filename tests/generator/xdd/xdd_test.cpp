@@ -271,6 +271,33 @@ TEST(XddErrors, ReportsXmlThatIsNoProfile) {
   EXPECT_EQ(findings(other.diagnostics, "xml-element").size(), 1U);
 }
 
+TEST(XddErrors, NameTheFileOfAnotherNetwork) {
+  const auto message = [](const std::string& text) { return messages(ReadXdd(text).diagnostics).back(); };
+  const auto of_type = [](const std::string& type) {
+    return "<ISO15745ProfileContainer><ISO15745Profile><ProfileBody xsi:type='" + type +
+           "'/></ISO15745Profile></ISO15745ProfileContainer>";
+  };
+  constexpr const char* end = ", not an XDD or XDC of CiA 311; it does not describe a CANopen device";
+  EXPECT_EQ(message(of_type("ProfileBody_Device_Powerlink")), std::string{"this is an Ethernet POWERLINK XDD"} + end);
+  EXPECT_EQ(message(of_type("ProfileBody_Device_CANopenFD")),
+            std::string{"this is a CANopen FD device description (CiA 1301)"} + end);
+  EXPECT_EQ(message("<EtherCATInfo/>"), std::string{"this is an EtherCAT slave information file"} + end);
+}
+
+TEST(XddDevice, TakesItsIdentityFromItsObjects) {
+  const std::string identity =
+      "<CANopenObject index='1018' name='Identity' objectType='9' subNumber='4'>"
+      "<CANopenSubObject subIndex='00' name='N' objectType='7' dataType='0005' accessType='const' defaultValue='3'/>"
+      "<CANopenSubObject subIndex='01' name='V' objectType='7' dataType='0007' accessType='ro' defaultValue='0x319'/>"
+      "<CANopenSubObject subIndex='02' name='P' objectType='7' dataType='0007' accessType='ro' defaultValue='17'/>"
+      "<CANopenSubObject subIndex='03' name='R' objectType='7' dataType='0007' accessType='ro' defaultValue='0x10000'/>"
+      "</CANopenObject>";
+  const ReadXdd read(Profile{identity, "", "<vendorName>Maker</vendorName><vendorID/><productID>20</productID>"});
+  EXPECT_EQ(read.sheet.device_info.vendor_number.text, "0x319");
+  EXPECT_EQ(read.sheet.device_info.product_number.text, "20");
+  EXPECT_EQ(read.sheet.device_info.revision_number.text, "0x10000");
+}
+
 TEST(XddErrors, NotesAProfileOfAnotherNetwork) {
   const ReadXdd read(
       "<ISO15745ProfileContainer>\n<ISO15745Profile><ProfileBody xsi:type='ProfileBody_Device_Powerlink'/></ISO15745Profile>"
