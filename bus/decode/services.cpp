@@ -49,13 +49,23 @@ void decode_sync(const Frame& frame, Message& message) {
   message.counter = frame.data[0];
   message.text += "counter ";
   append_decimal(message.text, frame.data[0]);
+  constexpr std::uint8_t max_counter = 240;  // CiA 301, 7.2.5.2.2
+  if (message.counter >= 1 && message.counter <= max_counter) return;
+  message.problem = true;
+  message.text += ", which is not 1 to 240";
 }
 
 void decode_time(const Frame& frame, Message& message) {
   message.service = Service::time;
   if (frame.remote || frame.size < 6) return wrong_length(frame, "6", message);
   const auto* type = canopen::find_data_type(static_cast<std::uint32_t>(canopen::DataType::time_of_day));
-  append_number(message.text, *type, number_of(data_of(frame)), type->bits);
+  const std::uint64_t number = number_of(data_of(frame));
+  append_number(message.text, *type, number, type->bits);
+  constexpr std::uint64_t milliseconds = 0x0FFF'FFFF;  // CiA 301, 7.1.6.6: 28 bits, since midnight
+  constexpr std::uint64_t day = std::uint64_t{24} * 60 * 60 * 1000;
+  if ((number & milliseconds) < day) return;
+  message.problem = true;
+  message.text += ", which is after the end of the day";
 }
 
 void decode_emcy(const Frame& frame, const Device* device, Message& message) {
