@@ -111,7 +111,7 @@ int main(int argc, char** argv) { return canopen::simulate_device<@parts@>(argc,
   endif()
   add_test(NAME ${name} COMMAND $<TARGET_FILE:edsc::edsc> conform "simulated:$<TARGET_FILE:${name}>@${node_id}" ${node_id}
                                 ${sheet} ${arguments} ${arg_ARGUMENTS})
-  set_tests_properties(${name} PROPERTIES LABELS conformance)
+  set_tests_properties(${name} PROPERTIES LABELS conformance ENVIRONMENT_MODIFICATION EDSC_OVERLAYS=unset:)
 endfunction()
 
 # Returns the node-ID of a DCF or XDC; empty if the file does not have one.

@@ -2,7 +2,7 @@ cmake_policy(VERSION 3.25) # the depfile is read as CMake 3.20 and later do
 
 # edsc_add_dictionary(TARGET EDS file [NAMESPACE name] [NODE_ID n] [OPTIONS file] [STATIC_MAPPING] [KEEP_GOING])
 #
-# Adds the INTERFACE library TARGET, whose headers are generated at build time from an EDS or DCF:
+# Adds the INTERFACE library TARGET, whose headers are generated at build time from an EDS or DCF, or an overlay of one:
 #
 #   edsc_add_dictionary(cpc_tc1 EDS eds/cpc-tc1.eds)
 #   target_link_libraries(drive PRIVATE cpc_tc1)        # #include <cpc_tc1/device.hpp>
@@ -14,7 +14,8 @@ cmake_policy(VERSION 3.25) # the depfile is read as CMake 3.20 and later do
 # KEEP_GOING     for the file of a purchased device, which you cannot change: its errors are warnings, and invalid items are
 #                omitted and reported (edsc generate --keep-going).
 #
-# The headers are regenerated when the EDS, its options file, a template or edsc itself changes.
+# The headers are regenerated when the EDS, the bases of an overlay, the options file, a template or edsc itself changes.
+# The environment variable EDSC_OVERLAYS is not used.
 function(edsc_add_dictionary target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC_MAPPING;KEEP_GOING" "EDS;NAMESPACE;NODE_ID;OPTIONS" "")
   if(arg_UNPARSED_ARGUMENTS)
@@ -68,7 +69,7 @@ function(edsc_add_dictionary target)
   add_custom_command(
     OUTPUT ${stamp}
     BYPRODUCTS ${headers}
-    COMMAND ${generator} generate ${arguments}
+    COMMAND ${CMAKE_COMMAND} -E env --unset=EDSC_OVERLAYS $<TARGET_FILE:${generator}> generate ${arguments}
     COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
     DEPENDS ${dependencies} ${generator} $<TARGET_FILE:${generator}>
     DEPFILE ${depfile}

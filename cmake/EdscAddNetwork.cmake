@@ -29,7 +29,8 @@ function(edsc_add_network target file)
   add_custom_command(
     OUTPUT ${stamp}
     BYPRODUCTS ${output_dir}/network-devices.hpp
-    COMMAND edsc::edsc network generate ${network} -o ${output_dir} --depfile ${depfile} --depfile-target ${stamp}
+    COMMAND ${CMAKE_COMMAND} -E env --unset=EDSC_OVERLAYS $<TARGET_FILE:edsc::edsc> network generate ${network} -o
+            ${output_dir} --depfile ${depfile} --depfile-target ${stamp}
     COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
     DEPENDS ${network} edsc::edsc $<TARGET_FILE:edsc::edsc>
     DEPFILE ${depfile}

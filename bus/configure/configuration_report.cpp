@@ -96,7 +96,7 @@ Json entry_json(const LiveEntry& entry, const ConfigurationValue* value) {
   Json row{{"index", entry.index}, {"sub_index", entry.sub_index}};
   row["name"] = entry.name.empty() ? Json(nullptr) : Json(entry.name);
   const bool placed = value != nullptr && value->position.file != nullptr;
-  row["line"] = placed ? Json(value->position.line) : Json(nullptr);
+  row["line"] = placed ? Json(origin_of(value->position).line) : Json(nullptr);
   return row;
 }
 

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 4> extensions = {".eds", ".dcf", ".xdd", ".xdc"};
+constexpr std::array<std::string_view, 5> extensions = {".eds", ".dcf", ".xdd", ".xdc", ".overlay"};
 
 std::vector<std::string> sheet_paths(const std::string& folder, std::vector<std::string>& problems) {
   std::vector<std::string> paths;
@@ -58,6 +58,9 @@ std::optional<SheetFile> read_sheet(const std::string& path) {
     if (device.information.commissioning) file.node_name = device.information.commissioning->node_name;
   }
   const Entry* const heartbeat = device.find(communication::producer_heartbeat, 0);
+  for (const auto& part : loaded->parts) {
+    if (part->name() != path) file.bases.push_back(part->name());
+  }
   file.has_heartbeat = heartbeat != nullptr && canopen::writable(heartbeat->access);
   file.heartbeat_ms = static_cast<std::uint32_t>(value_of(device, communication::producer_heartbeat).value_or(0));
   return file;
@@ -74,6 +77,13 @@ SheetFolder read_sheet_folder(const std::string& folder) {
       read.problems.push_back(path + ": cannot be read as an EDS, DCF or XDD file (\"edsc check\" lists why)");
     }
   }
+  std::vector<fs::path> bases;
+  for (const SheetFile& file : read.files) {
+    for (const std::string& base : file.bases) bases.push_back(to_native(base).lexically_normal());
+  }
+  std::erase_if(read.files, [&](const SheetFile& file) {
+    return std::ranges::find(bases, to_native(file.path).lexically_normal()) != bases.end();
+  });
   return read;
 }
 

@@ -1,4 +1,4 @@
-/// The EDS, DCF and XDD files of a folder, to find the one that describes a device.
+/// The EDS, DCF, XDD and overlay files of a folder, to find the one that describes a device.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,7 @@ struct SheetFile {
   Identity identity;
   bool has_heartbeat = false;      ///< 1017h can be written
   std::uint32_t heartbeat_ms = 0;  ///< default value of 1017h
+  std::vector<std::string> bases;  ///< of an overlay
 };
 
 struct SheetFolder {
@@ -26,8 +27,8 @@ struct SheetFolder {
   std::vector<std::string> problems;  ///< files that could not be read
 };
 
-/// Reads the files of a folder and its subfolders, by their extension: .eds, .dcf, .xdd, .xdc. A folder that cannot be
-/// read is a problem.
+/// Reads the files of a folder and its subfolders, by their extension: .eds, .dcf, .xdd, .xdc, .overlay. The base of an
+/// overlay is left out: the overlay describes the device. A folder that cannot be read is a problem.
 [[nodiscard]] SheetFolder read_sheet_folder(const std::string& folder);
 
 /// A file that fits a device.

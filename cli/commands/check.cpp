@@ -155,6 +155,7 @@ int check(const Settings& settings) {
     for (const std::string& rule : settings.silence) diagnostics.silence(*find_rule(check_rules, rule));
     LoadSettings load{path, settings.options_path, "", settings.node_id};
     load.keep_going = settings.keep_going;
+    load.needs_reasons = settings.strict;
     const auto loaded = load_device(load, diagnostics);
     if (!loaded->unreadable) report_unused_allowances(*loaded, diagnostics);
     report.add(diagnostics);
@@ -176,7 +177,7 @@ std::string check_rule(const std::string& id) {
 
 void add_check_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, check, exit_code);
-  command.add_option("FILE", settings.paths, "EDS, DCF, XDD or XDC files");
+  command.add_option("FILE", settings.paths, "EDS, DCF, XDD, XDC or overlay files");
   add_choice(command, "--format", settings.format, {"text", "json", "sarif"}, "text, json or sarif");
   add_options_option(command, settings.options_path);
   add_node_id_option(command, settings.node_id);
@@ -185,7 +186,8 @@ void add_check_options(Command command, int& exit_code) {
       .check(check_rule);
   command.add_flag("--keep-going", settings.keep_going, keep_going_help);
   command.add_flag("--all", settings.all, all_findings_help);
-  command.add_flag("--strict", settings.strict, "warnings count as errors; notes do not");
+  command.add_flag("--strict", settings.strict,
+                   "warnings count as errors; notes do not; a section of an overlay needs a reason");
   command.add_flag("--list-rules", settings.list_rules, "list the rules and end");
   command.add_flag("--list-options", settings.list_options, "list the members of an options file and end");
   command.add_option("--explain", settings.explained_rule, "describe a rule and end").check(check_rule);

@@ -12,6 +12,7 @@ AddOptions add_generate_options;
 AddOptions add_check_options;
 AddOptions add_dump_options;
 AddOptions add_format_options;
+AddOptions add_overlay_options;
 AddOptions add_diff_options;
 AddOptions add_document_options;
 AddOptions add_network_options;
@@ -55,6 +56,8 @@ inline constexpr CommandRow commands[] = {
     {"EDS files", "dump", "print the resolved device as JSON", add_dump_options},
     {"EDS files", "format", "write an EDS or DCF in canonical form; make DCFs; convert XDD and XDC",
      add_format_options},
+    {"EDS files", "overlay", "correct an EDS that you may not change: apply, derive and rebase overlays",
+     add_overlay_options},
     {"EDS files", "diff", "compare two EDS files; report breaking changes", add_diff_options},
     {"EDS files", "document", "write a device or a network as an HTML page or as Markdown", add_document_options},
     {"Networks", "network", "check, generate, simulate, verify and configure a network", add_network_options},

@@ -80,8 +80,7 @@ int document_device(const Settings& settings) {
     }
     return loaded->unreadable ? exit_wrong_usage : exit_input_has_errors;
   }
-  std::vector<std::string> inputs = {settings.load.path};
-  if (loaded->options_source) inputs.push_back(loaded->options_source->name());
+  std::vector<std::string> inputs = input_files(*loaded);
   std::optional<ComparedWith> compared;
   std::unique_ptr<LoadedDevice> older;
   if (!settings.against.empty()) {
@@ -104,7 +103,9 @@ int document_network(const Settings& settings) {
     return loaded->unreadable ? exit_wrong_usage : exit_input_has_errors;
   }
   std::vector<std::string> inputs = {settings.load.path};
-  for (const auto& file : loaded->network.files) inputs.push_back(file->source->name());
+  for (const auto& file : loaded->network.files) {
+    for (std::string& name : input_files(*file)) inputs.push_back(std::move(name));
+  }
   if (settings.nodes) {
     write_all_files(documents_of(loaded->network, diagnostics, format_of(settings), settings.output), inputs);
   } else {

@@ -56,7 +56,7 @@ int dump(const Settings& settings) {
 
 void add_dump_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, dump, exit_code);
-  command.add_option("FILE", settings.load.path, "EDS, DCF, XDD or XDC").required();
+  command.add_option("FILE", settings.load.path, "EDS, DCF, XDD, XDC or overlay").required();
   add_node_id_option(command, settings.load.node_id);
   add_options_option(command, settings.load.options_path);
   command.add_flag("--cpp", settings.cpp, "add the view of the C++ templates");

@@ -14,6 +14,8 @@
 #include "format/dcf/move_values.hpp"
 #include "format/sheet_document.hpp"
 #include "format/storage_locations.hpp"
+#include "overlay/compose_overlay.hpp"
+#include "overlay/overlay_file.hpp"
 #include "rules/check_rules.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
@@ -58,8 +60,8 @@ constexpr AnyRule rules_of_what_stays[] = {"unknown-key", "unknown-section"};
 
 /// A data sheet with its lines. Values are not checked here, but by `edsc check`.
 struct Input {
-  std::unique_ptr<SourceFile> file;    ///< as read
-  std::unique_ptr<SourceFile> source;  ///< null if the file itself is an EDS or DCF
+  std::shared_ptr<const SourceFile> file;  ///< as read
+  std::unique_ptr<SourceFile> source;      ///< null if the file itself is an EDS or DCF
   IniFile ini;
   DataSheet sheet;
   Device device;
@@ -167,6 +169,17 @@ int format_file(const Settings& settings, const std::string& path) {
   input.file = read_source_file(path, error);
   if (!input.file) fail(error);
   Diagnostics diagnostics;
+  if (is_overlay(*input.file)) {
+    if (settings.check || settings.in_place) {
+      fail(path + ": an overlay does not have a canonical form; -o FILE writes the EDS or DCF that it results in");
+    }
+    ComposedOverlay composed = compose_overlay(input.file, {}, diagnostics);
+    input.source = std::move(composed.text);
+    if (!input.source) {
+      print_findings(stderr, diagnostics, settings.color);
+      return composed.is_unreadable ? exit_wrong_usage : exit_input_has_errors;
+    }
+  }
   if (is_xml(*input.file)) {
     if (settings.check || settings.in_place) {
       diagnostics.error("xml-file", {input.file.get()},
@@ -221,7 +234,7 @@ int format(const Settings& settings) {
 
 void add_format_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, format, exit_code);
-  command.add_option("FILE", settings.paths, "EDS, DCF, XDD or XDC; - is standard input").required();
+  command.add_option("FILE", settings.paths, "EDS, DCF, XDD, XDC or overlay; - is standard input").required();
   const Option output =
       command.add_option("-o,--output", settings.output, "file to write; may be FILE (default: standard output)")
           .check(xdd_name_problem);

@@ -119,8 +119,7 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
   const std::string folder = join_path(settings.output, loaded.names->space());
   loaded.device.reset();
   std::vector<OutputFile> files;
-  inputs = {settings.load.path};
-  if (loaded.options_source) inputs.push_back(loaded.options_source->name());
+  inputs = input_files(loaded);
   for (const ChosenTemplate& one : templates) {
     if (!is_needed(one.built_in, view)) continue;
     files.push_back({join_path(folder, one.built_in.file_name), one.rendered(view)});
@@ -175,7 +174,7 @@ int generate(const Settings& settings) {
   const bool has_hint = can_keep_going(*loaded, diagnostics);
   if (is_device && diagnostics.errors() == 0) {
     std::vector<OutputFile> dbc;
-    inputs = {settings.load.path};
+    inputs = input_files(*loaded);
     if (!settings.dbc.empty()) dbc.push_back(render_dbc(settings, loaded->named()));
     if (!settings.output.empty()) files = render_all(settings, *loaded, diagnostics, inputs);
     files.insert(files.end(), std::make_move_iterator(dbc.begin()), std::make_move_iterator(dbc.end()));
@@ -201,7 +200,7 @@ int generate(const Settings& settings) {
 
 void add_generate_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, generate, exit_code);
-  command.add_option("FILE", settings.load.path, "EDS, DCF, XDD or XDC").required();
+  command.add_option("FILE", settings.load.path, "EDS, DCF, XDD, XDC or overlay").required();
   command.add_option("-o,--output", settings.output, "folder; the headers are written to its subfolder NAME");
   command.add_option("--dbc", settings.dbc, "write the PDOs of the device as a DBC file; needs the node-ID");
   command.add_option("--name", settings.load.name, "C++ namespace (default: the file's name)")

@@ -94,7 +94,8 @@ int save(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded) {
   const SavedDcf saved = make_saved_dcf(
       {*loaded.source, loaded.sheet, *loaded.device, found, settings.node, settings.bit_rate, settings.all});
   std::vector<std::string> inputs;
-  if (!loaded.sheet.is_dcf) inputs.push_back(settings.path);  // a DCF may be replaced by a newer one
+  const bool is_plain_dcf = loaded.sheet.is_dcf && loaded.parts.empty();  // may be replaced by a newer one
+  if (!is_plain_dcf) inputs = input_files(loaded);
   write_output(settings.output, saved.text, inputs);
   report(settings, found, saved);
   return saved.missing.empty() ? exit_fine : exit_device_failed;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "diagnostics/place.hpp"
 #include "text/markdown.hpp"
 #include "text/printable.hpp"
 #include "text/source_file.hpp"
@@ -24,7 +25,8 @@ std::vector<std::string_view> broken_by(const Change& change) {
 
 std::string markdown_row(const Change& change) {
   const std::string name = change.name.empty() ? "" : " " + markdown_text(change.name);
-  const std::string line = change.new_position.line == 0 ? "-" : fmt::format("{}", change.new_position.line);
+  const std::uint32_t number = origin_of(change.new_position).line;
+  const std::string line = number == 0 ? "-" : fmt::format("{}", number);
   const std::vector<std::string_view> broken = broken_by(change);
   return fmt::format("| {}{} | {} | {} | {} | `{}` |\n", change.entry, name, markdown_text(message_of(change)),
                      broken.empty() ? "-" : fmt::format("{}", fmt::join(broken, ", ")), line, change.rule.text());
@@ -61,12 +63,14 @@ nlohmann::ordered_json change_json(const Change& change) {
 
 }  // namespace
 
-std::string text_of_place(const Position& position) {
+std::string text_of_place(const Position& composed) {
+  const Position position = origin_of(composed);
   const std::string file = position.file != nullptr ? position.file->name() : "";
   return position.line == 0 ? file : fmt::format("{}:{}", file, position.line);
 }
 
-nlohmann::ordered_json json_of_place(const Position& position) {
+nlohmann::ordered_json json_of_place(const Position& composed) {
+  const Position position = origin_of(composed);
   return {{"file", position.file != nullptr ? position.file->name() : ""},
           {"line", position.line},
           {"column", position.line == 0 ? 0 : position.column}};

@@ -8,7 +8,19 @@
 
 namespace edsc {
 
-Place place_of(const Position& position) {
+Position origin_of(const Position& position) {
+  if (position.file == nullptr || position.line == 0 || position.file->parts().empty()) return position;
+  const LineOrigin origin = position.file->origin(position.line);
+  std::uint32_t column = position.column;
+  if (origin.value_column != 0) {
+    column = column < origin.value_column ? origin.origin_key_column
+                                          : origin.origin_value_column + (column - origin.value_column);
+  }
+  return {origin.file, origin.line, column, position.length};
+}
+
+Place place_of(const Position& composed) {
+  const Position position = origin_of(composed);
   if (position.file == nullptr) {
     return {};
   }

@@ -19,6 +19,10 @@ struct Place {
 
 [[nodiscard]] Place place_of(const Position& position);
 
+/// The same place in the file that the line comes from: that of an overlay or of its base. A position in a file that is
+/// not composed remains as it is.
+[[nodiscard]] Position origin_of(const Position& position);
+
 /// The position of `length` bytes at `offset` in the text of a file; at its end, the position after the last line.
 [[nodiscard]] Position position_at(const SourceFile& source, std::size_t offset, std::size_t length = 1);
 

@@ -159,7 +159,8 @@ class TextPrinter {
     out_ += '\n';
   }
 
-  void print_source(const Position& position) {
+  void print_source(const Position& composed) {
+    const Position position = origin_of(composed);
     if (position.file == nullptr || position.line == 0) {
       return;
     }

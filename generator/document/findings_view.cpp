@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "compare/print_changes.hpp"
+#include "diagnostics/place.hpp"
 #include "document/views.hpp"
 #include "system/path.hpp"
 #include "text/counted.hpp"
@@ -8,11 +9,13 @@
 namespace edsc::document {
 namespace {
 
-std::string line_text(const Position& position) {
+std::string line_text(const Position& composed) {
+  const Position position = origin_of(composed);
   return position.line == 0 ? std::string{} : fmt::format("{}", position.line);
 }
 
-std::string place_text(const Position& position) {
+std::string place_text(const Position& composed) {
+  const Position position = origin_of(composed);
   const std::string file = position.file == nullptr ? std::string{} : std::string{file_name_of(position.file->name())};
   return position.line == 0 ? file : fmt::format("{}:{}", file, position.line);
 }

@@ -185,7 +185,7 @@ class ObjectRows {
             {"comment", shown(comment)},
             {"links", links_of(object)},
             {"has_links", !object.links.empty()},
-            {"line", object.position.line},
+            {"line", line_of(object.position)},
             {"has_limits", any([](const Entry& entry) { return entry.low_limit || entry.high_limit; })},
             {"has_unit", any([](const Entry& entry) { return !unit_text_of(entry).empty(); })},
             {"has_configured", any([&](const Entry& entry) { return configured(entry).has_value(); })},
@@ -246,7 +246,7 @@ class ObjectRows {
         {"cpp", cpp.text()},
         {"cpp_object", cpp.object},
         {"cpp_member", shown(cpp.member)},
-        {"entry_line", entry.position.line},
+        {"entry_line", line_of(entry.position)},
         {"description", shown(entry.description)},
         {"entry_comment", shown(comment)}};
   }

@@ -4,8 +4,10 @@
 #include <canopen/pdo/transmission_type.hpp>
 #include <vector>
 
+#include "diagnostics/place.hpp"
 #include "document/views.hpp"
 #include "eds/allow_comments.hpp"
+#include "system/path.hpp"
 #include "text/source_file.hpp"
 #include "text/utf8.hpp"
 
@@ -40,6 +42,12 @@ std::string url_of(std::string_view file_name) {
 std::string anchor_of(const Object& object, const Entry& entry) {
   if (!object.has_sub_indices()) return index_label(object.index);
   return fmt::format("{}-{:02X}", index_label(object.index), entry.sub_index);
+}
+
+Json line_of(const Position& position) {
+  const Position origin = origin_of(position);
+  if (origin.file == position.file) return origin.line;
+  return fmt::format("{} of {}", origin.line, file_name_of(origin.file->name()));
 }
 
 std::string comment_before(const Position& section) {

@@ -71,6 +71,9 @@ void add_changes(const ComparedWith* compared, Json& view);
 /// The identifier of an entry in the page: `6041h`, `1018h-01` with a sub-index.
 [[nodiscard]] std::string anchor_of(const Object& object, const Entry& entry);
 
+/// The line of a position; `5 of drive.eds` in an overlay and its bases.
+[[nodiscard]] Json line_of(const Position& position);
+
 /// The comment lines directly before a section of an EDS, without their semicolons and without those for edsc.
 [[nodiscard]] std::string comment_before(const Position& section);
 

@@ -38,7 +38,9 @@ class DataSheetReader {
       read_others();
       read_objects();
     }
-    sheet_.is_dcf = sheet_.commissioning.present || ends_with_ignoring_case(source_.name(), ".dcf");
+    const std::string& name = source_.base().name();  // that of an XDC whose text an overlay changes
+    sheet_.is_dcf =
+        sheet_.commissioning.present || ends_with_ignoring_case(name, ".dcf") || ends_with_ignoring_case(name, ".xdc");
     return std::move(sheet_);
   }
 

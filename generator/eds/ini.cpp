@@ -28,6 +28,14 @@ Position place(const SourceFile& source, std::uint32_t line, std::uint32_t colum
   return {&source, line, column, static_cast<std::uint32_t>(std::max<std::size_t>(text.size(), 1))};
 }
 
+IniEntry entry_of(std::string_view line, std::string_view content, std::size_t equals, std::string_view key,
+                  std::uint32_t number) {
+  const std::string_view behind_equals = content.substr(equals + 1);
+  const std::string_view value = trim_left(behind_equals);
+  const std::string_view value_place = value.empty() ? behind_equals : value;
+  return {key, value, number, column_of(line, key), column_of(line, value_place)};
+}
+
 class IniReader {
  public:
   IniReader(const SourceFile& source, Diagnostics& diagnostics) : source_(source), diagnostics_(diagnostics) {
@@ -150,15 +158,11 @@ class IniReader {
     if (target_ != Target::last_section) {
       return;
     }
-    const std::string_view behind_equals = content.substr(equals + 1);
-    const std::string_view value = trim_left(behind_equals);
-    const std::string_view value_place = value.empty() ? behind_equals : value;
-
     std::vector<IniEntry>& entries = file_.sections.back().entries;
     if (entries.empty()) {
       entries.reserve(8);  // the usual number in an object section
     }
-    entries.push_back({key, value, line_number_, column_of(line, key), column_of(line, value_place)});
+    entries.push_back(entry_of(line, content, equals, key, line_number_));
   }
 
   void report_entry_outside(std::string_view line, std::string_view key) {
@@ -192,6 +196,24 @@ const IniEntry* IniSection::find(std::string_view key) const {
   const auto found = std::find_if(entries.begin(), entries.end(),
                                   [&](const IniEntry& entry) { return equal_ignoring_case(entry.key, key); });
   return found != entries.end() ? &*found : nullptr;
+}
+
+std::optional<IniEntry> read_ini_entry(std::string_view line, std::uint32_t number) {
+  const std::string_view content = trim(line);
+  if (content.empty() || content[0] == ';' || content[0] == '#' || content[0] == '[') return std::nullopt;
+  const std::size_t equals = content.find('=');
+  if (equals == std::string_view::npos) return std::nullopt;
+  const std::string_view key = trim_right(content.substr(0, equals));
+  if (key.empty()) return std::nullopt;
+  return entry_of(line, content, equals, key, number);
+}
+
+std::optional<std::string_view> read_ini_header(std::string_view line) {
+  const std::string_view content = trim_left(line);
+  if (!content.starts_with('[')) return std::nullopt;
+  const std::size_t end = content.find(']');
+  if (end == std::string_view::npos) return std::nullopt;
+  return trim(content.substr(1, end - 1));
 }
 
 IniFile parse_ini(const SourceFile& source, Diagnostics& diagnostics) { return IniReader(source, diagnostics).read(); }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -40,6 +41,12 @@ struct IniFile {
   std::vector<IniSection> sections;
   std::vector<IniRemark> remarks;  ///< in the order of the file; their lines give their place among the entries
 };
+
+/// Reads one line of a section. Nothing if it is not an entry: without `=` or key, a comment, a header.
+[[nodiscard]] std::optional<IniEntry> read_ini_entry(std::string_view line, std::uint32_t number);
+
+/// The name of the section whose header the line is; nothing for another line.
+[[nodiscard]] std::optional<std::string_view> read_ini_header(std::string_view line);
 
 /// Reads all lines. A line that is not a section, an entry, a comment or blank is reported and becomes a remark.
 [[nodiscard]] IniFile parse_ini(const SourceFile& source, Diagnostics& diagnostics);

@@ -24,25 +24,15 @@ void merge_remarks(DocumentSection& first, bool is_first_of_file, const Document
   }
 }
 
-/// A list is followed by its objects; the objects in no list follow all lists.
-struct Place {
-  std::uint32_t section = 0;  ///< place in the table, or of the list of an object, or of the first section of a module
-  bool after_list = false;
-  std::uint16_t number = 0;  ///< of a tool or module
-  std::uint32_t section_of_module = 0;
-  std::uint64_t object = 0;  ///< index, kind and sub-index
-
-  friend auto operator<=>(const Place&, const Place&) = default;
-};
-
 std::uint64_t object_order(std::uint16_t index, SectionKind kind, std::uint8_t sub_index) {
   return (std::uint64_t{index} << 16U) | (place_of_section(kind) << 8U) | sub_index;
 }
 
-Place place_of(const SectionName& name, const DataSheet& sheet) {
+}  // namespace
+
+SectionPlace place_of_section(const SectionName& name, std::optional<ObjectListKind> list) {
   if (!is_known(name.kind)) return {.section = place_of_section(name.kind)};
   if (is_object_section(name.kind)) {
-    const auto list = list_for(name.index, sheet);
     return {.section = place_of_section(list ? section_of(*list) : SectionKind::object),
             .after_list = true,
             .object = object_order(name.index, name.kind, name.sub_index)};
@@ -55,8 +45,6 @@ Place place_of(const SectionName& name, const DataSheet& sheet) {
   }
   return {.section = place_of_section(name.kind), .number = name.number};
 }
-
-}  // namespace
 
 void drop_second_sections(Document& document) {
   std::unordered_map<std::uint64_t, std::size_t> first;
@@ -76,10 +64,12 @@ void drop_second_sections(Document& document) {
 }
 
 void order_sections(Document& document, const DataSheet& sheet) {
-  std::vector<std::pair<Place, std::size_t>> order;
+  std::vector<std::pair<SectionPlace, std::size_t>> order;
   order.reserve(document.sections.size());
   for (std::size_t i = 0; i < document.sections.size(); ++i) {
-    order.emplace_back(place_of(document.sections[i].kind, sheet), i);
+    const SectionName& name = document.sections[i].kind;
+    const bool is_of_object = is_object_section(name.kind);
+    order.emplace_back(place_of_section(name, is_of_object ? list_for(name.index, sheet) : std::nullopt), i);
   }
   std::sort(order.begin(), order.end());
   const bool first_moves = !order.empty() && order.front().second != 0;

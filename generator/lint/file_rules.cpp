@@ -74,6 +74,7 @@ void check_file_name(const RuleContext& context) {
     context.report("file-name", context.sheet.file_info.position, "missing FileName");
     return;
   }
+  if (!context.device.source->parts().empty()) return;  // the name of a base, or of the EDS to write
   const std::string_view name = file_name_of(context.device.source->name());
   if (name == "-" || equal_ignoring_case(field.text, name)) return;
   context.report("file-name", field.position,

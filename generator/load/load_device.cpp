@@ -18,8 +18,11 @@
 #include "eds/allow_comments.hpp"
 #include "eds/ini.hpp"
 #include "lint/check_device.hpp"
+#include "overlay/overlay_file.hpp"
+#include "overlay/search_overlays.hpp"
 #include "rules/check_rules.hpp"
 #include "system/path.hpp"
+#include "text/printable.hpp"
 #include "xdd/read_xdd.hpp"
 
 namespace edsc {
@@ -27,12 +30,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The options file of an EDS: `drive.options.json` beside `drive.eds`.
-std::string options_path_of(const LoadSettings& settings) {
+/// The options file of an EDS: `drive.options.json` beside `drive.eds`; of an overlay, else of its base.
+std::string options_path_of(const LoadSettings& settings, const LoadedDevice& loaded) {
   if (!settings.options_path.empty()) return settings.options_path;
-  const fs::path beside = to_native(settings.path).replace_extension(".options.json");
-  std::error_code error;
-  return fs::is_regular_file(beside, error) ? from_native(beside) : "";
+  std::vector<std::string> paths{settings.path};
+  for (const auto& part : loaded.parts) paths.push_back(part->name());
+  for (const std::string& path : paths) {
+    const fs::path beside = to_native(path).replace_extension(".options.json");
+    std::error_code error;
+    if (fs::is_regular_file(beside, error)) return from_native(beside);
+  }
+  return "";
 }
 
 std::unique_ptr<SourceFile> read_or_report(const std::string& path, LoadedDevice& loaded, Diagnostics& diagnostics) {
@@ -107,14 +115,44 @@ void mark_consequences_in(const SourceFile& source, Diagnostics& diagnostics) {
 std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnostics& diagnostics) {
   auto loaded = std::make_unique<LoadedDevice>();
   loaded->source = read_or_report(settings.path, *loaded, diagnostics);
-  if (loaded->unreadable) return loaded;
+  if (loaded->unreadable || !apply_overlays(*loaded, {{}, settings.needs_reasons}, diagnostics)) return loaded;
   if (settings.keep_going) diagnostics.keep_going(loaded->source.get());
-  read_options_file(options_path_of(settings), *loaded, diagnostics);
+  read_options_file(options_path_of(settings, *loaded), *loaded, diagnostics);
   if (loaded->unreadable) return loaded;
   if (settings.static_mapping) loaded->options.static_mapping.all = true;
   resolve_and_check(*loaded, settings, diagnostics);
   mark_consequences_in(*loaded->source, diagnostics);
   return loaded;
+}
+
+std::vector<std::string> input_files(const LoadedDevice& loaded) {
+  std::vector<std::string> names;
+  for (const auto& part : loaded.parts) names.push_back(part->name());
+  if (names.empty()) names.push_back(loaded.source->name());
+  if (loaded.options_source) names.push_back(loaded.options_source->name());
+  return names;
+}
+
+bool apply_overlays(LoadedDevice& loaded, const ComposeSettings& settings, Diagnostics& diagnostics) {
+  const bool is_named = is_overlay(*loaded.source);
+  const std::vector<std::string> folders = is_named ? std::vector<std::string>{} : overlay_folders();
+  if (!is_named && folders.empty()) return true;
+  const std::shared_ptr<const SourceFile> file = loaded.source;
+  ComposedOverlay composed;
+  if (is_named) {
+    composed = compose_overlay(file, settings, diagnostics);
+  } else if (const auto overlay = find_overlay(folders, file, diagnostics)) {
+    composed = compose_overlay(overlay, file, settings, diagnostics);
+    print_visibly(stderr, "edsc: {}: changed by {} of EDSC_OVERLAYS\n", file->name(), overlay->name());
+  } else {
+    return true;
+  }
+  loaded.parts = std::move(composed.parts);
+  loaded.source = std::move(composed.text);
+  if (loaded.source) return true;
+  loaded.source = file;
+  loaded.unreadable = composed.is_unreadable;
+  return false;
 }
 
 Device device_for(const LoadedDevice& loaded, std::optional<std::uint8_t> node_id, bool keep_going) {

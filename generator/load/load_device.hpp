@@ -10,6 +10,7 @@
 #include "device/device.hpp"
 #include "device/options/options.hpp"
 #include "eds/data_sheet.hpp"
+#include "overlay/compose_overlay.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {
@@ -22,12 +23,14 @@ struct LoadSettings {
   bool static_mapping = false;  ///< of all PDOs, regardless of the options file
   bool check = true;            ///< run the rules over the device
   bool keep_going = false;      ///< errors in the EDS become warnings; what is wrong is left out
+  bool needs_reasons = false;   ///< report sections of an overlay without a reason
 };
 
 /// A device and the files to which its positions point.
 struct LoadedDevice {
-  std::unique_ptr<SourceFile> source;
-  std::unique_ptr<SourceFile> options_source;  ///< null without options file
+  std::shared_ptr<const SourceFile> source;              ///< of an overlay, the text that it results in
+  std::vector<std::shared_ptr<const SourceFile>> parts;  ///< the overlay and its bases; empty without an overlay
+  std::unique_ptr<SourceFile> options_source;            ///< null without options file
   Options options;
   DataSheet sheet;
   std::optional<Device> device;   ///< nothing if the file could not be read as a data sheet
@@ -40,6 +43,13 @@ struct LoadedDevice {
 /// Reads, resolves and optionally checks a device. Adds findings to `diagnostics`, whose positions point into the
 /// result.
 [[nodiscard]] std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnostics& diagnostics);
+
+/// The names of all files of a device: EDS or overlay, its bases, options.
+[[nodiscard]] std::vector<std::string> input_files(const LoadedDevice& loaded);
+
+/// Replaces an overlay in `loaded.source` by the text that it results in; another file by the text that an overlay of
+/// EDSC_OVERLAYS makes of it. Prints the name of such an overlay to standard error. Returns false if there is no text.
+bool apply_overlays(LoadedDevice& loaded, const ComposeSettings& settings, Diagnostics& diagnostics);
 
 /// The device of the data sheet with another node-ID, or without one. Findings are not reported: those of the first
 /// device were. `keep_going` as in its settings.

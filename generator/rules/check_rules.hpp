@@ -268,6 +268,15 @@ inline constexpr Rule check[] = {
     Rule{"deprecated-option", warning, "an option by its name outside the group of its service", "edsc"},
     Rule{"allow-comment", warning, "an invalid comment \"; edsc:\"", "edsc"},
     Rule{"allow-unused", warning, "a silenced or allowed rule without a finding", "edsc"},
+    // Overlays.
+    Rule{"overlay-file", error, "a section or line of an overlay is malformed, or contradicts another one", "edsc"},
+    fatal({"overlay-base", error, "the base of an overlay cannot be used", "edsc"}),
+    Rule{"overlay-stale", error, "the base does not have the old value of a line", "edsc"},
+    Rule{"overlay-obsolete", warning, "the base already has the new value of a line", "edsc"},
+    Rule{"overlay-value", error, "a line without old value for a key that the base has", "edsc"},
+    Rule{"overlay-effect", error, "a range, Remove or Rename changes nothing, or not the counted number of values",
+         "edsc"},
+    Rule{"overlay-reason", warning, "with --strict: a section of an overlay without a reason", "edsc"},
     fatal({"dictionary-size", error, "the dictionary is too large", "edsc"}),
 };
 

@@ -80,6 +80,9 @@ std::string read_file(const std::string& path, std::string& bytes) {
   return why;
 }
 
+/// The name of a file in diagnostics.
+std::string name_of(const std::string& path) { return path == "-" ? "<stdin>" : from_native(to_native(path)); }
+
 }  // namespace
 
 std::string_view to_string(Encoding encoding) {
@@ -94,6 +97,26 @@ SourceFile::SourceFile(std::string name, std::string bytes, Packing packing)
   }
   decode(std::move(bytes));
   find_lines();
+}
+
+SourceFile::SourceFile(std::string name, const std::vector<ComposedLine>& lines,
+                       std::vector<std::shared_ptr<const SourceFile>> parts)
+    : name_(std::move(name)), encoding_(parts.back()->encoding_), parts_(std::move(parts)) {
+  std::size_t size = 0;
+  for (const ComposedLine& line : lines) size += line.text.size() + line.end.size();
+  if (size > max_bytes) {
+    throw std::length_error(name_ + ": " + std::string(too_large));
+  }
+  text_.reserve(size);
+  starts_.reserve(lines.size() + 1);
+  origins_.reserve(lines.size());
+  for (const ComposedLine& line : lines) {
+    starts_.push_back(static_cast<std::uint32_t>(text_.size()));
+    origins_.push_back(line.origin);
+    text_ += line.text;
+    text_ += line.end;
+  }
+  starts_.push_back(static_cast<std::uint32_t>(text_.size()));
 }
 
 void SourceFile::decode(std::string bytes) {
@@ -152,21 +175,36 @@ std::string_view SourceFile::line(std::uint32_t number) const {
   return line;
 }
 
-std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::string& error) {
-  const bool is_standard_input = path == "-";
-  std::string bytes;
-  std::string why = is_standard_input ? read_all(stdin, bytes) : read_file(path, bytes);
-  const std::string name = is_standard_input ? "<stdin>" : from_native(to_native(path));
-  const Packing packing = is_gzip(bytes) ? Packing::gzip : Packing::none;
-  if (why.empty() && packing == Packing::gzip) {
-    const std::string file = std::move(bytes);
-    why = gunzip(file, SourceFile::max_unpacked_bytes, bytes);
+std::string_view SourceFile::line_end(std::uint32_t number) const {
+  if (number == 0 || number > lines()) return {};
+  const std::uint32_t start = starts_[number - 1];
+  return text().substr(start, starts_[number] - start).substr(line(number).size());
+}
+
+LineOrigin SourceFile::origin(std::uint32_t line) const {
+  if (line == 0 || line > origins_.size()) return {.file = this, .line = line};
+  return origins_[line - 1];
+}
+
+FileBytes read_bytes(const std::string& path) {
+  FileBytes file;
+  std::string why = path == "-" ? read_all(stdin, file.bytes) : read_file(path, file.bytes);
+  file.packing = is_gzip(file.bytes) ? Packing::gzip : Packing::none;
+  if (why.empty() && file.packing == Packing::gzip) {
+    const std::string packed = std::move(file.bytes);
+    why = gunzip(packed, SourceFile::max_unpacked_bytes, file.bytes);
   }
-  if (!why.empty()) {
-    error = "cannot read " + name + ": " + why;
+  if (!why.empty()) file.error = "cannot read " + name_of(path) + ": " + why;
+  return file;
+}
+
+std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::string& error) {
+  FileBytes file = read_bytes(path);
+  if (!file.error.empty()) {
+    error = std::move(file.error);
     return nullptr;
   }
-  return std::make_unique<SourceFile>(name, std::move(bytes), packing);
+  return std::make_unique<SourceFile>(name_of(path), std::move(file.bytes), file.packing);
 }
 
 }  // namespace edsc

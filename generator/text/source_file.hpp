@@ -18,6 +18,24 @@ enum class Encoding : std::uint8_t { ascii, utf8, utf16_le, utf16_be, cp1252, cp
 /// How the bytes of a file are compressed.
 enum class Packing : std::uint8_t { none, gzip };
 
+class SourceFile;
+
+/// Where a line of a composed text comes from. Columns count from 1, in bytes.
+struct LineOrigin {
+  const SourceFile* file = nullptr;
+  std::uint32_t line = 0;
+  std::uint32_t value_column = 0;  ///< in the composed line; 0 if the line is the same in both
+  std::uint32_t origin_key_column = 1;
+  std::uint32_t origin_value_column = 1;
+};
+
+/// A line of a composed text, without its line end.
+struct ComposedLine {
+  std::string_view text;
+  std::string_view end;  ///< LF, CR LF or CR; empty for a last line without it
+  LineOrigin origin;
+};
+
 class SourceFile {
  public:
   static constexpr std::size_t max_bytes = std::size_t{1} << 30;
@@ -27,6 +45,11 @@ class SourceFile {
   /// characters of the encoding become U+FFFD. Throws std::length_error above `max_bytes`. `packing` is that of the
   /// file; `bytes` are its unpacked contents.
   SourceFile(std::string name, std::string bytes, Packing packing = Packing::none);
+
+  /// A text composed of lines of other files, which it keeps: `parts` are these files, the last one the file that the
+  /// others change.
+  SourceFile(std::string name, const std::vector<ComposedLine>& lines,
+             std::vector<std::shared_ptr<const SourceFile>> parts);
 
   SourceFile(const SourceFile&) = delete;
   SourceFile& operator=(const SourceFile&) = delete;
@@ -41,6 +64,15 @@ class SourceFile {
   [[nodiscard]] std::uint32_t lines() const;
   /// Line `number` (from 1) without its line end (LF, CR LF or CR); empty if it does not exist.
   [[nodiscard]] std::string_view line(std::uint32_t number) const;
+  /// The line end of line `number`: LF, CR LF, CR, or empty.
+  [[nodiscard]] std::string_view line_end(std::uint32_t number) const;
+
+  /// Where a line comes from: this file itself if it is not composed.
+  [[nodiscard]] LineOrigin origin(std::uint32_t line) const;
+  /// The files that a composed text is made of; empty for a file that was read.
+  [[nodiscard]] const std::vector<std::shared_ptr<const SourceFile>>& parts() const { return parts_; }
+  /// The file that the other parts change; the file itself if it is not composed.
+  [[nodiscard]] const SourceFile& base() const { return parts_.empty() ? *this : *parts_.back(); }
 
  private:
   void decode(std::string bytes);
@@ -52,7 +84,17 @@ class SourceFile {
   Packing packing_ = Packing::none;
   bool is_verbatim_ = false;
   std::vector<std::uint32_t> starts_;  ///< start of each line, and the end
+  std::vector<LineOrigin> origins_;    ///< of a composed text, for each line
+  std::vector<std::shared_ptr<const SourceFile>> parts_;
 };
+
+/// The bytes of a file, unpacked.
+struct FileBytes {
+  std::string bytes;
+  Packing packing = Packing::none;
+  std::string error;  ///< path and reason, if the file cannot be read
+};
+[[nodiscard]] FileBytes read_bytes(const std::string& path);
 
 /// Reads a whole file and unpacks a gzip file; "-" is standard input. Returns null if the file cannot be read (missing,
 /// a folder, no permission, too large), with path and reason in `error`.

@@ -109,6 +109,22 @@ class Rebuilds(PackageTest):
         self.assertIn("sensor.cpp", log)
         self.assertNotIn("other.cpp", log, "pdo.hpp and dictionary.hpp are the same")
 
+    def test_what_a_changed_overlay_or_base_changes(self) -> None:
+        overlay = self.project.source / "sensor.overlay"
+        rename = "[Overlay]\nVersion=1\nBase=sensor.eds\n[6200]\nParameterName=Cyclic timer => {}\n"
+        overlay.write_text(rename.format("Period"))
+        self.project.lists.write_text(self.project.lists.read_text().replace("EDS sensor.eds", "EDS sensor.overlay"))
+        self.expect(generated=True, compiled=True)
+        self.assertIn("struct period ", self.dictionary.read_text())
+        overlay.write_text(rename.format("Interval"))
+        self.expect(generated=True, compiled=True)
+        self.assertIn("struct interval ", self.dictionary.read_text())
+        self.sheet.write_text(self.sheet.read_text().replace("ProductName=RK5C", "ProductName=RK5D"))
+        self.expect(generated=True, compiled=True)
+        self.options.write_text('{ "names": { "6200h": "of_options" } }')
+        self.expect(generated=True, compiled=True)
+        self.assertIn("struct of_options ", self.dictionary.read_text())
+
     def test_what_a_changed_options_file_changes(self) -> None:
         self.options.write_text('{ "names": { "6200h": "period" } }')
         self.expect(generated=True, compiled=True)

@@ -12,6 +12,7 @@
 #include "backend/cpp/meaning_comment.hpp"
 #include "device/drive_modes.hpp"
 #include "device/uniform_array.hpp"
+#include "diagnostics/place.hpp"
 #include "system/path.hpp"
 #include "text/source_file.hpp"
 #include "text/utf8.hpp"
@@ -206,7 +207,9 @@ class ObjectTypes {
       case Mappable::rpdo: text += "  RPDO"; break;
       case Mappable::both: text += "  PDO"; break;
     }
-    return fmt::format("{}  {}:{}", padded(std::move(text), 78), file_, entry.position.line);
+    const Position place = origin_of(entry.position);
+    const std::string file = place.file == entry.position.file ? file_ : cpp_comment(file_name_of(place.file->name()));
+    return fmt::format("{}  {}:{}", padded(std::move(text), 78), file, place.line);
   }
 
   const Device& device_;

@@ -8,6 +8,7 @@
 #include "backend/json/information_view.hpp"
 #include "backend/json/meaning_view.hpp"
 #include "backend/json/replaced_default.hpp"
+#include "diagnostics/place.hpp"
 #include "system/path.hpp"
 #include "text/source_file.hpp"
 #include "values/value_bytes.hpp"
@@ -17,6 +18,13 @@ namespace {
 
 using canopen::DataClass;
 using nlohmann::ordered_json;
+
+/// The line of a position; of an overlay and its bases also the file.
+void add_line(const Position& position, ordered_json& view) {
+  const Position origin = origin_of(position);
+  view["line"] = origin.line;
+  if (origin.file != position.file) view["file"] = file_name_of(origin.file->name());
+}
 
 /// Numbers as numbers, strings as text, OCTET_STRINGs as hexadecimal digits, formulas as `$NODEID+0x180`.
 ordered_json value_view(const Value& value, const canopen::DataTypeRow& type) {
@@ -67,7 +75,7 @@ ordered_json entry_view(const Entry& entry, const Identifiers& names) {
   add_text("factor", entry.factor, view);
   add_text("description", entry.description, view);
   if (entry.meaning) view["meaning"] = meaning_view(*entry.meaning, *entry.type);
-  view["line"] = entry.position.line;
+  add_line(entry.position, view);
   return view;
 }
 
@@ -100,7 +108,7 @@ ordered_json pdo_view(const Pdo& pdo) {
   view["dynamic"] = pdo.dynamic;
   view["broken"] = pdo.broken;
   add_pdo_parameters(pdo, view);
-  view["line"] = pdo.position.line;
+  add_line(pdo.position, view);
   ordered_json entries = ordered_json::array();
   for (const PdoEntry& entry : pdo.entries) {
     ordered_json row;
@@ -135,7 +143,7 @@ ordered_json type_view(const TypeDefinition& type) {
   if (type.type.octets != 0) view["octets"] = type.type.octets;
   if (type.low_limit) view["low_limit"] = value_view(*type.low_limit, *type.type.row);
   if (type.high_limit) view["high_limit"] = value_view(*type.high_limit, *type.type.row);
-  view["line"] = type.position.line;
+  add_line(type.position, view);
   return view;
 }
 
@@ -148,7 +156,7 @@ ordered_json object_view(const Object& object, const Identifiers& names) {
   add_text("denotation", object.denotation, view);
   if (object.obj_flags != 0) view["obj_flags"] = object.obj_flags;
   if (!object.links.empty()) view["links"] = object.links;
-  view["line"] = object.position.line;
+  add_line(object.position, view);
   ordered_json entries = ordered_json::array();
   for (const Entry& entry : object.entries) entries.push_back(entry_view(entry, names));
   view["entries"] = std::move(entries);

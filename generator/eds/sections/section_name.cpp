@@ -92,6 +92,17 @@ bool has_other_separator(std::string_view name) {
 
 /// Names that begin with an index.
 std::optional<SectionName> read_object(std::string_view name) {
+  const auto digits_end = std::find_if_not(name.begin(), name.end(), is_hex_digit);
+  const auto digits = static_cast<std::size_t>(digits_end - name.begin());
+  if (digits == index_digits) {  // most names
+    const std::string_view rest = name.substr(digits);
+    const bool is_sub_object = starts_with_ignoring_case(rest, sub);
+    if (rest.empty() || is_sub_object) {
+      const std::uint16_t index = *parse_hex(name.substr(0, digits), index_digits);
+      return rest.empty() ? with_index(SectionKind::object, name, index)
+                          : read_sub_object(name.substr(0, digits), index, rest.substr(sub.size()));
+    }
+  }
   if (is_hexadecimal(name)) {
     std::optional<SectionName> object = read_object(name.substr(2));
     if (object && object->kind != SectionKind::malformed) object->remark = "an index is written without 0x";
@@ -101,8 +112,6 @@ std::optional<SectionName> read_object(std::string_view name) {
   if (const std::optional<std::uint16_t> index = parse_hex(name, index_digits)) {
     return with_index(SectionKind::object, name, *index);
   }
-  const auto digits_end = std::find_if_not(name.begin(), name.end(), is_hex_digit);
-  const auto digits = static_cast<std::size_t>(digits_end - name.begin());
   const std::string_view rest = name.substr(digits);
   if (digits > 0 && (rest.empty() || starts_with_ignoring_case(rest, sub))) {
     const std::string_view index_text = name.substr(0, digits);

@@ -24,8 +24,7 @@ std::vector<std::string> inputs_of(const Network& network) {
   std::vector<std::string> inputs{network.source->name()};
   for (const NetworkNode& node : network.nodes) {
     if (!node.has_file()) continue;
-    add_input(inputs, node.loaded->source->name());
-    if (node.loaded->options_source) add_input(inputs, node.loaded->options_source->name());
+    for (const std::string& name : input_files(*node.loaded)) add_input(inputs, name);
   }
   return inputs;
 }

@@ -10,8 +10,8 @@ several such pairs:
 - a new object with missing keys is a rw VAR of UNSIGNED8; SubNumber is the number of sub-objects unless it is set
 - a line with only `^` means that the position of the finding is in the line above, in this column; without it, in line 1
 Words after `bad` and `good`: `raw` (the whole file, not a change), `escaped` (Python's escapes, and `x{n}` for n times
-x), `file=NAME`, `column=N` (of the line with the caret), `command=generate|format` (instead of check), `missing` (no
-file), `network` (a network file; its nodes are tests/generator/network/node.eds, and it has findings of this rule only). `@@ bad options` is the options file. `severity=S` is the severity of the finding if the rule has two.
+x), `file=NAME`, `file=example.overlay` (an overlay, with base.eds beside it), `column=N` (of the line with the caret), `command=generate|format` (instead of check), `missing` (no
+file), `strict` (with `--strict`), `network` (a network file; its nodes are tests/generator/network/node.eds, and it has findings of this rule only). `@@ bad options` is the options file. `severity=S` is the severity of the finding if the rule has two.
 
 Each finding of an example must be of a rule of the table, with a severity of its row.
 """
@@ -222,14 +222,20 @@ def run(edsc: Path, folder: Path, example: Example, kind: str, base: str) -> tup
         (folder / name).write_text("".join(f"{line.text}\n" for line in options.lines), encoding="utf-8")
         if any(line.column for line in options.lines):
             marked = options.lines
+    if file.endswith(".overlay"):
+        (folder / "base.eds").write_text(base, encoding="utf-8")
     command = block.option("command", "check")
     arguments = {"check": ["--all"], "generate": ["-o", "out"], "format": ["--check"]}[command]
     words = ["network", "check", file] if is_network else [command, file, *arguments]
+    is_strict = "strict" in block.words
+    if is_strict:
+        words.append("--strict")
     result = subprocess.run([edsc, *words], cwd=folder, capture_output=True, text=True, timeout=600)
     column = int(block.option("column", "0"))
     place = next((Place(n, column or line.column) for n, line in enumerate(marked, 1) if line.column), Place(1, 1))
     output = result.stdout + result.stderr
-    return [(m[6], m[4], Place(int(m[2]), int(m[3]))) for m in FINDING.finditer(output)], place
+    severity_of_row = {"error": "warning"} if is_strict else {}
+    return [(m[6], severity_of_row.get(m[4], m[4]), Place(int(m[2]), int(m[3]))) for m in FINDING.finditer(output)], place
 
 
 def check_example(edsc: Path, example: Example, base: str, severities: dict[str, list[str]]) -> list[str]:

@@ -1,0 +1,234 @@
+#include "change/text_edit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "text/code_page.hpp"
+#include "text/utf8.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr std::uint32_t no_end = 0;
+constexpr std::uint32_t default_end = UINT32_MAX;
+constexpr std::string_view default_line_end = "\n";
+
+/// Lines of the base, or a new one.
+struct PlannedLine {
+  std::uint32_t of_base = 0;       ///< the first one; 0 for a new line
+  std::uint32_t count = 1;         ///< of lines of the base, which all keep their line ends if there are several
+  const NewLine* added = nullptr;  ///< null for lines of the base
+  std::uint32_t end_of = no_end;  ///< the line of the base with the line end of the last one, `no_end` or `default_end`
+};
+
+class EditPlan {
+ public:
+  /// `has_last_end`: whether the last line has a line end.
+  EditPlan(std::uint32_t lines, bool has_last_end, const std::vector<TextEdit>& edits)
+      : lines_(lines), has_last_end_(has_last_end) {
+    std::uint32_t next = 1;
+    for (const TextEdit& edit : edits) {
+      keep(next, edit.line);
+      for (std::size_t i = 0; i < edit.lines.size(); ++i) {
+        const bool replaces = i < edit.removed;
+        plan_.push_back({0, 1, &edit.lines[i],
+                         replaces ? end_of(edit.line + static_cast<std::uint32_t>(i)) : end_before(edit.line)});
+      }
+      next = edit.line + edit.removed;
+    }
+    keep(next, lines + 1);
+    fix_ends();
+  }
+
+  [[nodiscard]] const std::vector<PlannedLine>& lines() const { return plan_; }
+
+ private:
+  /// The last line is apart, since its line end can change.
+  void keep(std::uint32_t first, std::uint32_t end) {
+    if (first >= end) return;
+    const std::uint32_t last = end - 1;
+    if (first < last) plan_.push_back({first, last - first, nullptr, last - 1});
+    plan_.push_back({last, 1, nullptr, end_of(last)});
+  }
+
+  [[nodiscard]] std::uint32_t end_of(std::uint32_t line) const {
+    return line == lines_ && !has_last_end_ ? no_end : line;
+  }
+
+  [[nodiscard]] std::uint32_t end_before(std::uint32_t line) const {
+    if (lines_ < 2) return lines_ == 1 && has_last_end_ ? 1 : default_end;
+    return std::clamp<std::uint32_t>(line - 1, 1, has_last_end_ ? lines_ : lines_ - 1);
+  }
+
+  /// Only the last line may be without a line end, and it is if that of the base is.
+  void fix_ends() {
+    for (std::size_t i = 0; i + 1 < plan_.size(); ++i) {
+      if (plan_[i].end_of == no_end) plan_[i].end_of = end_before(lines_);
+    }
+    if (!plan_.empty() && !has_last_end_ && lines_ > 0) plan_.back().end_of = no_end;
+  }
+
+  std::uint32_t lines_;
+  bool has_last_end_;
+  std::vector<PlannedLine> plan_;
+};
+
+struct RawLine {
+  std::string_view text;
+  std::string_view end;
+};
+
+constexpr std::array<std::string_view, 3> byte_order_marks = {"\xEF\xBB\xBF", "\xFF\xFE", "\xFE\xFF"};
+
+bool is_utf16(Encoding encoding) { return encoding == Encoding::utf16_le || encoding == Encoding::utf16_be; }
+
+/// Splits bytes at LF, CR LF and CR, as SourceFile splits their text.
+std::vector<RawLine> raw_lines(std::string_view bytes, Encoding encoding) {
+  const std::size_t width = is_utf16(encoding) ? 2 : 1;
+  const auto unit = [&](std::size_t at) -> unsigned {
+    if (at + width > bytes.size()) return 0;
+    const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(bytes[i])); };
+    if (width == 1) return byte(at);
+    return encoding == Encoding::utf16_le ? byte(at) | byte(at + 1) << 8U : byte(at) << 8U | byte(at + 1);
+  };
+  std::vector<RawLine> lines;
+  std::size_t start = 0;
+  for (std::size_t at = 0; at < bytes.size(); at += width) {
+    const unsigned c = unit(at);
+    if (c != '\n' && c != '\r') continue;
+    const std::size_t end = c == '\r' && unit(at + width) == '\n' ? 2 * width : width;
+    lines.push_back({bytes.substr(start, at - start), bytes.substr(at, end)});
+    at += end - width;
+    start = at + width;
+  }
+  if (start < bytes.size()) lines.push_back({bytes.substr(start), {}});
+  return lines;
+}
+
+/// The byte of a code page for a character; nothing if it does not have one.
+std::optional<char> byte_in(Encoding encoding, std::string_view character) {
+  for (unsigned byte = 0x80; byte < 0x100; ++byte) {
+    const auto c = static_cast<char>(static_cast<unsigned char>(byte));
+    const std::string_view one{&c, 1};
+    if ((encoding == Encoding::cp1252 ? from_cp1252(one) : from_cp437(one)) == character) return c;
+  }
+  return std::nullopt;
+}
+
+class TextEncoder {
+ public:
+  TextEncoder(Encoding encoding, bool allow_utf8) : encoding_(encoding), allow_utf8_(allow_utf8) {}
+
+  void append(std::string& out, std::string_view text) {
+    if (encoding_ == Encoding::utf8 || (encoding_ == Encoding::ascii && allow_utf8_)) {
+      out += text;
+    } else if (is_utf16(encoding_)) {
+      const std::string units = to_utf16_bytes(text);
+      for (std::size_t at = 0; at < units.size(); at += 2) {
+        const bool low_first = encoding_ == Encoding::utf16_le;
+        out += units[low_first ? at : at + 1];
+        out += units[low_first ? at + 1 : at];
+      }
+    } else {
+      append_bytes(out, text);
+    }
+  }
+
+  [[nodiscard]] const std::string& error() const { return error_; }
+
+ private:
+  void append_bytes(std::string& out, std::string_view text) {
+    while (!text.empty()) {
+      const std::size_t length = std::max<std::size_t>(utf8_sequence_length(text), 1);
+      const std::string_view character = text.substr(0, length);
+      text.remove_prefix(length);
+      if (is_ascii(character)) {
+        out += character;
+        continue;
+      }
+      const bool has_code_page = encoding_ == Encoding::cp1252 || encoding_ == Encoding::cp437;
+      const auto byte = has_code_page ? byte_in(encoding_, character) : std::nullopt;
+      if (byte) {
+        out += *byte;
+      } else if (error_.empty()) {
+        error_ = fmt::format("the encoding of the file, {}, does not have the character {}{}", to_string(encoding_),
+                             character, encoding_ == Encoding::ascii ? "; --utf8 writes UTF-8" : "");
+      }
+    }
+  }
+
+  Encoding encoding_;
+  bool allow_utf8_;
+  std::string error_;
+};
+
+}  // namespace
+
+std::unique_ptr<SourceFile> edited_text(const std::shared_ptr<const SourceFile>& base,
+                                        const std::vector<TextEdit>& edits,
+                                        const std::shared_ptr<const SourceFile>& changed_by) {
+  const std::uint32_t count = base->lines();
+  const EditPlan plan(count, count > 0 && !base->line_end(count).empty(), edits);
+  std::vector<ComposedLine> lines;
+  lines.reserve(count + edits.size());
+  for (const PlannedLine& planned : plan.lines()) {
+    std::string_view line = planned.added != nullptr ? planned.added->text : base->line(planned.of_base);
+    for (std::uint32_t i = 1; i < planned.count; ++i) {
+      const std::uint32_t number = planned.of_base + i;
+      const std::string_view next = base->line(number);
+      const std::string_view end{line.data() + line.size(),
+                                 static_cast<std::size_t>(next.data() - line.data()) - line.size()};
+      lines.push_back({line, end, base->origin(number - 1)});
+      line = next;
+    }
+    const std::string_view end = planned.end_of == no_end        ? std::string_view{}
+                                 : planned.end_of == default_end ? default_line_end
+                                                                 : base->line_end(planned.end_of);
+    lines.push_back(
+        {line, end,
+         planned.added != nullptr ? planned.added->origin : base->origin(planned.of_base + planned.count - 1)});
+  }
+  std::vector<std::shared_ptr<const SourceFile>> parts = base->parts();
+  if (parts.empty()) parts.push_back(base);
+  parts.insert(parts.begin(), changed_by);
+  return std::make_unique<SourceFile>(changed_by->name(), lines, std::move(parts));
+}
+
+EditedBytes edited_bytes(std::string_view bytes, Encoding encoding, const std::vector<TextEdit>& edits,
+                         bool allow_utf8) {
+  EditedBytes edited;
+  for (const std::string_view mark : byte_order_marks) {
+    if (edited.bytes.empty() && bytes.starts_with(mark) && (mark.size() == 2) == is_utf16(encoding)) {
+      edited.bytes = mark;
+      bytes.remove_prefix(mark.size());
+    }
+  }
+  const std::vector<RawLine> base = raw_lines(bytes, encoding);
+  const EditPlan plan(static_cast<std::uint32_t>(base.size()), !base.empty() && !base.back().end.empty(), edits);
+  TextEncoder encoder(encoding, allow_utf8);
+  for (const PlannedLine& planned : plan.lines()) {
+    for (std::uint32_t i = 0; i + 1 < planned.count; ++i) {
+      edited.bytes += base[planned.of_base - 1 + i].text;
+      edited.bytes += base[planned.of_base - 1 + i].end;
+    }
+    if (planned.added != nullptr) {
+      encoder.append(edited.bytes, planned.added->text);
+    } else {
+      edited.bytes += base[planned.of_base + planned.count - 2].text;
+    }
+    if (planned.end_of == default_end) {
+      encoder.append(edited.bytes, default_line_end);
+    } else if (planned.end_of != no_end) {
+      edited.bytes += base[planned.end_of - 1].end;
+    }
+  }
+  edited.error = encoder.error();
+  return edited;
+}
+
+}  // namespace edsc
