@@ -109,8 +109,7 @@ bool differs(const ComparedEntry& entry) {
 }
 
 std::string correction_text(const Correction& correction) {
-  const std::string old_text = correction.old_text ? *correction.old_text + " => " : "";
-  return fmt::format("[{}] {}={}{}", correction.section, correction.key, old_text, correction.new_text);
+  return fmt::format("[{}] {}", correction.section, overlay_line(correction));
 }
 
 }  // namespace edsc::accept

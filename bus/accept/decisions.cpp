@@ -71,7 +71,7 @@ Correction key_of(const Facts& facts, std::string key, Field EntryDescription::*
   const EntryDescription* const description =
       facts.object == nullptr ? nullptr : description_of(facts.data, *facts.object, facts.sub_index());
   if (description != nullptr && (description->*member).present) {
-    correction.old_text = std::string{(description->*member).text};
+    correction.old_text = std::string{strip_inline_comment((description->*member).text)};
   }
   return correction;
 }
@@ -604,6 +604,7 @@ void decide(const Facts& facts, Difference& difference) {
   difference.evidence = row->id;
   difference.reason = reason_of(*row, facts, difference);
   if (row->correct != nullptr) difference.corrections = row->correct(facts);
+  for (Correction& correction : difference.corrections) correction.reason = difference.reason;
 }
 
 bool states_highest_sub_index(const Object& object) {

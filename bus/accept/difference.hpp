@@ -3,12 +3,12 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "conform/verdict.hpp"
+#include "overlay/write_overlay.hpp"
 
 namespace edsc::accept {
 
@@ -62,13 +62,8 @@ inline constexpr MarkRow marks[] = {
 
 [[nodiscard]] constexpr const MarkRow& row_of(Mark mark) { return marks[static_cast<std::size_t>(mark)]; }
 
-/// A key of the EDS that would describe the device as it is.
-struct Correction {
-  std::string section;                  ///< `1018sub1`
-  std::string key;                      ///< `DefaultValue`; `Remove` with the value 1: the whole section
-  std::optional<std::string> old_text;  ///< as written in the EDS; nothing: the section does not have the key
-  std::string new_text;                 ///< in the notation of an EDS
-};
+/// A key of the EDS that would describe the device as it is. Its reason is that of the difference.
+using Correction = OverlayChange;
 
 struct Difference {
   std::uint16_t index = 0;

@@ -10,7 +10,7 @@
 #include "accept/report/text_report.hpp"
 #include "commands/commands.hpp"
 #include "conform/report/candump_log.hpp"
-#include "monitor/progress_line.hpp"
+#include "shared/compare_dictionaries.hpp"
 #include "shared/conformance_test.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -30,20 +30,6 @@ struct Settings : ConformanceSettings {
   std::string html, junit, json;
 };
 
-/// The dictionary of the device, with the declared differences.
-accept::Comparison compare(LiveBus& bus, const ConformanceTest& test) {
-  ProgressLine progress;
-  accept::ComparisonSettings settings;
-  settings.node = test.run.dut.node;
-  settings.sdo = test.run.dut.sdo;
-  settings.progress = [&](std::size_t done, std::size_t of) {
-    if (progress.due()) progress.show(fmt::format("object {} of {}", done + 1, of));
-  };
-  accept::Comparison comparison = accept::compare_dictionary(bus, test.sheet(), test.loaded->sheet, settings);
-  accept::apply_deviations(test.deviations.all, comparison);
-  return comparison;
-}
-
 /// Ends the command if one of them cannot be written.
 void write_reports(const Settings& settings, const accept::Acceptance& acceptance) {
   std::vector<OutputFile> files;
@@ -62,7 +48,7 @@ int run_accept(const Settings& settings) {
   if (!test) return exit_wrong_usage;
   return with_bus(settings.bus, [&](LiveBus& bus) {
     test->report.node = settings.node;
-    accept::Acceptance acceptance{test->findings, test->sheet(), test->report, compare(bus, *test)};
+    accept::Acceptance acceptance{test->findings, test->sheet(), test->report, compare_dictionaries(bus, *test)};
     const bool color = settings.color.on(stdout);
     write_output(accept::comparison_text(acceptance, color));
     flush_output();

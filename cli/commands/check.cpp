@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "commands/check_repair.hpp"
 #include "commands/commands.hpp"
 #include "device/options/option_table.hpp"
 #include "diagnostics/unknown_rule.hpp"
@@ -28,6 +29,7 @@ constexpr const char* examples = R"(Examples:
   edsc check eds/*.eds --format sarif     the same for a code review (SARIF 2.1.0)
   edsc check drive.eds --strict           warnings count as errors
   edsc check drive.eds --all              findings that follow from others too
+  edsc check bad.eds --repair -o bad.overlay   corrections of what is certain, each with its reason
   edsc check --list-rules                 every rule with its meaning
   edsc check --explain pdo-length         one rule, and where it is documented)";
 
@@ -43,6 +45,8 @@ struct Settings {
   bool list_rules = false;
   bool list_options = false;
   std::string explained_rule;
+  bool repair = false;
+  std::string output;
   ColorOption color;
 };
 
@@ -137,6 +141,14 @@ int list(const Rows& table, const std::string& format) {
   return exit_fine;
 }
 
+int check_and_repair(const Settings& settings) {
+  if (settings.output.empty()) throw_requires("--repair", "--output");
+  if (settings.paths.size() != 1) fail("--repair repairs one file");
+  if (settings.format != "text")
+    fail("--repair writes text; edsc check --format " + settings.format + " FILE.overlay checks the result");
+  return repair({settings.paths.front(), settings.options_path, settings.output, settings.node_id, settings.color});
+}
+
 int check(const Settings& settings) {
   if (settings.list_rules) return list(check_rules, settings.format);
   if (settings.list_options) return list(options_table, settings.format);
@@ -146,6 +158,7 @@ int check(const Settings& settings) {
     print_visibly(stderr, "edsc check: FILE is required\n");
     return exit_wrong_usage;
   }
+  if (settings.repair) return check_and_repair(settings);
   int exit_code = exit_fine;
   FindingsReport report{settings.format, settings.color, settings.all};
   for (const std::string& path : settings.paths) {
@@ -188,6 +201,10 @@ void add_check_options(Command command, int& exit_code) {
   command.add_flag("--all", settings.all, all_findings_help);
   command.add_flag("--strict", settings.strict,
                    "warnings count as errors; notes do not; a section of an overlay needs a reason");
+  command.add_flag(
+      "--repair", settings.repair,
+      "write an overlay for the findings that have a certain remedy, and try the device in simulated time");
+  command.add_option("-o,--output", settings.output, "overlay that --repair writes");
   command.add_flag("--list-rules", settings.list_rules, "list the rules and end");
   command.add_flag("--list-options", settings.list_options, "list the members of an options file and end");
   command.add_option("--explain", settings.explained_rule, "describe a rule and end").check(check_rule);

@@ -13,6 +13,7 @@ AddOptions add_check_options;
 AddOptions add_dump_options;
 AddOptions add_format_options;
 AddOptions add_overlay_options;
+AddOptions add_overlay_from_bus_options;
 AddOptions add_diff_options;
 AddOptions add_document_options;
 AddOptions add_network_options;

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -28,7 +27,12 @@ constexpr const char* examples = R"(Examples:
   edsc check epos4.overlay                                      every command reads an overlay in place of an EDS
   edsc overlay apply epos4.overlay -o epos4.eds                 the corrected EDS, for other tools
   edsc overlay from vendor.eds corrected.eds -o epos4.overlay   an overlay of the differences of an edited copy
-  edsc overlay rebase epos4.overlay new.eds -o epos4.overlay    the overlay for a new file of the vendor)";
+  edsc overlay rebase epos4.overlay new.eds -o epos4.overlay    the overlay for a new file of the vendor)"
+#ifndef EDSC_OFFLINE
+                                 R"(
+  edsc overlay from-bus socketcan:can0 5 epos4.eds -o epos4.overlay   what the device shows that its EDS does not)"
+#endif
+    ;
 
 struct ApplySettings {
   std::string path;
@@ -93,15 +97,6 @@ struct FromSettings {
   std::string edited;
   std::string output;
 };
-
-/// `path` relative to the folder of the file `from`, which is the current folder for standard output.
-std::string path_from(const std::string& from, const std::string& path) {
-  std::error_code error;
-  const std::filesystem::path folder = std::filesystem::absolute(to_native(from)).parent_path();
-  const std::filesystem::path relative =
-      std::filesystem::proximate(to_native(path), from.empty() ? std::filesystem::current_path() : folder, error);
-  return error ? path : from_native(relative);
-}
 
 int from(const FromSettings& settings) {
   const std::shared_ptr<const SourceFile> base = read_or_fail(settings.base);
@@ -183,6 +178,9 @@ struct OverlayAction {
 constexpr OverlayAction overlay_actions[] = {
     {"apply", "write the EDS or DCF that an overlay results in", add_apply_options},
     {"from", "write an overlay of the differences between a file and an edited copy", add_from_options},
+#ifndef EDSC_OFFLINE
+    {"from-bus", "write an overlay of what a device shows to be wrong in its file", add_overlay_from_bus_options},
+#endif
     {"rebase", "list kept, obsolete and stale lines for a new base, and write the overlay for it", add_rebase_options},
 };
 

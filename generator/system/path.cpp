@@ -1,5 +1,7 @@
 #include "system/path.hpp"
 
+#include <system_error>
+
 #include <algorithm>
 #include <cstddef>
 
@@ -23,6 +25,16 @@ std::string with_slashes(std::u8string_view path, char separator) {
 std::string join_path(std::string_view folder, std::string_view name) {
   return from_native(to_native(folder) / to_native(name));
 }
+
+std::string path_from(std::string_view from, std::string_view path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path folder = from.empty() ? fs::current_path() : fs::absolute(to_native(from)).parent_path();
+  const fs::path relative = fs::proximate(to_native(path), folder, error);
+  return error ? std::string{path} : from_native(relative);
+}
+
+std::string absolute_path(std::string_view path) { return from_native(std::filesystem::absolute(to_native(path))); }
 
 std::string_view file_name_of(std::string_view path) {
   const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };

@@ -19,6 +19,12 @@ namespace edsc {
 /// `name` in `folder`; `name` alone if it is absolute, or `folder` is empty.
 [[nodiscard]] std::string join_path(std::string_view folder, std::string_view name);
 
+/// `path` relative to the folder of the file `from`, as that file may name it; relative to the current folder if `from`
+/// is empty.
+[[nodiscard]] std::string path_from(std::string_view from, std::string_view path);
+
+[[nodiscard]] std::string absolute_path(std::string_view path);
+
 /// `drive.eds` of `machine/drive.eds`, `C:\machine\drive.eds` and `C:drive.eds`, on all systems: network files, EDS
 /// files and logs come from other computers. Empty for a path that ends with a separator.
 [[nodiscard]] std::string_view file_name_of(std::string_view path);

@@ -66,7 +66,7 @@ struct AccessLetter {
 };
 
 /// The letters of some tools.
-constexpr AccessLetter access_letters[] = {{"r", Access::ro}, {"w", Access::wo}};
+constexpr AccessLetter access_letters[] = {{"r", Access::ro}, {"w", Access::wo}, {"r/w", Access::rw}};
 
 /// The description of an entry in CiA 301; null for others, and for sub-index 0 of an ARRAY or RECORD.
 const StandardEntry* standard_entry(const EntryPlace& place) {

@@ -12,10 +12,10 @@
 namespace edsc {
 namespace {
 
-using Change = std::function<void(SheetEdit&, const SheetText&)>;
+using EditStep = std::function<void(SheetEdit&, const SheetText&)>;
 
 /// The bytes of a file after a change. The text that edsc reads then must be that of these bytes.
-std::string changed(const std::string& bytes, const Change& change, bool allow_utf8 = false) {
+std::string changed(const std::string& bytes, const EditStep& change, bool allow_utf8 = false) {
   const auto file = std::make_shared<const SourceFile>("a.eds", bytes);
   const SheetText text{*file};
   SheetEdit edit{text};
@@ -28,17 +28,17 @@ std::string changed(const std::string& bytes, const Change& change, bool allow_u
   return edited.bytes;
 }
 
-Change set(const std::string& section, const std::string& key, const std::string& value) {
+EditStep set(const std::string& section, const std::string& key, const std::string& value) {
   return [=](SheetEdit& edit, const SheetText& text) {
     edit.set_value(*text.find_entry(*text.find(section), key), value, {});
   };
 }
 
-Change add(const std::string& section, const std::string& key, const std::string& line) {
+EditStep add(const std::string& section, const std::string& key, const std::string& line) {
   return [=](SheetEdit& edit, const SheetText& text) { edit.add_entry(*text.find(section), key, {{line, {}}}); };
 }
 
-Change remove(const std::string& section) {
+EditStep remove(const std::string& section) {
   return [=](SheetEdit& edit, const SheetText& text) { edit.remove_section(*text.find(section)); };
 }
 
@@ -105,7 +105,7 @@ TEST(SheetEdit, SpellsCountsAsBefore) {
 
 TEST(SheetEdit, AddsToTheEndOfAnUnsortedList) {
   const std::string sheet = "[OptionalObjects]\nSupportedObjects=2\n1=0x1018\n2=0x1005\n[1018]\na=1\n[1005]\na=1\n";
-  const Change change = [](SheetEdit& edit, const SheetText&) {
+  const EditStep change = [](SheetEdit& edit, const SheetText&) {
     edit.add_section({.kind = SectionKind::object, .index = 0x1017}, {{"[1017]", {}}, {"a=2", {}}});
   };
   EXPECT_EQ(
@@ -114,7 +114,7 @@ TEST(SheetEdit, AddsToTheEndOfAnUnsortedList) {
 }
 
 TEST(SheetEdit, AddsAListThatTheFileDoesNotHave) {
-  const Change change = [](SheetEdit& edit, const SheetText&) {
+  const EditStep change = [](SheetEdit& edit, const SheetText&) {
     edit.add_section({.kind = SectionKind::object, .index = 0x2000}, {{"[2000]", {}}, {"a=2", {}}});
   };
   EXPECT_EQ(changed("[DeviceInfo]\na=1\n\n[MandatoryObjects]\nSupportedObjects=0\n", change),

@@ -130,12 +130,12 @@ std::uint32_t line_of(const std::string& part) {
   return static_cast<std::uint32_t>(std::count(base.begin(), base.begin() + static_cast<std::ptrdiff_t>(at), '\n')) + 1;
 }
 
-ComposedTexts with(const std::string& changes, bool needs_reasons = false) {
+ComposedTexts composed_with(const std::string& changes, bool needs_reasons = false) {
   return {{{"drive.eds", base}}, "[Overlay]\nVersion=1\nBase=drive.eds\n" + changes, needs_reasons};
 }
 
 std::string text_with(const std::string& changes) {
-  const ComposedTexts result = with(changes);
+  const ComposedTexts result = composed_with(changes);
   EXPECT_EQ(result.findings(), Findings{}) << result.message();
   return result.text();
 }
@@ -233,7 +233,7 @@ TEST(Overlay, RepairsADuplicateKeyAndAMissingSection) {
 // Findings.
 
 TEST(Overlay, ReportsAStaleLineWithBothValuesAndTheReason) {
-  const ComposedTexts result = with("; manual, page 88\n[2000]\nDataType=0x0004 => 0x0005\n");
+  const ComposedTexts result = composed_with("; manual, page 88\n[2000]\nDataType=0x0004 => 0x0005\n");
   EXPECT_EQ(result.findings(), Findings{"overlay-stale x.overlay:6:10"});
   EXPECT_EQ(result.message(),
             "DataType of [2000] has \"0x0001\" in the base, not \"0x0004\"; reason of the change: manual, page 88");
@@ -245,45 +245,45 @@ TEST(Overlay, ReportsAStaleLineWithBothValuesAndTheReason) {
 }
 
 TEST(Overlay, ReportsStaleLinesOfMissingParts) {
-  EXPECT_EQ(with("[2000]\nLowLimit=1 => 2\n").findings(), Findings{"overlay-stale x.overlay:5:10"});
-  EXPECT_EQ(with("[3000]\nLowLimit=1 => 2\n").findings(), Findings{"overlay-stale x.overlay:5:10"});
+  EXPECT_EQ(composed_with("[2000]\nLowLimit=1 => 2\n").findings(), Findings{"overlay-stale x.overlay:5:10"});
+  EXPECT_EQ(composed_with("[3000]\nLowLimit=1 => 2\n").findings(), Findings{"overlay-stale x.overlay:5:10"});
 }
 
 TEST(Overlay, ReportsObsoleteLines) {
-  EXPECT_EQ(with("[2000]\nDataType=0x0004 => 0x0001\n").findings(), Findings{"overlay-obsolete x.overlay:5:10"});
-  EXPECT_EQ(with("[2000]\nAccessType=rwr\n").findings(), Findings{"overlay-obsolete x.overlay:5:12"});
-  EXPECT_EQ(with("[2000]\nLowLimit=1 =>\n").findings(), Findings{"overlay-obsolete x.overlay:5:10"});
-  EXPECT_EQ(with("[3000]\nLowLimit=1 =>\n").findings(), Findings{"overlay-obsolete x.overlay:5:10"});
+  EXPECT_EQ(composed_with("[2000]\nDataType=0x0004 => 0x0001\n").findings(), Findings{"overlay-obsolete x.overlay:5:10"});
+  EXPECT_EQ(composed_with("[2000]\nAccessType=rwr\n").findings(), Findings{"overlay-obsolete x.overlay:5:12"});
+  EXPECT_EQ(composed_with("[2000]\nLowLimit=1 =>\n").findings(), Findings{"overlay-obsolete x.overlay:5:10"});
+  EXPECT_EQ(composed_with("[3000]\nLowLimit=1 =>\n").findings(), Findings{"overlay-obsolete x.overlay:5:10"});
 }
 
 TEST(Overlay, ReportsAValueThatWouldOverrideUnnoticed) {
-  const ComposedTexts result = with("[2000]\nDataType=0x0005\n");
+  const ComposedTexts result = composed_with("[2000]\nDataType=0x0005\n");
   EXPECT_EQ(result.findings(), Findings{"overlay-value x.overlay:5:10"});
   EXPECT_EQ(result.message(), "the base has \"0x0001\" for DataType; write DataType=0x0001 => 0x0005");
 }
 
 TEST(Overlay, ReportsChangesWithoutEffect) {
-  EXPECT_EQ(with("[3000]\nRemove=1\n").findings(), Findings{"overlay-effect x.overlay:5:1"});
-  EXPECT_EQ(with("[3000]\nRename=3001\n").findings(), Findings{"overlay-effect x.overlay:5:1"});
-  EXPECT_EQ(with("[3000-3FFF]\nAccessType=rwr => rww\n").findings(), Findings{"overlay-effect x.overlay:5:12"});
-  EXPECT_EQ(with("[2000-5FFF]\nAccessType=rwr => rww\nCount=3\n").findings(), Findings{"overlay-effect x.overlay:6:7"});
+  EXPECT_EQ(composed_with("[3000]\nRemove=1\n").findings(), Findings{"overlay-effect x.overlay:5:1"});
+  EXPECT_EQ(composed_with("[3000]\nRename=3001\n").findings(), Findings{"overlay-effect x.overlay:5:1"});
+  EXPECT_EQ(composed_with("[3000-3FFF]\nAccessType=rwr => rww\n").findings(), Findings{"overlay-effect x.overlay:5:12"});
+  EXPECT_EQ(composed_with("[2000-5FFF]\nAccessType=rwr => rww\nCount=3\n").findings(), Findings{"overlay-effect x.overlay:6:7"});
 }
 
 TEST(Overlay, ReportsTwoChangesOfOneValue) {
-  EXPECT_EQ(with("[2000]\nDataType=1 => 2\n[2000]\nDataType=1 => 3\n").findings(),
+  EXPECT_EQ(composed_with("[2000]\nDataType=1 => 2\n[2000]\nDataType=1 => 3\n").findings(),
             Findings{"overlay-file x.overlay:7:10"});
-  EXPECT_EQ(with("[2000]\nAccessType=rwr => rw\n[2000-2FFF]\nAccessType=rwr => rww\n").findings(),
+  EXPECT_EQ(composed_with("[2000]\nAccessType=rwr => rw\n[2000-2FFF]\nAccessType=rwr => rww\n").findings(),
             Findings{"overlay-file x.overlay:7:12"});
-  EXPECT_EQ(with("[2022sub10]\nRename=2022sub9\n").findings(), Findings{"overlay-file x.overlay:1:1"});
+  EXPECT_EQ(composed_with("[2022sub10]\nRename=2022sub9\n").findings(), Findings{"overlay-file x.overlay:1:1"});
 }
 
 TEST(Overlay, ReportsAMissingReasonOnlyIfItIsRequired) {
   const std::string unexplained = "\n[6041]\nPDOMapping=0 => 1\n";
-  EXPECT_EQ(with(unexplained).findings(), Findings{});
-  EXPECT_EQ(with(unexplained, true).findings(), Findings{"overlay-reason x.overlay:5:2"});
-  EXPECT_EQ(with("; seen in TPDO 1\n[6041]\nPDOMapping=0 => 1\n", true).findings(), Findings{});
-  EXPECT_EQ(with("[6041]\n; seen in TPDO 1\nPDOMapping=0 => 1\n", true).findings(), Findings{});
-  EXPECT_EQ(with("[6041]\nPDOMapping=0 => 1\n; too late\n", true).findings(), Findings{"overlay-reason x.overlay:4:2"});
+  EXPECT_EQ(composed_with(unexplained).findings(), Findings{});
+  EXPECT_EQ(composed_with(unexplained, true).findings(), Findings{"overlay-reason x.overlay:5:2"});
+  EXPECT_EQ(composed_with("; seen in TPDO 1\n[6041]\nPDOMapping=0 => 1\n", true).findings(), Findings{});
+  EXPECT_EQ(composed_with("[6041]\n; seen in TPDO 1\nPDOMapping=0 => 1\n", true).findings(), Findings{});
+  EXPECT_EQ(composed_with("[6041]\nPDOMapping=0 => 1\n; too late\n", true).findings(), Findings{"overlay-reason x.overlay:4:2"});
 }
 
 TEST(Overlay, ReportsInvalidHeaders) {
@@ -351,7 +351,7 @@ std::string place_in(const SourceFile& text, const std::string& part, std::size_
 }
 
 TEST(Overlay, PointsToTheFileThatAValueComesFrom) {
-  const ComposedTexts result = with("[DeviceInfo]\nBaudRate_800=1 =>\n[1018sub3]\nDefaultValue=0x01610000 => 23\n");
+  const ComposedTexts result = composed_with("[DeviceInfo]\nBaudRate_800=1 =>\n[1018sub3]\nDefaultValue=0x01610000 => 23\n");
   const SourceFile& text = *result.composed.text;
   EXPECT_EQ(place_in(text, "=23", 1), "x.overlay:7:28");
   EXPECT_EQ(place_in(text, "DefaultValue=23"), "x.overlay:7:1");
@@ -359,12 +359,12 @@ TEST(Overlay, PointsToTheFileThatAValueComesFrom) {
 }
 
 TEST(Overlay, PointsToTheBaseForRenumberedLines) {
-  const ComposedTexts result = with("[1800]\nRemove=1\n");
+  const ComposedTexts result = composed_with("[1800]\nRemove=1\n");
   EXPECT_EQ(place_in(*result.composed.text, "0x607D"), "drive.eds:" + std::to_string(line_of("4=0x607D")) + ":3");
 }
 
 TEST(Overlay, PointsToTheOverlayForAddedSections) {
-  const ComposedTexts result = with("[2001]\nParameterName=Added\n");
+  const ComposedTexts result = composed_with("[2001]\nParameterName=Added\n");
   EXPECT_EQ(place_in(*result.composed.text, "Added"), "x.overlay:5:15");
   EXPECT_EQ(place_in(*result.composed.text, "[2001]", 1), "x.overlay:4:2");
 }
