@@ -13,12 +13,23 @@ bool is_comment_line(std::string_view line) {
   return content.starts_with(';') || content.starts_with('#');
 }
 
+/// Removes the first line, with its LF, CR LF or CR, from a text that is not empty.
+std::string_view take_line(std::string_view& text) {
+  std::string_view line = text.substr(0, text.find('\n'));
+  const std::size_t cr = line.find('\r');
+  const bool has_cr_only = cr != std::string_view::npos && (cr + 1 < line.size() || line.size() == text.size());
+  line = text.substr(0, has_cr_only ? cr + 1 : line.size() + 1);
+  text.remove_prefix(line.size());
+  return line;
+}
+
 }  // namespace
 
 SheetText::SheetText(const SourceFile& source) : source_(source) {
-  for (std::uint32_t line = 1; line <= source.lines(); ++line) {
-    const std::string_view text = source.line(line);
-    if (text.empty() || (text.front() != '[' && !is_blank(text.front()))) continue;
+  std::string_view rest = source.text();
+  for (std::uint32_t line = 1; !rest.empty(); ++line) {
+    const std::string_view text = take_line(rest);
+    if (text.front() != '[' && !is_blank(text.front())) continue;
     const auto title = read_ini_header(text);
     if (!title) continue;
     if (!sections_.empty()) sections_.back().end = line;
@@ -64,7 +75,11 @@ std::vector<IniEntry> SheetText::entries(const TextSection& section) const {
 std::optional<IniEntry> SheetText::find_entry(const TextSection& section, std::string_view key,
                                               unsigned occurrence) const {
   for (std::uint32_t line = section.line + 1; line < section.end; ++line) {
-    const auto entry = read_ini_entry(source_.line(line), line);
+    const std::string_view text = source_.line(line);
+    if (text.empty() || (!is_blank(text.front()) && !key.empty() && to_lower(text.front()) != to_lower(key.front()))) {
+      continue;
+    }
+    const auto entry = read_ini_entry(text, line);
     if (entry && equal_ignoring_case(entry->key, key) && --occurrence == 0) return entry;
   }
   return std::nullopt;

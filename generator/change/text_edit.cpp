@@ -181,9 +181,9 @@ std::unique_ptr<SourceFile> edited_text(const std::shared_ptr<const SourceFile>&
     for (std::uint32_t i = 1; i < planned.count; ++i) {
       const std::uint32_t number = planned.of_base + i;
       const std::string_view next = base->line(number);
-      const std::string_view end{line.data() + line.size(),
-                                 static_cast<std::size_t>(next.data() - line.data()) - line.size()};
-      lines.push_back({line, end, base->origin(number - 1)});
+      // With its line end.
+      lines.push_back(
+          {{line.data(), static_cast<std::size_t>(next.data() - line.data())}, {}, base->origin(number - 1)});
       line = next;
     }
     const std::string_view end = planned.end_of == no_end        ? std::string_view{}

@@ -305,6 +305,15 @@ class OverlayApplier {
     return removed;
   }
 
+  std::size_t count_in(const OverlaySection& section, const CountedName& key, std::string_view value) {
+    std::size_t count = 0;
+    for_each_in(section, [&](const TextSection& one) {
+      const auto entry = base_.find_entry(one, key.name, key.occurrence);
+      if (entry && is_same_value(entry->value, value)) ++count;
+    });
+    return count;
+  }
+
   std::size_t apply_to_range(const OverlaySection& section, const OverlayLine& line) {
     if (!line.has_arrow || (line.old_value.empty() && line.new_value.empty())) {
       diagnostics_.error("overlay-file", edsc::position_of(overlay_, line),
@@ -312,11 +321,9 @@ class OverlayApplier {
       return 0;
     }
     std::size_t changed = 0;
-    std::size_t already = 0;
     for_each_in(section, [&](const TextSection& one) {
       const auto entry = base_.find_entry(one, line.key.name, line.key.occurrence);
       if (!entry) return;
-      if (!line.new_value.empty() && is_same_value(entry->value, line.new_value)) ++already;
       if (!is_same_value(entry->value, line.old_value)) return;
       ++changed;
       if (edit_.is_touched(*entry)) {
@@ -330,6 +337,8 @@ class OverlayApplier {
         edit_.set_value(*entry, line.new_value, value_origin(line));
       }
     });
+    const std::size_t already =
+        changed == 0 && !line.new_value.empty() ? count_in(section, line.key, line.new_value) : 0;
     note_state(line.entry.line, changed > 0   ? LineState::applied
                                 : already > 0 ? LineState::obsolete
                                               : LineState::stale);

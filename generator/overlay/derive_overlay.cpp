@@ -217,9 +217,9 @@ class OverlayDeriver {
       }
     }
     for (const std::string& name : composed.order()) {
-      if (edited_.find(name) == nullptr) {
-        return fmt::format("the missing section [{}]", composed.at(name).section->title);
-      }
+      const TextSection& section = *composed.at(name).section;
+      const bool is_new_list = is_object_list(section.name.kind) && base_.find(name) == nullptr;  // of added objects
+      if (edited_.find(name) == nullptr && !is_new_list) return fmt::format("the missing section [{}]", section.title);
     }
     return {};
   }

@@ -398,6 +398,14 @@ TEST(DerivedOverlay, StatesAListOnlyIfItDoesNotFollow) {
   EXPECT_EQ(derived(without), "\n[607D]\nRemove=1\n");
 }
 
+TEST(DerivedOverlay, ListsAddedObjectsInANewList) {
+  const auto file = std::make_shared<const SourceFile>("drive.eds", "[1000]\nDataType=7\n");
+  const SourceFile edited{"edited.eds", "[1000]\nDataType=7\n[2000]\nDataType=5\n"};
+  const DerivedOverlay overlay = derive_overlay(file, edited, "drive.eds");
+  EXPECT_EQ(overlay.problem, "");
+  EXPECT_EQ(overlay.text, "[Overlay]\nVersion=1\nBase=drive.eds\n\n[2000]\nDataType=5\n");
+}
+
 TEST(DerivedOverlay, NamesWhatAnOverlayCannotExpress) {
   const auto file = std::make_shared<const SourceFile>("drive.eds", base);
   const std::string edited =
