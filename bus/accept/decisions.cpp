@@ -10,6 +10,7 @@
 #include "conform/cases/shared/entry_values.hpp"
 #include "device/cob_id_parameter.hpp"
 #include "device/index_range.hpp"
+#include "device/meaning/profiles.hpp"
 #include "device/objects/standard_objects.hpp"
 #include "device/reserved_values.hpp"
 #include "eds/number.hpp"
@@ -167,12 +168,11 @@ std::optional<RequiredType> required_type(const Facts& facts) {
   if (const StandardEntry* const entry = standard_entry(facts)) {
     return RequiredType{row_of(entry->type), clause_of(*standard_object(facts))};
   }
-  const auto profile = profile_of(facts);
-  for (const ProfileType& row : profile_types) {
-    if (row.profile == profile && row.index == facts.index())
-      return RequiredType{row_of(row.type), fmt::format("CiA {}", row.profile)};
-  }
-  return std::nullopt;
+  const auto number = profile_of(facts);
+  const MeaningProfile* const profile = number ? find_profile(*number) : nullptr;
+  const ProfileObject* const row = profile != nullptr ? profile->find(facts.index()) : nullptr;
+  if (row == nullptr || row->type == nullptr) return std::nullopt;
+  return RequiredType{row->type, fmt::format("CiA {}", profile->number)};
 }
 
 // ---- evidence ----

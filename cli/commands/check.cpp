@@ -40,6 +40,7 @@ struct Settings {
   std::vector<std::string> silence;
   std::optional<std::uint8_t> node_id;
   bool strict = false;
+  std::string profile;
   bool keep_going = false;
   bool all = false;
   bool list_rules = false;
@@ -169,6 +170,7 @@ int check(const Settings& settings) {
     LoadSettings load{path, settings.options_path, "", settings.node_id};
     load.keep_going = settings.keep_going;
     load.needs_reasons = settings.strict;
+    load.profile_path = settings.profile;
     const auto loaded = load_device(load, diagnostics);
     if (!loaded->unreadable) report_unused_allowances(*loaded, diagnostics);
     report.add(diagnostics);
@@ -194,6 +196,9 @@ void add_check_options(Command command, int& exit_code) {
   add_choice(command, "--format", settings.format, {"text", "json", "sarif"}, "text, json or sarif");
   add_options_option(command, settings.options_path);
   add_node_id_option(command, settings.node_id);
+  command.add_option(
+      "--profile", settings.profile,
+      "profile database in the syntax of an EDS: object codes, data types and access types of its objects");
   command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
       .one_value_each()
       .check(check_rule);

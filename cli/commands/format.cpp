@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <vector>
 
 #include "commands/commands.hpp"
@@ -14,6 +15,7 @@
 #include "format/dcf/move_values.hpp"
 #include "format/sheet_document.hpp"
 #include "format/storage_locations.hpp"
+#include "load/load_device.hpp"
 #include "overlay/compose_overlay.hpp"
 #include "overlay/overlay_file.hpp"
 #include "rules/check_rules.hpp"
@@ -23,6 +25,7 @@
 #include "shared/output.hpp"
 #include "system/path.hpp"
 #include "text/printable.hpp"
+#include "text/reading_choices.hpp"
 #include "text/source_file.hpp"
 #include "xdd/read_xdd.hpp"
 
@@ -52,6 +55,8 @@ struct Settings {
   bool dcf = false;
   bool all = false;
   bool concise = false;
+  bool keep_going = false;
+  std::map<std::string_view, std::string> choices;  ///< by option of the options file
   ColorOption color;
 };
 
@@ -60,8 +65,9 @@ constexpr AnyRule rules_of_what_stays[] = {"unknown-key", "unknown-section"};
 
 /// A data sheet with its lines. Values are not checked here, but by `edsc check`.
 struct Input {
-  std::shared_ptr<const SourceFile> file;  ///< as read
-  std::unique_ptr<SourceFile> source;      ///< null if the file itself is an EDS or DCF
+  ChoicesOfOptions of_options;
+  std::shared_ptr<const SourceFile> file;    ///< as read
+  std::shared_ptr<const SourceFile> source;  ///< null if the file itself is an EDS or DCF
   IniFile ini;
   DataSheet sheet;
   Device device;
@@ -163,12 +169,47 @@ int write_options(const Settings& settings, const std::string& path, const Input
   return exit_fine;
 }
 
+/// The choices of the options file beside the file, replaced by those of the command line.
+ReadingChoices choices_for(const Settings& settings, ReadingChoices choices) {
+  for (const ReadingChoiceRow& row : reading_choice_rows()) {
+    const std::string& value = settings.choices.at(row.option);
+    if (!value.empty()) row.set(value, choices);
+  }
+  return choices;
+}
+
+/// Refuses to convert a file by a guess of its encoding, or to leave an options file that is wrong for the result.
+void check_conversion(const Settings& settings, const Input& input, const std::string& path) {
+  const SourceFile& file = *input.file;
+  if (!file.undefined_bytes().empty() && !settings.check) {
+    fail(fmt::format("{}: {}; nothing is converted: --encoding names the encoding", path, undefined_bytes_text(file)));
+  }
+  const bool replaces = settings.in_place || (!settings.output.empty() && is_file_of(file, settings.output));
+  if (!replaces) return;
+  if (file.is_encoding_guessed()) {
+    fail(
+        fmt::format("{}: the encoding of the file is not known; {} is the most likely one. A file is not replaced by a "
+                    "guess: --encoding names its encoding, or -o another file",
+                    path, to_string(file.encoding())));
+  }
+  if (settings.keep_going) fail(path + ": with --keep-going a file is not replaced; name another file with -o");
+  if (input.of_options.choices != ReadingChoices{}) {
+    fail(fmt::format(
+        "{}: {} states how this file is read, which would be wrong for its canonical form; move these options "
+        "to the command line, or name another file with -o",
+        path, input.of_options.options->name()));
+  }
+}
+
 int format_file(const Settings& settings, const std::string& path) {
   Input input;
-  std::string error;
-  input.file = read_source_file(path, error);
-  if (!input.file) fail(error);
   Diagnostics diagnostics;
+  input.of_options = choices_beside(path, diagnostics);
+  std::string error;
+  input.file = read_source_file(path, error, choices_for(settings, input.of_options.choices));
+  if (!input.file) fail(error);
+  if (settings.keep_going) diagnostics.keep_going(input.file.get());
+  check_conversion(settings, input, path);
   if (is_overlay(*input.file)) {
     if (settings.check || settings.in_place) {
       fail(path + ": an overlay does not have a canonical form; -o FILE writes the EDS or DCF that it results in");
@@ -251,6 +292,16 @@ void add_format_options(Command command, int& exit_code) {
                          "write no EDS, but the options file with the storage groups of its comments "
                          ";StorageLocation= (CANopenNode)");
   add_node_id_option(command, settings.node_id);
+  command.add_flag("--keep-going", settings.keep_going, keep_going_help);
+  for (const ReadingChoiceRow& row : reading_choice_rows()) {
+    std::string name = "--" + std::string{row.option};
+    std::ranges::replace(name, '_', '-');
+    command.add_option(name, settings.choices[row.option], fmt::format("{}: {}", row.meaning, row.expected()))
+        .check([&row](const std::string& value) {
+          ReadingChoices choices;
+          return row.set(value, choices) ? std::string{} : fmt::format("expected {}", row.expected());
+        });
+  }
   settings.color.add_to(command);
   options.excludes(output).excludes(in_place).excludes(check).excludes(dcf).excludes(concise);
   check.excludes(output).excludes(dcf).excludes(concise).excludes(in_place);

@@ -41,7 +41,7 @@ std::string first_line(std::string_view text) { return std::string{text.substr(0
 
 }  // namespace
 
-GitFile read_git_file(const std::string& revision, const std::string& path) {
+GitFile read_git_file(const std::string& revision, const std::string& path, const ReadingChoices& choices) {
   const auto [folder, name] = place_of(path);
   const auto git = [&folder = folder](std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), folder.begin(), folder.end());
@@ -75,16 +75,25 @@ GitFile read_git_file(const std::string& revision, const std::string& path) {
   }
   std::string bytes = std::move(shown->output);
   std::string why = bytes.size() > SourceFile::max_bytes ? "too large" : "";
-  if (why.empty() && is_gzip(bytes)) {
+  const Packing packing = is_gzip(bytes) ? Packing::gzip : Packing::none;
+  if (why.empty() && packing == Packing::gzip) {
     const std::string packed = std::move(bytes);
     why = gunzip(packed, SourceFile::max_unpacked_bytes, bytes);
   }
   if (why.empty()) {
-    result.source = std::make_unique<SourceFile>(shown_name, std::move(bytes));
+    result.source = std::make_unique<SourceFile>(shown_name, std::move(bytes), packing, choices);
   } else {
     result.error = fmt::format("cannot read {}: {}", shown_name, why);
   }
   return result;
+}
+
+std::optional<std::string> read_git_bytes(const std::string& revision, const std::string& path) {
+  if (revision.empty() || revision.starts_with('-')) return std::nullopt;
+  auto [arguments, name] = place_of(path);
+  arguments.insert(arguments.end(), {"show", "--no-textconv", revision + ":" + name, "--"});
+  auto shown = run_git(std::move(arguments));
+  return shown && shown->exit_code == 0 ? std::optional{std::move(shown->output)} : std::nullopt;
 }
 
 }  // namespace edsc

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "text/source_file.hpp"
@@ -15,6 +16,10 @@ struct GitFile {
 };
 
 /// Reads `path`, which need not exist in the working tree, from `revision` of the repository of its folder.
-[[nodiscard]] GitFile read_git_file(const std::string& revision, const std::string& path);
+[[nodiscard]] GitFile read_git_file(const std::string& revision, const std::string& path,
+                                    const ReadingChoices& choices = {});
+
+/// The bytes of a file in a git revision; nothing if it cannot be read.
+[[nodiscard]] std::optional<std::string> read_git_bytes(const std::string& revision, const std::string& path);
 
 }  // namespace edsc

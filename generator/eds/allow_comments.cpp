@@ -67,7 +67,7 @@ class CommentFinder {
   void read_header(std::string_view line, std::string_view content) {
     const std::size_t end = content.find(']');
     if (end == std::string_view::npos) return;
-    section_ = read_section_name(trim(content.substr(1, end - 1)));
+    section_ = read_section_name(trim(content.substr(1, end - 1)), source_.choices().sub_indices);
     SheetPart part;
     part.line = line_number_;
     const bool is_object = is_object_section(section_.kind);

@@ -47,7 +47,7 @@ class DataSheetReader {
  private:
   void sort_sections() {
     for (const IniSection& section : ini_.sections) {
-      const SectionName name = read_section_name(section.name);
+      const SectionName name = read_section_name(section.name, source_.choices().sub_indices);
       report_name(section, name);
       if (is_object_section(name.kind)) {
         object_sections_.push_back({name, &section});

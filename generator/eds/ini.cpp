@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "diagnostics/quote.hpp"
+#include "eds/number.hpp"
 #include "text/ascii.hpp"
 #include "text/source_file.hpp"
 
@@ -217,6 +218,15 @@ std::optional<std::string_view> read_ini_header(std::string_view line) {
 }
 
 IniFile parse_ini(const SourceFile& source, Diagnostics& diagnostics) { return IniReader(source, diagnostics).read(); }
+
+std::string_view value_of(const SourceFile& source, const IniEntry& entry) {
+  if (source.choices().access_types != AccessConvention::swapped || !equal_ignoring_case(entry.key, "AccessType")) {
+    return entry.value;
+  }
+  const std::string_view type = without_quotes(trim(strip_inline_comment(entry.value)));
+  if (equal_ignoring_case(type, "rwr")) return "rww";
+  return equal_ignoring_case(type, "rww") ? "rwr" : entry.value;
+}
 
 bool equal_ignoring_case(std::string_view a, std::string_view b) {
   return a.size() == b.size() &&

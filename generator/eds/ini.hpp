@@ -51,6 +51,9 @@ struct IniFile {
 /// Reads all lines. A line that is not a section, an entry, a comment or blank is reported and becomes a remark.
 [[nodiscard]] IniFile parse_ini(const SourceFile& source, Diagnostics& diagnostics);
 
+/// The value of an entry, with `rwr` and `rww` exchanged if the choices of the file say so.
+[[nodiscard]] std::string_view value_of(const SourceFile& source, const IniEntry& entry);
+
 /// Ignores letter case, ASCII only, independent of the locale.
 [[nodiscard]] bool equal_ignoring_case(std::string_view a, std::string_view b);
 [[nodiscard]] bool starts_with_ignoring_case(std::string_view text, std::string_view start);

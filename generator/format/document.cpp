@@ -9,6 +9,7 @@
 
 #include "eds/allow_comments.hpp"
 #include "text/ascii.hpp"
+#include "text/source_file.hpp"
 
 namespace edsc {
 namespace {
@@ -47,11 +48,12 @@ class DocumentReader {
     DocumentSection result;
     result.remarks = take(count_up_to(section.line - 1));
     take_header(section, result);
-    result.kind = read_section_name(section.name);
+    result.kind = read_section_name(section.name, ini_.source->choices().sub_indices);
     result.title = section.name;
     result.entries.reserve(section.entries.size());
     for (const IniEntry& entry : section.entries) {
-      result.entries.push_back({take(count_up_to(entry.line)), std::string{entry.key}, std::string{entry.value}});
+      result.entries.push_back(
+          {take(count_up_to(entry.line)), std::string{entry.key}, std::string{value_of(*ini_.source, entry)}});
     }
     return result;
   }

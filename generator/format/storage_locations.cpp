@@ -15,6 +15,7 @@
 
 #include "compare/stored_values.hpp"
 #include "eds/sections/section_name.hpp"
+#include "text/source_file.hpp"
 
 namespace edsc {
 namespace {
@@ -23,8 +24,8 @@ constexpr std::string_view comment = ";StorageLocation=";
 constexpr std::string_view never_stored[] = {"RAM", "ROM"};
 
 /// The entry of a section: `2100` or `2100sub1`.
-std::optional<EntryKey> entry_of(std::string_view section) {
-  const SectionName name = read_section_name(section);
+std::optional<EntryKey> entry_of(const IniFile& ini, std::string_view section) {
+  const SectionName name = read_section_name(section, ini.source->choices().sub_indices);
   if (name.kind != SectionKind::object && name.kind != SectionKind::sub_object) return std::nullopt;
   return EntryKey{name.index, name.sub_index};
 }
@@ -37,7 +38,7 @@ std::map<EntryKey, std::string> locations_of(const IniFile& ini) {
     const std::uint32_t end = i + 1 < ini.sections.size() ? ini.sections[i + 1].line : UINT32_MAX;
     for (; remark != ini.remarks.end() && remark->line < end; ++remark) {
       if (remark->line <= ini.sections[i].line || !starts_with_ignoring_case(remark->text, comment)) continue;
-      if (const auto entry = entry_of(ini.sections[i].name)) {
+      if (const auto entry = entry_of(ini, ini.sections[i].name)) {
         locations[*entry] = std::string{remark->text.substr(comment.size())};
       }
     }

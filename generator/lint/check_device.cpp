@@ -4,8 +4,9 @@
 
 namespace edsc {
 
-void check_device(const NamedDevice& named, const DataSheet& sheet, const Options& options, Diagnostics& diagnostics) {
-  const RuleContext context{named.device, sheet, options, diagnostics};
+void check_device(const NamedDevice& named, const DataSheet& sheet, const Options& options, Diagnostics& diagnostics,
+                  const MeaningProfile* user_profile) {
+  const RuleContext context{named.device, sheet, options, diagnostics, user_profile};
   check_file(context);
   check_device_info(context);
   check_objects(context);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "device/bit_rates.hpp"
+#include "diagnostics/place.hpp"
 #include "diagnostics/quote.hpp"
 #include "eds/ini.hpp"
 #include "eds/number.hpp"
@@ -96,6 +97,13 @@ void check_file_info(const RuleContext& context) {
   check_file_name(context);
 }
 
+void check_encoding(const RuleContext& context) {
+  const SourceFile& source = *context.device.source;
+  if (source.undefined_bytes().empty()) return;
+  context.report("unknown-encoding", position_at(source, source.undefined_place()),
+                 undefined_bytes_text(source) + "; option \"encoding\" names the encoding");
+}
+
 void check_lines(const RuleContext& context) {
   const SourceFile& source = *context.device.source;
   bool only_ascii = is_ascii(source.text());
@@ -108,6 +116,7 @@ void check_lines(const RuleContext& context) {
     }
     if (only_ascii || is_ascii(line)) continue;
     only_ascii = true;  // report it once
+    if (!source.undefined_bytes().empty()) continue;
     const auto at = std::ranges::find_if(line, [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
     context.report(
         "encoding", {&source, number, static_cast<std::uint32_t>(at - line.begin()) + 1, 1},
@@ -176,6 +185,7 @@ bool is_ini(const SourceFile& source) {
 void check_file(const RuleContext& context) {
   if (is_ini(*context.device.source)) {
     check_file_info(context);
+    check_encoding(context);
     check_lines(context);
     check_commissioning(context);
   }

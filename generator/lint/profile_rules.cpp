@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
 
+#include "device/meaning/profiles.hpp"
 #include "lint/profile_objects.hpp"
 #include "lint/rule_groups.hpp"
 
@@ -67,18 +70,75 @@ void check_needed(const RuleContext& context, const Entry& device_type, std::uin
   }
 }
 
-/// The elements of an ARRAY have the same type.
-void check_types(const RuleContext& context, std::uint16_t profile) {
-  for (const ProfileType& row : profile_types) {
-    const Object* object = row.profile == profile ? context.device.find(row.index) : nullptr;
-    if (object == nullptr) continue;
-    for (const Entry& entry : object->entries) {
-      if (object->has_sub_indices() && (entry.sub_index == 0 || entry.sub_index == 0xFF)) continue;
-      if (entry.type->type == row.type) continue;
-      context.report("profile-data-type", context.place_of(entry, &EntryDescription::data_type),
-                     fmt::format("{} is {}; CiA {} requires {}", named(entry), entry.type->name, profile,
-                                 canopen::find_data_type(static_cast<std::uint32_t>(row.type))->name),
-                     {}, fmt::format("{} {}", object->index, entry.type->name));
+std::string_view text_of(ProfileUse use) {
+  switch (use) {
+    case ProfileUse::command: return "a master writes it";
+    case ProfileUse::status: return "the device sets it";
+    case ProfileUse::parameter:
+    case ProfileUse::constant: break;
+  }
+  return "it can be read";
+}
+
+/// Object code, data types and access of an object against its row. ARRAY and RECORD are not told apart: a master
+/// reads both by sub-index.
+class ProfileObjectCheck {
+ public:
+  ProfileObjectCheck(const RuleContext& context, std::string profile, const Object& object, const ProfileObject& row)
+      : context_{context}, profile_{std::move(profile)}, object_{object}, row_{row} {}
+
+  void run() const {
+    if (object_.has_sub_indices() != row_.has_sub_indices()) return report_object_code();
+    if (row_.type == nullptr) return;  // its elements differ
+    for (const Entry& entry : object_.entries) {
+      if (object_.has_sub_indices() && (entry.sub_index == 0 || entry.sub_index == 0xFF)) continue;
+      check_type(entry);
+      check_access(entry);
+    }
+  }
+
+ private:
+  void report_object_code() const {
+    const ObjectDescription* const description = context_.sheet.find(object_.index);
+    const bool is_stated = description != nullptr && description->object_type.present;
+    context_.report("profile-object-code", is_stated ? description->object_type.position : object_.position,
+                    fmt::format("{} is a {}; {} requires {} {}", index_label(object_.index), to_string(object_.type),
+                                profile_, row_.object_code == "ARRAY" ? "an" : "a", row_.object_code));
+  }
+
+  void check_type(const Entry& entry) const {
+    if (entry.type->type == row_.type->type) return;
+    context_.report("profile-data-type", context_.place_of(entry, &EntryDescription::data_type),
+                    fmt::format("{} is {}; {} requires {}", named(entry), entry.type->name, profile_, row_.type->name),
+                    {}, fmt::format("{} {}", object_.index, entry.type->name));
+  }
+
+  void check_access(const Entry& entry) const {
+    if (fits(row_.use, entry.access)) return;
+    context_.report("profile-access", context_.place_of(entry, &EntryDescription::access_type),
+                    fmt::format("{} is {}; in {} it is {}: {}", named(entry), canopen::row_of(entry.access).name,
+                                profile_, canopen::row_of(row_.access).name, text_of(row_.use)),
+                    {}, fmt::format("{} {}", object_.index, canopen::row_of(entry.access).name));
+  }
+
+  const RuleContext& context_;
+  const std::string profile_;  ///< for messages
+  const Object& object_;
+  const ProfileObject& row_;
+};
+
+/// The rows of the user replace those of edsc.
+void check_profile_objects(const RuleContext& context, std::uint16_t number) {
+  const MeaningProfile* const own = find_profile(number);
+  const MeaningProfile* const users = context.user_profile;
+  const bool applies = users != nullptr && (users->number == 0 || users->number == number);
+  for (const Object& object : context.device.objects) {
+    const ProfileObject* const users_row = applies ? users->find(object.index) : nullptr;
+    const ProfileObject* const own_row = own != nullptr ? own->find(object.index) : nullptr;
+    if (users_row != nullptr) {
+      ProfileObjectCheck{context, users->title, object, *users_row}.run();
+    } else if (own_row != nullptr) {
+      ProfileObjectCheck{context, fmt::format("CiA {}", number), object, *own_row}.run();
     }
   }
 }
@@ -96,7 +156,7 @@ void check_profile(const RuleContext& context) {
   const auto profile = static_cast<std::uint16_t>(device_type->default_value->bits);
   if (profile == 401) check_io_modules(context, *device_type);
   check_needed(context, *device_type, profile);
-  check_types(context, profile);
+  check_profile_objects(context, profile);
 }
 
 }  // namespace edsc

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "device/device.hpp"
+#include "device/meaning/profiles.hpp"
 #include "device/options/options.hpp"
 #include "diagnostics/diagnostics.hpp"
 #include "eds/data_sheet.hpp"
@@ -20,6 +21,7 @@ struct RuleContext {
   const DataSheet& sheet;
   const Options& options;
   Diagnostics& diagnostics;
+  const MeaningProfile* user_profile = nullptr;  ///< rows that replace and complete those of the device profile
 
   /// Reports a finding with the severity of the rule.
   void report(AnyRule rule, const Position& position, std::string message, std::vector<Note> notes = {},

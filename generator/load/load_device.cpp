@@ -43,9 +43,10 @@ std::string options_path_of(const LoadSettings& settings, const LoadedDevice& lo
   return "";
 }
 
-std::unique_ptr<SourceFile> read_or_report(const std::string& path, LoadedDevice& loaded, Diagnostics& diagnostics) {
+std::unique_ptr<SourceFile> read_or_report(const std::string& path, const ReadingChoices& choices, LoadedDevice& loaded,
+                                           Diagnostics& diagnostics) {
   std::string error;
-  auto file = read_source_file(path, error);
+  auto file = read_source_file(path, error, choices);
   if (!file) {
     file = std::make_unique<SourceFile>(path, std::string{});
     diagnostics.error("unreadable-file", Position{file.get()}, error);
@@ -56,7 +57,7 @@ std::unique_ptr<SourceFile> read_or_report(const std::string& path, LoadedDevice
 
 void read_options_file(const std::string& path, LoadedDevice& loaded, Diagnostics& diagnostics) {
   if (path.empty()) return;
-  loaded.options_source = read_or_report(path, loaded, diagnostics);
+  loaded.options_source = read_or_report(path, {}, loaded, diagnostics);
   if (loaded.unreadable) return;
   loaded.options = read_options(*loaded.options_source, is_identifier, diagnostics);
   silence_by_options(loaded, diagnostics);
@@ -92,6 +93,12 @@ void allow_by_comment(const AllowComment& comment, Diagnostics& diagnostics) {
   diagnostics.allow({*rule, std::string{comment.reason}, comment.position, true, comment.scope});
 }
 
+/// Whether a choice other than the encoding is stated.
+bool states_ini_choices(ReadingChoices choices) {
+  choices.encoding.reset();
+  return choices != ReadingChoices{};
+}
+
 /// Registers the allowances in the options and comments of the EDS. The parts of an XDD are known after reading it.
 void allow_findings(const LoadedDevice& loaded, Diagnostics& diagnostics) {
   allow_by_options(loaded, diagnostics);
@@ -114,11 +121,27 @@ void mark_consequences_in(const SourceFile& source, Diagnostics& diagnostics) {
 
 std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnostics& diagnostics) {
   auto loaded = std::make_unique<LoadedDevice>();
-  loaded->source = read_or_report(settings.path, *loaded, diagnostics);
-  if (loaded->unreadable || !apply_overlays(*loaded, {{}, settings.needs_reasons}, diagnostics)) return loaded;
-  if (settings.keep_going) diagnostics.keep_going(loaded->source.get());
-  read_options_file(options_path_of(settings, *loaded), *loaded, diagnostics);
+  const std::string own_options = options_path_of(settings, *loaded);
+  read_options_file(own_options, *loaded, diagnostics);
+  loaded->source = read_or_report(settings.path, loaded->options.reading, *loaded, diagnostics);
   if (loaded->unreadable) return loaded;
+  const std::shared_ptr<const SourceFile> given = loaded->source;
+  const auto apply = [&] {
+    return apply_overlays(*loaded, {{}, settings.needs_reasons, loaded->options.reading}, diagnostics);
+  };
+  if (!apply()) return loaded;
+  if (own_options.empty() && !loaded->parts.empty()) {
+    read_options_file(options_path_of(settings, *loaded), *loaded, diagnostics);
+    if (loaded->unreadable) return loaded;
+    if (loaded->options.reading != ReadingChoices{}) {
+      loaded->source = given;
+      if (!apply()) return loaded;
+    }
+  }
+  if (settings.keep_going) diagnostics.keep_going(loaded->source.get());
+  if (settings.check && !settings.profile_path.empty()) {
+    loaded->user_profile = std::make_unique<UserProfile>(read_user_profile(settings.profile_path, diagnostics));
+  }
   if (settings.static_mapping) loaded->options.static_mapping.all = true;
   resolve_and_check(*loaded, settings, diagnostics);
   mark_consequences_in(*loaded->source, diagnostics);
@@ -153,6 +176,14 @@ bool apply_overlays(LoadedDevice& loaded, const ComposeSettings& settings, Diagn
   loaded.source = file;
   loaded.unreadable = composed.is_unreadable;
   return false;
+}
+
+ChoicesOfOptions choices_beside(const std::string& path, Diagnostics& diagnostics) {
+  LoadSettings settings;
+  settings.path = path;
+  LoadedDevice loaded;
+  if (path != "-") read_options_file(options_path_of(settings, loaded), loaded, diagnostics);
+  return {std::move(loaded.options_source), loaded.options.reading};
 }
 
 Device device_for(const LoadedDevice& loaded, std::optional<std::uint8_t> node_id, bool keep_going) {
@@ -207,10 +238,15 @@ void resolve_sheet(LoadedDevice& loaded, const LoadSettings& settings, Diagnosti
     diagnostics.error("options", Position{loaded.source.get()},
                       "option stored_eds: 1021h holds an EDS, but this file is not an EDS");
   }
+  if (is_xml(*loaded.source) && states_ini_choices(loaded.options.reading)) {
+    diagnostics.error("options", Position{loaded.source.get()},
+                      "options sub_indices and access_types are for an EDS or DCF; this file is XML");
+  }
   loaded.device = resolve_device(loaded.sheet, loaded.options, settings.node_id, diagnostics);
   imply_options(*loaded.device, loaded.options, diagnostics);
   loaded.names.emplace(*loaded.device, loaded.options, settings.name);
-  if (settings.check) check_device(loaded.named(), loaded.sheet, loaded.options, diagnostics);
+  const MeaningProfile* const profile = loaded.user_profile ? &loaded.user_profile->profile : nullptr;
+  if (settings.check) check_device(loaded.named(), loaded.sheet, loaded.options, diagnostics, profile);
 }
 
 void resolve_and_check(LoadedDevice& loaded, const LoadSettings& settings, Diagnostics& diagnostics) {

@@ -10,6 +10,7 @@
 #include "device/device.hpp"
 #include "device/options/options.hpp"
 #include "eds/data_sheet.hpp"
+#include "load/user_profile.hpp"
 #include "overlay/compose_overlay.hpp"
 #include "text/source_file.hpp"
 
@@ -24,6 +25,7 @@ struct LoadSettings {
   bool check = true;            ///< run the rules over the device
   bool keep_going = false;      ///< errors in the EDS become warnings; what is wrong is left out
   bool needs_reasons = false;   ///< report sections of an overlay without a reason
+  std::string profile_path;     ///< a profile database of the user; empty: none
 };
 
 /// A device and the files to which its positions point.
@@ -31,6 +33,7 @@ struct LoadedDevice {
   std::shared_ptr<const SourceFile> source;              ///< of an overlay, the text that it results in
   std::vector<std::shared_ptr<const SourceFile>> parts;  ///< the overlay and its bases; empty without an overlay
   std::unique_ptr<SourceFile> options_source;            ///< null without options file
+  std::unique_ptr<UserProfile> user_profile;             ///< null without one
   Options options;
   DataSheet sheet;
   std::optional<Device> device;   ///< nothing if the file could not be read as a data sheet
@@ -50,6 +53,14 @@ struct LoadedDevice {
 /// Replaces an overlay in `loaded.source` by the text that it results in; another file by the text that an overlay of
 /// EDSC_OVERLAYS makes of it. Prints the name of such an overlay to standard error. Returns false if there is no text.
 bool apply_overlays(LoadedDevice& loaded, const ComposeSettings& settings, Diagnostics& diagnostics);
+
+/// How the options file beside a file says that it is read, for a command that needs no other option.
+struct ChoicesOfOptions {
+  std::unique_ptr<SourceFile> options;  ///< null without options file
+  ReadingChoices choices;
+};
+/// Errors in the options file are in `diagnostics`, whose positions point into the result.
+[[nodiscard]] ChoicesOfOptions choices_beside(const std::string& path, Diagnostics& diagnostics);
 
 /// The device of the data sheet with another node-ID, or without one. Findings are not reported: those of the first
 /// device were. `keep_going` as in its settings.

@@ -66,10 +66,22 @@ class OverlayComposer {
       if (is_same_file(path, part->name())) return fail(fmt::format("{} is based on itself", quote(base.text)));
     }
     std::string error;
-    std::unique_ptr<SourceFile> file = settings_.read ? settings_.read(path, error) : read_source_file(path, error);
+    const ReadingChoices choices = choices_of(overlay);
+    std::unique_ptr<SourceFile> file =
+        settings_.read ? settings_.read(path, choices, error) : read_source_file(path, error, choices);
     composed_.is_unreadable = !file;
     if (!file) return fail(error);
     return file;
+  }
+
+  /// The choices of the overlay, and those of the caller where it has none. An invalid one is reported with the overlay.
+  [[nodiscard]] ReadingChoices choices_of(const OverlayFile& overlay) const {
+    ReadingChoices choices = settings_.choices;
+    for (const ReadingChoiceRow& row : reading_choice_rows()) {
+      const Field& field = reading_choice(overlay.header, row);
+      if (!field.empty()) static_cast<void>(row.set(field.text, choices));
+    }
+    return choices;
   }
 
   [[nodiscard]] static bool is_same_file(const std::string& a, const std::string& b) {

@@ -9,12 +9,14 @@
 #include "change/text_edit.hpp"
 #include "diagnostics/diagnostics.hpp"
 #include "overlay/apply_overlay.hpp"
+#include "text/reading_choices.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {
 
 /// Reads a file that an overlay names. Returns null if it cannot be read, with path and reason in `error`.
-using ReadBase = std::function<std::unique_ptr<SourceFile>(const std::string& path, std::string& error)>;
+using ReadBase = std::function<std::unique_ptr<SourceFile>(const std::string& path, const ReadingChoices& choices,
+                                                           std::string& error)>;
 
 /// A file and the overlays of its text, the last one outermost.
 struct ComposedOverlay {
@@ -29,6 +31,7 @@ struct ComposedOverlay {
 struct ComposeSettings {
   ReadBase read;               ///< empty: from the file system
   bool needs_reasons = false;  ///< report sections of the outermost overlay without a reason
+  ReadingChoices choices = {};  ///< of the bases, unless an overlay has other ones
 };
 
 /// Maximum number of overlays and bases below an overlay.

@@ -94,6 +94,12 @@ class OverlayReader {
                                          ? fmt::format("unknown version {}; expected 1", quote(header.version.text))
                                          : "missing Version; expected Version=1");
     }
+    for (const ReadingChoiceRow& row : reading_choice_rows()) {
+      const Field& field = reading_choice(header, row);
+      ReadingChoices choices;
+      if (field.empty() || row.set(field.text, choices)) continue;
+      error(field.position, fmt::format("{} is not {}; expected {}", quote(field.text), row.key, row.expected()));
+    }
     const bool has_identity = header.vendor_number.present || header.product_number.present;
     if (header.base.empty() && !has_identity) {
       error(header.base.position, "missing Base, the path of the file to change");
@@ -228,6 +234,11 @@ bool is_overlay(const SourceFile& source) {
     return header && equal_ignoring_case(*header, overlay_section);
   }
   return false;
+}
+
+const Field& reading_choice(const OverlayHeader& header, const ReadingChoiceRow& row) {
+  const auto key = std::ranges::find(overlay_keys, row.key, [](const auto& one) { return one.name; });
+  return header.*key->member;
 }
 
 OverlayFile read_overlay(const SourceFile& source, Diagnostics& diagnostics) {

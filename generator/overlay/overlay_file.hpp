@@ -11,6 +11,7 @@
 #include "diagnostics/diagnostics.hpp"
 #include "eds/data_sheet.hpp"
 #include "eds/ini.hpp"
+#include "text/reading_choices.hpp"
 
 namespace edsc {
 
@@ -21,6 +22,7 @@ struct OverlayHeader {
   Field version;
   Field base;                                            ///< path of the file to change, relative to the overlay
   Field vendor_number, product_number, revision_number;  ///< of the files to change, for the folders of EDSC_OVERLAYS
+  Field encoding, sub_indices, access_types;             ///< how the base is read
 };
 
 /// `Key=old => new`, or `Key=new`. An empty value means that the key is missing, or does not have a value.
@@ -59,6 +61,9 @@ struct OverlayFile {
 
 /// Distinguishes an overlay by its first section, [Overlay], or by its name, `*.overlay`.
 [[nodiscard]] bool is_overlay(const SourceFile& source);
+
+/// The key of [Overlay] for a reading choice.
+[[nodiscard]] const Field& reading_choice(const OverlayHeader& header, const ReadingChoiceRow& row);
 
 [[nodiscard]] OverlayFile read_overlay(const SourceFile& source, Diagnostics& diagnostics);
 

@@ -16,6 +16,9 @@ inline constexpr KeyRow<OverlayHeader> overlay_keys[] = {
     {{"VendorNumber", ValueKind::number}, &OverlayHeader::vendor_number},
     {{"ProductNumber", ValueKind::number}, &OverlayHeader::product_number},
     {{"RevisionNumber", ValueKind::number}, &OverlayHeader::revision_number},
+    {{"Encoding"}, &OverlayHeader::encoding},
+    {{"SubIndices"}, &OverlayHeader::sub_indices},
+    {{"AccessTypes"}, &OverlayHeader::access_types},
 };
 
 /// `Remove=1`: the section, or the object with all its sections, is removed.

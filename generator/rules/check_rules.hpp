@@ -31,6 +31,7 @@ inline constexpr Rule check[] = {
     Rule{"entry-outside-section", error, "an entry before the first section", "CiA 306-1, 4.2"},
     Rule{"long-line", note, "a line of more than 255 characters", "CiA 306-1, 4.2"},
     Rule{"encoding", note, "non-ASCII characters", "CiA 306-1, 4.2"},
+    Rule{"unknown-encoding", warning, "non-ASCII bytes in an encoding that is not known", "CiA 306-1, 4.2"},
     // [FileInfo], [DummyUsage] and [DeviceComissioning].
     Rule{"file-info", note, "missing section [FileInfo]", "CiA 306-1, 4.4"},
     Rule{"file-name", note, "FileName is missing, or is not the name of the file", "CiA 306-1, 4.4"},
@@ -216,7 +217,12 @@ inline constexpr Rule check[] = {
     Rule{"profile-402-object", warning, "a drive without an object that every drive has", "CiA 402-2, 8"},
     Rule{"profile-402-modes", note, "a drive without 6502h supported drive modes", "CiA 402-2, 8"},
     Rule{"profile-406-object", warning, "an encoder without an object that every encoder has", "CiA 406, 5"},
-    Rule{"profile-data-type", warning, "wrong data type for an object of the device profile", "CiA 401, 402, 406"},
+    Rule{"profile-data-type", warning, "wrong data type for an object of the device profile",
+         "CiA 401, 402, 404, 406, 408, 410"},
+    Rule{"profile-object-code", warning, "an object of the device profile with sub-indices, or without, against it",
+         "CiA 401, 402, 404, 406, 408, 410"},
+    Rule{"profile-access", warning, "an access type that an object of the device profile cannot have",
+         "CiA 401, 402, 404, 406, 408, 410"},
     // Networks.
     Rule{"network-syntax", error, "the network file is not JSON", "edsc"},
     Rule{"network-file", error, "an unknown or missing member, or an invalid value in the network file", "edsc"},

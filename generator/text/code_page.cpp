@@ -1,30 +1,16 @@
 #include "text/code_page.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <iterator>
 
 #include "text/ascii.hpp"
+#include "text/code_page_tables.hpp"
 #include "text/utf8.hpp"
 
 namespace edsc {
 namespace {
-
-/// Bytes 80h..FFh.
-constexpr std::u32string_view cp437 =
-    U"ÇüéâäàåçêëèïîìÄÅ"
-    U"ÉæÆôöòûùÿÖÜ¢£¥₧ƒ"
-    U"áíóúñÑªº¿⌐¬½¼¡«»"
-    U"░▒▓│┤╡╢╖╕╣║╗╝╜╛┐"
-    U"└┴┬├─┼╞╟╚╔╩╦╠═╬╧"
-    U"╨╤╥╙╘╒╓╫╪┘┌█▄▌▐▀"
-    U"αßΓπΣσµτΦΘΩδ∞φε∩"
-    U"≡±≥≤⌠⌡÷≈°∙·√ⁿ²■\u00A0";
-static_assert(cp437.size() == 128);
-
-/// Bytes 80h..9Fh; from A0h on it is Latin 1.
-constexpr std::u32string_view cp1252 =
-    U"€\uFFFD‚ƒ„…†‡ˆ‰Š‹Œ\uFFFDŽ\uFFFD"
-    U"\uFFFD‘’“”•–—˜™š›œ\uFFFDžŸ";
-static_assert(cp1252.size() == 32);
 
 /// The kinds of the bytes 80h..FFh: `u` an umlaut or sharp s, `U` a capital umlaut, `l` another letter (or the
 /// apostrophe of 1252, which occurs between letters), `s` a sign, `b` a box drawing character, `-` undefined.
@@ -80,17 +66,117 @@ Place place_of(std::string_view bytes, std::size_t at) {
   return letter_after ? Place::begins_word : Place::alone;
 }
 
-template <typename ToCodePoint>
-std::string convert(std::string_view bytes, ToCodePoint to_code_point) {
-  std::string text;
-  text.reserve(bytes.size() + bytes.size() / 16);
-  for (const char c : bytes) {
-    append_utf8(text, to_code_point(static_cast<unsigned char>(c)));
+constexpr std::size_t max_sequence = 4;
+
+/// A character at the start of bytes; `length` is 0 if it is undefined.
+struct DecodedCharacter {
+  char32_t code_point = replacement_character;
+  std::size_t length = 0;
+};
+
+const CodePageTable* table_of(Encoding encoding) {
+  switch (encoding) {
+    case Encoding::cp1252: return &cp1252_table;
+    case Encoding::cp437: return &cp437_table;
+    case Encoding::cp850: return &cp850_table;
+    case Encoding::cp1250: return &cp1250_table;
+    case Encoding::cp1251: return &cp1251_table;
+    case Encoding::shift_jis: return &shift_jis_table;
+    case Encoding::gb18030: return &gb18030_table;
+    case Encoding::big5: return &big5_table;
+    case Encoding::cp949: return &cp949_table;
+    case Encoding::ascii:
+    case Encoding::utf8:
+    case Encoding::utf16_le:
+    case Encoding::utf16_be:
+    case Encoding::unknown: break;
   }
-  return text;
+  return nullptr;
 }
 
-}  // namespace
+constexpr unsigned first_lead_byte = 0x80;
+constexpr unsigned first_trail_byte = 0x40;
+constexpr unsigned trail_bytes = 0xFF - first_trail_byte;
+
+DecodedCharacter decode_pair(const CodePageTable& table, unsigned lead, unsigned trail) {
+  if (table.pairs.empty() || lead == 0xFF || trail < first_trail_byte || trail == 0xFF) return {};
+  const char32_t code_point = table.pairs[(lead - first_lead_byte) * trail_bytes + trail - first_trail_byte];
+  if (code_point != replacement_character) return {code_point, 2};
+  const auto wide = std::ranges::find(table.wide, lead << 8U | trail, &WideCharacter::code);
+  return wide != table.wide.end() ? DecodedCharacter{wide->code_point, 2} : DecodedCharacter{};
+}
+
+/// Four bytes of GB18030.
+DecodedCharacter decode_four_bytes(std::string_view bytes) {
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < max_sequence; ++i) {
+    const auto byte = static_cast<unsigned char>(bytes[i]);
+    const unsigned first = i % 2 == 0 ? 0x81 : 0x30;
+    const unsigned count = i % 2 == 0 ? 126 : 10;
+    if (byte < first || byte >= first + count) return {};
+    number = number * count + (byte - first);
+  }
+  const auto after = std::ranges::upper_bound(gb18030_four_bytes, number, {}, &FourByteRun::first);
+  if (after == gb18030_four_bytes.begin()) return {};
+  const FourByteRun& run = *std::prev(after);
+  return number - run.first < run.length ? DecodedCharacter{run.code_point + (number - run.first), max_sequence}
+                                         : DecodedCharacter{};
+}
+
+/// The character that `bytes`, which are not empty, begin with.
+DecodedCharacter decode_character(std::string_view bytes, Encoding encoding, const CodePageTable* table) {
+  const auto byte = static_cast<unsigned char>(bytes[0]);
+  if (byte < 0x80) return {byte, 1};
+  if (encoding == Encoding::utf8) {
+    const std::size_t length = utf8_sequence_length(bytes);
+    return length == 0 ? DecodedCharacter{} : DecodedCharacter{code_point_of(bytes.substr(0, length)), length};
+  }
+  if (table == nullptr) return {};
+  const char32_t single = table->singles[byte - 0x80U];
+  if (single != replacement_character) return {single, 1};
+  if (bytes.size() >= 2) {
+    const DecodedCharacter pair = decode_pair(*table, byte, static_cast<unsigned char>(bytes[1]));
+    if (pair.length != 0) return pair;
+  }
+  return encoding == Encoding::gb18030 && bytes.size() >= max_sequence ? decode_four_bytes(bytes) : DecodedCharacter{};
+}
+
+DecodedText decode_utf16(std::string_view bytes, ByteOrder order) {
+  DecodedText decoded{from_utf16_bytes(bytes, order)};
+  const std::size_t at = decoded.text.find("\uFFFD");
+  if (at != std::string::npos) {
+    decoded.undefined_text = at;
+    decoded.undefined = 2 * to_utf16(std::string_view{decoded.text}.substr(0, at)).size();
+  }
+  return decoded;
+}
+
+constexpr Encoding encodings_of_several_bytes[] = {Encoding::shift_jis, Encoding::gb18030, Encoding::big5,
+                                                   Encoding::cp949};
+
+/// Whether a character of several bytes is none of one byte before an ASCII letter: `\xE9t` of a French word.
+bool is_of_several_bytes(std::string_view bytes, std::size_t length, Encoding encoding) {
+  if (length < 2) return false;
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(bytes[at]); };
+  return byte(1) >= 0x80 || (encoding == Encoding::shift_jis && byte(0) < 0xA0);
+}
+
+/// Whether the text is defined and has two characters of several bytes one after the other, as words of these languages
+/// have. In words of western languages this is rare.
+bool has_words_of_several_bytes(std::string_view bytes, Encoding encoding) {
+  const CodePageTable* const table = table_of(encoding);
+  bool after_such_character = false;
+  bool found = false;
+  while (!bytes.empty()) {
+    const DecodedCharacter one = decode_character(bytes, encoding, table);
+    if (one.length == 0) return false;
+    const bool is_such_character = is_of_several_bytes(bytes, one.length, encoding);
+    found = found || (after_such_character && is_such_character);
+    after_such_character = is_such_character;
+    bytes.remove_prefix(one.length);
+  }
+  return found;
+}
 
 bool looks_like_cp437(std::string_view bytes) {
   long long balance = 0;
@@ -105,15 +191,44 @@ bool looks_like_cp437(std::string_view bytes) {
   return balance > 0;
 }
 
-std::string from_cp437(std::string_view bytes) {
-  return convert(bytes, [](unsigned char byte) { return byte < 0x80 ? char32_t{byte} : cp437[byte - 0x80U]; });
+}  // namespace
+
+DecodedText decode_text(std::string_view bytes, Encoding encoding) {
+  if (encoding == Encoding::utf16_le) return decode_utf16(bytes, ByteOrder::low_first);
+  if (encoding == Encoding::utf16_be) return decode_utf16(bytes, ByteOrder::high_first);
+  const CodePageTable* const table = table_of(encoding);
+  DecodedText decoded;
+  decoded.text.reserve(bytes.size() + bytes.size() / 16);
+  for (std::size_t at = 0; at < bytes.size();) {
+    const DecodedCharacter one = decode_character(bytes.substr(at), encoding, table);
+    if (one.length == 0 && decoded.is_valid()) {
+      decoded.undefined = at;
+      decoded.undefined_text = decoded.text.size();
+    }
+    append_utf8(decoded.text, one.code_point);
+    at += std::max<std::size_t>(one.length, 1);
+  }
+  return decoded;
 }
 
-std::string from_cp1252(std::string_view bytes) {
-  return convert(bytes, [](unsigned char byte) {
-    const bool is_latin1 = byte < 0x80 || byte >= 0xA0;
-    return is_latin1 ? char32_t{byte} : cp1252[byte - 0x80U];
-  });
+Encoding detect_code_page(std::string_view bytes) {
+  for (const Encoding one : encodings_of_several_bytes) {
+    if (has_words_of_several_bytes(bytes, one)) return Encoding::unknown;
+  }
+  if (looks_like_cp437(bytes)) return Encoding::cp437;
+  return decode_text(bytes, Encoding::cp1252).is_valid() ? Encoding::cp1252 : Encoding::unknown;
+}
+
+std::vector<Encoding> possible_encodings(std::string_view bytes) {
+  std::vector<Encoding> possible;
+  for (const Encoding one : encodings_of_several_bytes) {
+    if (has_words_of_several_bytes(bytes, one)) possible.push_back(one);
+  }
+  if (!possible.empty()) return possible;
+  constexpr Encoding of_one_byte[] = {Encoding::cp1252, Encoding::cp437, Encoding::cp1250, Encoding::cp1251};
+  std::ranges::copy_if(of_one_byte, std::back_inserter(possible),
+                       [&](Encoding one) { return decode_text(bytes, one).is_valid(); });
+  return possible;
 }
 
 }  // namespace edsc

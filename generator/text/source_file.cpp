@@ -1,9 +1,12 @@
 #include "text/source_file.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -21,10 +24,6 @@ constexpr std::string_view utf16_le_mark = "\xFF\xFE";
 constexpr std::string_view utf16_be_mark = "\xFE\xFF";
 
 constexpr std::string_view too_large = "larger than 1 GiB";
-
-ByteOrder order_of(Encoding encoding) {
-  return encoding == Encoding::utf16_be ? ByteOrder::high_first : ByteOrder::low_first;
-}
 
 /// Detects UTF-16 without a byte order mark: at the start of the text, exactly every second byte is NUL.
 bool has_nul_as_every_second_byte(std::string_view bytes, std::size_t first_nul) {
@@ -85,13 +84,8 @@ std::string name_of(const std::string& path) { return path == "-" ? "<stdin>" : 
 
 }  // namespace
 
-std::string_view to_string(Encoding encoding) {
-  constexpr std::string_view names[] = {"ASCII", "UTF-8", "UTF-16LE", "UTF-16BE", "CP1252", "CP437"};
-  return names[static_cast<std::size_t>(encoding)];
-}
-
-SourceFile::SourceFile(std::string name, std::string bytes, Packing packing)
-    : name_(std::move(name)), packing_(packing) {
+SourceFile::SourceFile(std::string name, std::string bytes, Packing packing, const ReadingChoices& choices)
+    : name_(std::move(name)), packing_(packing), choices_(choices) {
   if (bytes.size() > max_bytes) {
     throw std::length_error(name_ + ": " + std::string(too_large));
   }
@@ -101,7 +95,7 @@ SourceFile::SourceFile(std::string name, std::string bytes, Packing packing)
 
 SourceFile::SourceFile(std::string name, const std::vector<ComposedLine>& lines,
                        std::vector<std::shared_ptr<const SourceFile>> parts)
-    : name_(std::move(name)), encoding_(parts.back()->encoding_), parts_(std::move(parts)) {
+    : name_(std::move(name)), encoding_(parts.back()->encoding_), choices_(parts.back()->choices_), parts_(std::move(parts)) {
   std::size_t size = 0;
   for (const ComposedLine& line : lines) size += line.text.size() + line.end.size();
   if (size > max_bytes) {
@@ -122,22 +116,37 @@ SourceFile::SourceFile(std::string name, const std::vector<ComposedLine>& lines,
 void SourceFile::decode(std::string bytes) {
   const std::string_view view = bytes;
   if (view.starts_with(utf16_le_mark) || view.starts_with(utf16_be_mark)) {
-    encoding_ = view.starts_with(utf16_le_mark) ? Encoding::utf16_le : Encoding::utf16_be;
-    text_ = from_utf16_bytes(view.substr(2), order_of(encoding_));
+    convert(view.substr(2), view.starts_with(utf16_le_mark) ? Encoding::utf16_le : Encoding::utf16_be);
   } else if (has_nul_as_every_second_byte(view, 1) || has_nul_as_every_second_byte(view, 0)) {
-    encoding_ = view[1] == '\0' ? Encoding::utf16_le : Encoding::utf16_be;
-    text_ = from_utf16_bytes(view, order_of(encoding_));
+    convert(view, view[1] == '\0' ? Encoding::utf16_le : Encoding::utf16_be);
   } else if (view.starts_with(utf8_mark) && is_utf8(view)) {
     encoding_ = Encoding::utf8;
     text_ = bytes.substr(utf8_mark.size());
-  } else if (is_utf8(view)) {
+  } else if (choices_.encoding.value_or(Encoding::utf8) == Encoding::utf8 ? is_utf8(view) : is_ascii(view)) {
     encoding_ = is_ascii(view) ? Encoding::ascii : Encoding::utf8;
     text_ = std::move(bytes);
     is_verbatim_ = packing_ == Packing::none;
   } else {
-    encoding_ = looks_like_cp437(view) ? Encoding::cp437 : Encoding::cp1252;
-    text_ = encoding_ == Encoding::cp437 ? from_cp437(view) : from_cp1252(view);
+    convert(view, choices_.encoding ? *choices_.encoding : detect_code_page(view));
   }
+}
+
+void SourceFile::convert(std::string_view bytes, Encoding encoding) {
+  encoding_ = encoding;
+  DecodedText decoded = decode_text(bytes, encoding);
+  text_ = std::move(decoded.text);
+  if (decoded.is_valid()) return;
+  undefined_place_ = decoded.undefined_text;
+  const auto is_ascii_byte = [](char c) { return static_cast<unsigned char>(c) < 0x80; };
+  const std::string_view from_there = bytes.substr(decoded.undefined, byte_count);
+  const auto end =
+      encoding == Encoding::unknown ? std::ranges::find_if(from_there, is_ascii_byte) : from_there.begin() + 1;
+  undefined_bytes_.assign(from_there.begin(), end);
+  possible_ = possible_encodings(bytes);
+}
+
+bool SourceFile::is_encoding_guessed() const {
+  return !choices_.encoding && (encoding_ == Encoding::cp437 || encoding_ == Encoding::unknown);
 }
 
 void SourceFile::find_lines() {
@@ -175,6 +184,21 @@ std::string_view SourceFile::line(std::uint32_t number) const {
   return line;
 }
 
+std::string undefined_bytes_text(const SourceFile& source) {
+  std::string text = "bytes";
+  for (const char c : source.undefined_bytes()) {
+    fmt::format_to(std::back_inserter(text), " {:02X}h", static_cast<unsigned char>(c));
+  }
+  text += source.encoding() == Encoding::unknown ? " are not ASCII, and the encoding is not known"
+                                                 : fmt::format(" are not defined in {}", to_string(source.encoding()));
+  const std::vector<Encoding>& possible = source.possible();
+  for (std::size_t i = 0; i < possible.size(); ++i) {
+    const bool is_last = i + 1 == possible.size();
+    text.append(i == 0 ? "; the text is valid " : is_last ? " and " : ", ").append(to_string(possible[i]));
+  }
+  return text;
+}
+
 std::string_view SourceFile::line_end(std::uint32_t number) const {
   if (number == 0 || number > lines()) return {};
   const std::uint32_t start = starts_[number - 1];
@@ -198,13 +222,14 @@ FileBytes read_bytes(const std::string& path) {
   return file;
 }
 
-std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::string& error) {
+std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::string& error,
+                                             const ReadingChoices& choices) {
   FileBytes file = read_bytes(path);
   if (!file.error.empty()) {
     error = std::move(file.error);
     return nullptr;
   }
-  return std::make_unique<SourceFile>(name_of(path), std::move(file.bytes), file.packing);
+  return std::make_unique<SourceFile>(name_of(path), std::move(file.bytes), file.packing, choices);
 }
 
 }  // namespace edsc

@@ -8,12 +8,10 @@
 #include <string_view>
 #include <vector>
 
+#include "text/encoding.hpp"
+#include "text/reading_choices.hpp"
+
 namespace edsc {
-
-/// cp437 means the DOS code pages 437 and 850, which have the same western European letters.
-enum class Encoding : std::uint8_t { ascii, utf8, utf16_le, utf16_be, cp1252, cp437 };
-
-[[nodiscard]] std::string_view to_string(Encoding encoding);
 
 /// How the bytes of a file are compressed.
 enum class Packing : std::uint8_t { none, gzip };
@@ -40,11 +38,12 @@ class SourceFile {
  public:
   static constexpr std::size_t max_bytes = std::size_t{1} << 30;
   static constexpr std::size_t max_unpacked_bytes = std::size_t{1} << 26;  ///< of a gzip file
+  static constexpr std::size_t byte_count = 8;                             ///< of `undefined_bytes()`
 
   /// `name` is the file name in diagnostics; `bytes` are decoded immediately, without the byte order mark. Undefined
   /// characters of the encoding become U+FFFD. Throws std::length_error above `max_bytes`. `packing` is that of the
-  /// file; `bytes` are its unpacked contents.
-  SourceFile(std::string name, std::string bytes, Packing packing = Packing::none);
+  /// file; `bytes` are its unpacked contents. A byte order mark is stronger than the choice of an encoding.
+  SourceFile(std::string name, std::string bytes, Packing packing = Packing::none, const ReadingChoices& choices = {});
 
   /// A text composed of lines of other files, which it keeps: `parts` are these files, the last one the file that the
   /// others change.
@@ -57,7 +56,16 @@ class SourceFile {
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] std::string_view text() const { return text_; }
   [[nodiscard]] Encoding encoding() const { return encoding_; }
+  [[nodiscard]] const ReadingChoices& choices() const { return choices_; }
   [[nodiscard]] Packing packing() const { return packing_; }
+  /// Whether the encoding is only the most likely one: another one would be as valid for the bytes.
+  [[nodiscard]] bool is_encoding_guessed() const;
+  /// The first bytes that the encoding does not define, `byte_count` at most; empty if it defines all.
+  [[nodiscard]] const std::string& undefined_bytes() const { return undefined_bytes_; }
+  /// The place of their U+FFFD in `text()`.
+  [[nodiscard]] std::size_t undefined_place() const { return undefined_place_; }
+  /// Encodings that define all bytes, if this one does not.
+  [[nodiscard]] const std::vector<Encoding>& possible() const { return possible_; }
   /// Whether `text()` is the file byte for byte: ASCII or UTF-8, without byte order mark, not packed.
   [[nodiscard]] bool is_verbatim() const { return is_verbatim_; }
   /// Number of lines; text after the last line end counts if it is not empty.
@@ -76,6 +84,7 @@ class SourceFile {
 
  private:
   void decode(std::string bytes);
+  void convert(std::string_view bytes, Encoding encoding);
   void find_lines();
 
   std::string name_;
@@ -83,10 +92,18 @@ class SourceFile {
   Encoding encoding_ = Encoding::ascii;
   Packing packing_ = Packing::none;
   bool is_verbatim_ = false;
+  ReadingChoices choices_;
+  std::string undefined_bytes_;
+  std::size_t undefined_place_ = 0;
+  std::vector<Encoding> possible_;
   std::vector<std::uint32_t> starts_;  ///< start of each line, and the end
   std::vector<LineOrigin> origins_;    ///< of a composed text, for each line
   std::vector<std::shared_ptr<const SourceFile>> parts_;
 };
+
+/// Names the undefined bytes of a file and the encodings that define all of its bytes:
+/// `bytes 8Eh B2h are not ASCII, and the encoding is not known; the text is valid Shift-JIS and GB18030`.
+[[nodiscard]] std::string undefined_bytes_text(const SourceFile& source);
 
 /// The bytes of a file, unpacked.
 struct FileBytes {
@@ -98,6 +115,7 @@ struct FileBytes {
 
 /// Reads a whole file and unpacks a gzip file; "-" is standard input. Returns null if the file cannot be read (missing,
 /// a folder, no permission, too large), with path and reason in `error`.
-[[nodiscard]] std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::string& error);
+[[nodiscard]] std::unique_ptr<SourceFile> read_source_file(const std::string& path, std::string& error,
+                                                           const ReadingChoices& choices = {});
 
 }  // namespace edsc

@@ -99,6 +99,41 @@ class OtherBytes(CommandLine):
                 self.expect(FINE, self.edsc("format", "--check", sheet))
 
 
+    def test_a_file_is_not_replaced_by_a_guess(self) -> None:
+        texts = {"モータ電流": "cp932", "电机电流": "gb18030", "W\u00fcrzburg": "cp437"}
+        for text, encoding in texts.items():
+            for place in (("-i",), ("-o", "a.eds")):
+                with self.subTest(encoding=encoding, place=place):
+                    sheet = self.sheet("a.eds", SMALL.encode() + f"; {text}\n".encode(encoding))
+                    before = sheet.read_bytes()
+                    self.expect(WRONG_USAGE, self.edsc("format", sheet, *place), "--encoding names")
+                    self.assertEqual(sheet.read_bytes(), before)
+            with self.subTest(encoding=encoding):
+                sheet = self.sheet("a.eds", SMALL.encode() + f"; {text}\n".encode(encoding))
+                self.expect(FINE, self.edsc("format", "--encoding", encoding, "-i", sheet), "to UTF-8")
+                self.assertIn(f"; {text}\n", sheet.read_text(encoding="utf-8"))
+
+    def test_an_unknown_encoding_is_named_with_its_bytes_and_candidates(self) -> None:
+        sheet = self.sheet("a.eds", SMALL.encode() + "; モータ電流\n".encode("cp932"))
+        result = self.edsc("check", sheet)
+        self.assertIn("bytes 83h 82h 81h are not ASCII, and the encoding is not known; the text is valid Shift-JIS", result.stdout)
+        self.assertIn('option "encoding" names the encoding [unknown-encoding]', result.stdout)
+
+    def test_options_that_would_be_wrong_for_the_result_are_reported(self) -> None:
+        sheet = self.sheet("a.eds", SMALL.encode() + "; 电机电流\n".encode("gb18030"))
+        self.write("a.options.json", '{"encoding": "GB18030"}')
+        self.expect(WRONG_USAGE, self.edsc("format", "-i", sheet), "states how this file is read")
+        self.assertIn("; 电机电流\n", self.edsc("format", sheet).stdout)
+
+    def test_decimal_sub_indices_and_swapped_access_types_become_those_of_cia_306(self) -> None:
+        array = "[2022]\nParameterName=A\nObjectType=0x8\nSubNumber=2\n[2022sub0]\nParameterName=N\nDataType=5\nAccessType=ro\n"
+        array += "[2022sub10]\nParameterName=B\nDataType=5\nAccessType=rww\nPDOMapping=1\n"
+        sheet = self.write("a.eds", SMALL + array)
+        made = self.edsc("format", "--sub-indices", "decimal", "--access-types", "swapped", sheet).stdout
+        self.assertRegex(made, r"\[2022subA\]\nParameterName=B\n(.*\n)*?AccessType=rwr\n")
+        self.expect(WRONG_USAGE, self.edsc("format", "--sub-indices", "octal", sheet), "hexadecimal or decimal")
+
+
 class Comments(CommandLine):
     def test_that_allow_findings_of_the_file_stay_at_its_top(self) -> None:
         first, rest = re.search(r"(\[FileInfo\].*?)(\[.*)", SMALL, re.DOTALL).groups()

@@ -31,7 +31,7 @@ struct DeviceSettings {
 struct DeviceFromText {
   explicit DeviceFromText(std::string text, Options given = {}, DeviceSettings settings = {},
                           std::string file = "test.eds")
-      : source(std::move(file), std::move(text)),
+      : source(std::move(file), std::move(text), Packing::none, given.reading),
         options(std::move(given)),
         sheet(read_data_sheet(parse_ini(source, diagnostics), diagnostics)),
         device(resolve_device(sheet, options, settings.node_id, diagnostics)),

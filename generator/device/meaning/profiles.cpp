@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <deque>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,7 +33,61 @@ struct BuiltInProfiles {
   }
 };
 
+constexpr std::string_view object_codes[] = {"VAR", "ARRAY", "RECORD"};
+
+struct UseName {
+  std::string_view name;
+  ProfileUse use;
+};
+constexpr UseName use_names[] = {{"command", ProfileUse::command},
+                                 {"status", ProfileUse::status},
+                                 {"parameter", ProfileUse::parameter},
+                                 {"constant", ProfileUse::constant}};
+
+/// `["VAR", "UNSIGNED16", "rw", "command", "manual 000"]`; nothing if a part is unknown.
+std::optional<ProfileObject> read_profile_object(std::string_view index, const nlohmann::json& row) {
+  constexpr std::size_t parts = 5;
+  const bool has_parts = row.is_array() && row.size() == parts &&
+                         std::ranges::all_of(row, [](const nlohmann::json& part) { return part.is_string(); });
+  const auto number = parse_index(index);
+  if (!has_parts || !number) return std::nullopt;
+  const auto text = [&](std::size_t part) { return row[part].get<std::string>(); };
+  const auto* const code = std::ranges::find(object_codes, text(0));
+  const auto* const access = std::ranges::find(canopen::access_rows, text(2), &canopen::AccessRow::name);
+  const auto* const use = std::ranges::find(use_names, text(3), &UseName::name);
+  const auto* const type = std::ranges::find(canopen::data_types, text(1), &canopen::DataTypeRow::name);
+  const bool has_type = type != std::end(canopen::data_types);
+  if (code == std::end(object_codes) || access == std::end(canopen::access_rows) || use == std::end(use_names) ||
+      (!has_type && !text(1).empty()))
+    return std::nullopt;
+  return ProfileObject{*number, *code, has_type ? type : nullptr, access->access, use->use, text(4)};
+}
+
+std::vector<ProfileObject> read_profile_objects(const nlohmann::json& rows, OptionFile& file) {
+  std::vector<ProfileObject> objects;
+  for (const auto& [index, row] : file.json().members(rows)) {
+    if (auto object = read_profile_object(index, *row)) {
+      objects.push_back(std::move(*object));
+    } else {
+      file.error(*row, index, "expected object code, data type, access type, use and source");
+    }
+  }
+  std::ranges::sort(objects, {}, &ProfileObject::index);
+  return objects;
+}
+
 }  // namespace
+
+const ProfileObject* MeaningProfile::find(std::uint16_t index) const {
+  const auto found = std::ranges::lower_bound(objects, index, {}, &ProfileObject::index);
+  return found != objects.end() && found->index == index ? &*found : nullptr;
+}
+
+const MeaningProfile* find_profile(std::uint16_t number) {
+  const auto profiles = meaning_profiles();
+  const auto found = std::ranges::find(profiles, number, &MeaningProfile::number);
+  return found != profiles.end() ? &*found : nullptr;
+}
 
 MeaningProfile::Place MeaningProfile::place_of(std::uint16_t index) const {
   if (repeat_offset == 0 || index < first_profile_index || index > last_profile_index) return {index, 0};
@@ -62,6 +119,8 @@ MeaningProfile read_meaning_profile(const SourceFile& source, Diagnostics& diagn
       profile.repeat_count = value->value("count", std::uint16_t{1});
     } else if (name == "meaning") {
       profile.meanings.entries = read_meaning(*value, name, MeaningSource::profile, file).entries;
+    } else if (name == "objects" && value->is_object()) {
+      profile.objects = read_profile_objects(*value, file);
     } else if (name == "emcy") {
       profile.meanings.error_codes = read_error_codes(*value, name, MeaningSource::profile, file);
     } else {

@@ -14,6 +14,7 @@
 #include "device/entry_address.hpp"
 #include "device/meaning/description.hpp"
 #include "diagnostics/diagnostics.hpp"
+#include "text/reading_choices.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {
@@ -104,6 +105,8 @@ struct Options {
   /// Set if the options file has the group `lss`: the device then supports LSS regardless of the EDS.
   std::optional<LssSettings> lss;
   StoredEds stored_eds = StoredEds::of_application;
+  /// How the EDS is read.
+  ReadingChoices reading;
   /// In the order of their members of canopen::DeviceOptions by name.
   std::vector<RuntimeOption> runtime;
   /// Expected findings.

@@ -16,6 +16,7 @@
 #include "device/index_range.hpp"
 #include "device/options/option_table.hpp"
 #include "eds/number.hpp"
+#include "text/reading_choices.hpp"
 #include "text/suggestion.hpp"
 
 namespace edsc {
@@ -54,6 +55,8 @@ class StructuredOptions {
       : path_{path}, value_{value}, is_name_{is_name}, file_{file}, options_{options} {}
 
   void read(const OptionRow& row) {
+    const ReadingChoiceRow* const choice = row.group.name.empty() ? find_reading_option(row.name) : nullptr;
+    if (choice != nullptr) return reading_choice(*choice);
     struct Reader {
       std::string_view group;
       std::string_view name;
@@ -64,6 +67,9 @@ class StructuredOptions {
       }
     };
     static constexpr Reader readers[] = {
+        {"", "encoding", nullptr},  // a reading choice, as the next two
+        {"", "sub_indices", nullptr},
+        {"", "access_types", nullptr},
         {"", "names", &StructuredOptions::names},
         {"", "string_capacity", &StructuredOptions::string_capacity},
         {"", "settable", &StructuredOptions::settable},
@@ -151,6 +157,12 @@ class StructuredOptions {
       options_.names[key] = v.get<std::string>();
       return true;
     });
+  }
+
+  void reading_choice(const ReadingChoiceRow& row) {
+    if (!value_.is_string() || !row.set(value_.get_ref<const std::string&>(), options_.reading)) {
+      error(fmt::format("expected {}", row.expected()).c_str());
+    }
   }
 
   void string_capacity(const json& value) {

@@ -37,7 +37,7 @@ std::optional<std::uint64_t> read_number_of_key(Numbering numbering, std::string
 }  // namespace
 
 Field make_field(const SourceFile& source, const IniEntry& entry) {
-  return {entry.value, value_position(source, entry), true};
+  return {value_of(source, entry), value_position(source, entry), true};
 }
 
 std::optional<std::uint32_t> match_key(const SectionKey& row, std::string_view key) {

@@ -69,11 +69,26 @@ SectionName with_index(SectionKind kind, std::string_view digits, std::uint16_t 
 
 SectionName malformed(std::string_view remark) { return {.kind = SectionKind::malformed, .remark = remark}; }
 
+constexpr std::size_t decimal_sub_index_digits = 3;
+
+std::optional<std::uint16_t> read_decimal_sub_index(std::string_view text) {
+  const bool has_digits =
+      !text.empty() && text.size() <= decimal_sub_index_digits && std::ranges::all_of(text, is_digit);
+  if (!has_digits) return std::nullopt;
+  std::uint16_t number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return number <= 0xFF ? std::optional{number} : std::nullopt;
+}
+
 /// `HHHHsubHH`.
-SectionName read_sub_object(std::string_view index_text, std::uint16_t index, std::string_view sub_index_text) {
-  const std::optional<std::uint16_t> sub_index = parse_hex(sub_index_text, sub_index_digits);
+SectionName read_sub_object(std::string_view index_text, std::uint16_t index, std::string_view sub_index_text,
+                            SubIndexNotation notation) {
+  const bool is_decimal = notation == SubIndexNotation::decimal;
+  const std::optional<std::uint16_t> sub_index =
+      is_decimal ? read_decimal_sub_index(sub_index_text) : parse_hex(sub_index_text, sub_index_digits);
   if (!sub_index) {
-    return malformed("a sub-index has one or two hexadecimal digits, FFh at most");
+    return malformed(is_decimal ? "with decimal sub-indices, a sub-index has one to three decimal digits, 255 at most"
+                                : "a sub-index has one or two hexadecimal digits, FFh at most");
   }
   SectionName result = with_index(SectionKind::sub_object, index_text, index);
   result.sub_index = static_cast<std::uint8_t>(*sub_index);
@@ -91,7 +106,7 @@ bool has_other_separator(std::string_view name) {
 }
 
 /// Names that begin with an index.
-std::optional<SectionName> read_object(std::string_view name) {
+std::optional<SectionName> read_object(std::string_view name, SubIndexNotation notation) {
   const auto digits_end = std::find_if_not(name.begin(), name.end(), is_hex_digit);
   const auto digits = static_cast<std::size_t>(digits_end - name.begin());
   if (digits == index_digits) {  // most names
@@ -100,11 +115,11 @@ std::optional<SectionName> read_object(std::string_view name) {
     if (rest.empty() || is_sub_object) {
       const std::uint16_t index = *parse_hex(name.substr(0, digits), index_digits);
       return rest.empty() ? with_index(SectionKind::object, name, index)
-                          : read_sub_object(name.substr(0, digits), index, rest.substr(sub.size()));
+                          : read_sub_object(name.substr(0, digits), index, rest.substr(sub.size()), notation);
     }
   }
   if (is_hexadecimal(name)) {
-    std::optional<SectionName> object = read_object(name.substr(2));
+    std::optional<SectionName> object = read_object(name.substr(2), notation);
     if (object && object->kind != SectionKind::malformed) object->remark = "an index is written without 0x";
     return object;
   }
@@ -116,7 +131,7 @@ std::optional<SectionName> read_object(std::string_view name) {
   if (digits > 0 && (rest.empty() || starts_with_ignoring_case(rest, sub))) {
     const std::string_view index_text = name.substr(0, digits);
     const std::optional<std::uint16_t> index = parse_hex(index_text, index_digits);
-    return index ? read_sub_object(index_text, *index, rest.substr(sub.size()))
+    return index ? read_sub_object(index_text, *index, rest.substr(sub.size()), notation)
                  : malformed("an index has four hexadecimal digits");
   }
   for (const SectionRow& row : section_rows) {
@@ -129,7 +144,7 @@ std::optional<SectionName> read_object(std::string_view name) {
 }
 
 /// The part after the module number.
-std::optional<SectionName> read_module_part(std::string_view rest) {
+std::optional<SectionName> read_module_part(std::string_view rest, SubIndexNotation notation) {
   if (const std::optional<SectionKind> kind = find_title(NameForm::module, rest)) return SectionName{.kind = *kind};
   for (const SectionRow& row : section_rows) {
     if (row.form == NameForm::module_index && take_prefix(rest, row.title)) {
@@ -137,7 +152,7 @@ std::optional<SectionName> read_module_part(std::string_view rest) {
       return index ? with_index(row.kind, rest, *index) : malformed("an index has four hexadecimal digits");
     }
     if (row.form == NameForm::module_object && take_prefix(rest, row.title)) {
-      std::optional<SectionName> object = read_object(rest);
+      std::optional<SectionName> object = read_object(rest, notation);
       if (object && object->kind != SectionKind::malformed) {
         object->part = object->kind;
         object->kind = row.kind;
@@ -149,7 +164,7 @@ std::optional<SectionName> read_module_part(std::string_view rest) {
 }
 
 /// `ToolX`, and names that begin with `MX`.
-std::optional<SectionName> read_numbered(std::string_view name) {
+std::optional<SectionName> read_numbered(std::string_view name, SubIndexNotation notation) {
   std::string_view rest = name;
   if (take_prefix(rest, title_of(SectionKind::tool))) {
     const std::optional<std::uint16_t> number = take_number(rest);
@@ -160,7 +175,7 @@ std::optional<SectionName> read_numbered(std::string_view name) {
     return std::nullopt;
   }
   const std::optional<std::uint16_t> number = take_number(rest);
-  std::optional<SectionName> part = number ? read_module_part(rest) : std::nullopt;
+  std::optional<SectionName> part = number ? read_module_part(rest, notation) : std::nullopt;
   if (part) {
     part->number = *number;
   }
@@ -185,12 +200,12 @@ bool is_known(SectionKind kind) { return find_section(kind) != nullptr; }
 
 bool is_single(SectionKind kind) { return has_form(kind, NameForm::title); }
 
-SectionName read_section_name(std::string_view name) {
-  if (const std::optional<SectionName> object = read_object(name)) {
+SectionName read_section_name(std::string_view name, SubIndexNotation notation) {
+  if (const std::optional<SectionName> object = read_object(name, notation)) {
     return *object;
   }
   if (const std::optional<SectionKind> kind = find_title(NameForm::title, name)) return {.kind = *kind};
-  return read_numbered(name).value_or(SectionName{});
+  return read_numbered(name, notation).value_or(SectionName{});
 }
 
 std::string spell_section_name(const SectionName& name) {

@@ -8,6 +8,7 @@
 
 #include "eds/data_sheet.hpp"
 #include "eds/ini.hpp"
+#include "text/reading_choices.hpp"
 
 namespace edsc {
 
@@ -41,7 +42,8 @@ struct NamedSection {
 [[nodiscard]] bool is_single(SectionKind kind);
 
 /// Ignores letter case.
-[[nodiscard]] SectionName read_section_name(std::string_view name);
+[[nodiscard]] SectionName read_section_name(std::string_view name,
+                                            SubIndexNotation notation = SubIndexNotation::hexadecimal);
 
 /// The name as CiA 306 spells it: `M1Fixed6000sub1`. Empty for unknown and malformed names.
 [[nodiscard]] std::string spell_section_name(const SectionName& name);

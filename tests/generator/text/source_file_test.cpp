@@ -101,6 +101,36 @@ INSTANTIATE_TEST_SUITE_P(Texts, CodePages,
                                          CodePageCase{"\x93quoted\x94", Encoding::cp1252, "“quoted”"},
                                          CodePageCase{"Drive\x99", Encoding::cp1252, "Drive™"}));
 
+TEST(SourceFile, DoesNotGuessUndefinedBytes) {
+  const SourceFile file("a.eds", "Name=\x83\x82\x81\x5B\x83\x5E\nValue=1\n");
+  EXPECT_EQ(file.encoding(), Encoding::unknown);
+  EXPECT_TRUE(file.is_encoding_guessed());
+  EXPECT_EQ(file.undefined_place(), 5U);
+  EXPECT_EQ(file.line(2), "Value=1");
+  EXPECT_EQ(undefined_bytes_text(file),
+            "bytes 83h 82h 81h are not ASCII, and the encoding is not known; the text is valid Shift-JIS");
+}
+
+TEST(SourceFile, IsReadAsThePersonSays) {
+  const SourceFile file("a.eds", "\x83\x82\x81\x5B\x83\x5E", Packing::none, {.encoding = Encoding::shift_jis});
+  EXPECT_EQ(file.encoding(), Encoding::shift_jis);
+  EXPECT_FALSE(file.is_encoding_guessed());
+  EXPECT_EQ(file.text(), "モータ");
+  EXPECT_TRUE(file.undefined_bytes().empty());
+}
+
+TEST(SourceFile, ReportsBytesThatTheChosenEncodingDoesNotDefine) {
+  const SourceFile file("a.eds", "a\x81\x30", Packing::none, {.encoding = Encoding::cp1252});
+  EXPECT_EQ(file.text(), "a\uFFFD0");
+  EXPECT_EQ(undefined_bytes_text(file), "bytes 81h are not defined in CP1252; the text is valid CP437 and CP1251");
+}
+
+TEST(SourceFile, HasAByteOrderMarkThatIsStrongerThanAChoice) {
+  const SourceFile file("a.eds", "\xEF\xBB\xBFä", Packing::none, {.encoding = Encoding::gb18030});
+  EXPECT_EQ(file.encoding(), Encoding::utf8);
+  EXPECT_EQ(file.text(), "ä");
+}
+
 TEST(SourceFile, KnowsAllLineEnds) {
   const SourceFile file("a.eds", "lf\ncr lf\r\ncr\r\rlast");
   ASSERT_EQ(file.lines(), 5U);
