@@ -1,12 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <iterator>
+#include <optional>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "commands/commands.hpp"
 #include "compare/compare_devices.hpp"
+#include "compare/compare_files.hpp"
 #include "compare/print_changes.hpp"
 #include "compare/stored_values.hpp"
 #include "load/load_device.hpp"
@@ -14,6 +20,7 @@
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/git_device.hpp"
+#include "system/path.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -44,14 +51,24 @@ struct Settings {
 struct Pair {
   std::unique_ptr<LoadedDevice> before;
   std::unique_ptr<LoadedDevice> after;
+  std::string path, revision;  ///< of a committed `before`: the new file and the git revision
   Changes changes;
   std::vector<StoredValueChange> stored_values;
 };
 
+/// The findings that leave a part of a device out of the comparison: errors, also as warnings by `--keep-going`.
+Diagnostics errors_of(const Diagnostics& diagnostics) {
+  Diagnostics errors;
+  for (const Diagnostic& one : diagnostics.all()) {
+    if (one.severity == Severity::error || one.rule.row().severity == Severity::error) errors.report(one);
+  }
+  return errors;
+}
+
 /// Null if the device cannot be compared; the errors are printed.
 std::unique_ptr<LoadedDevice> reported(std::unique_ptr<LoadedDevice> loaded, const Diagnostics& diagnostics,
                                        const Settings& settings) {
-  if (diagnostics.errors() > 0 || settings.keep_going) print_findings(stderr, diagnostics, settings.color);
+  print_findings(stderr, errors_of(diagnostics), settings.color);
   return loaded->device && diagnostics.errors() == 0 ? std::move(loaded) : nullptr;
 }
 
@@ -88,6 +105,8 @@ std::optional<std::vector<Pair>> load_pairs(const Settings& settings) {
   bool failed = false;
   for (const std::string& path : settings.files) {
     Pair pair;
+    pair.path = path;
+    pair.revision = revision;
     GitFile committed = read_git_file(revision, path);
     const bool is_new = committed.is_missing && settings.allow_new;
     if (committed.source) {
@@ -121,9 +140,27 @@ void check_files(const Settings& settings) {
   if (settings.against.empty() && settings.allow_new) throw_requires("--allow-new", "--against");
 }
 
+std::optional<std::string> read_bytes(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  std::ifstream file{path, std::ios::binary};
+  std::string bytes{std::istreambuf_iterator<char>{file}, {}};
+  return file.bad() ? std::nullopt : std::optional{std::move(bytes)};
+}
+
+/// Reads a file that an EDS names, beside the EDS or in the git revision of the EDS.
+std::optional<std::string> read_file_of(const Pair& pair, const Device& device, const std::string& name) {
+  const bool is_committed = pair.before && &device == &*pair.before->device && !pair.revision.empty();
+  const std::filesystem::path sheet = to_native(is_committed ? pair.path : device.source->name());
+  const std::filesystem::path file = sheet.parent_path() / to_native(name);
+  return is_committed ? read_git_bytes(pair.revision, from_native(file)) : read_bytes(file);
+}
+
 void compare(Pair& pair) {
   if (!pair.before) return;
   pair.changes = compare_devices(pair.before->named(), pair.after->named());
+  const auto read = [&](const Device& device, const std::string& name) { return read_file_of(pair, device, name); };
+  compare_files(*pair.before->device, *pair.after->device, read, pair.changes);
   pair.stored_values =
       compare_stored_values({*pair.before->device, pair.before->options}, {*pair.after->device, pair.after->options});
   add_lost_values(pair.stored_values, pair.changes);

@@ -27,7 +27,8 @@ inline constexpr Rule changes[] = {
     change("revision-unchanged", master, "major revision",
            "a breaking change requires a higher one in 1018h:03, bits 31..16; a master that checks it (1F88h) cannot "
            "tell the devices apart"),
-    change("revision-minor", none, "minor revision", "the CANopen behaviour is the same"),
+    change("revision-minor", none, "minor revision",
+           "the major revision, which counts changes of the CANopen behaviour, stays"),
     change("device-name", none, "device name", "it is for people, not for programs"),
     change("node-id", master | pdo, "node-ID", "the device uses other COB-IDs"),
     change("dummy-removed", master | source, "dummy mapping removed", "an RPDO mapping with this dummy is rejected"),
@@ -49,6 +50,7 @@ inline constexpr Rule changes[] = {
     change("limit-narrowed", master | source, "limit", "a value that was accepted is rejected"),
     change("limit-widened", none, "limit", "all values that were accepted still are"),
     change("limit-read-only", none, "limit", "the entry is not writable"),
+    change("domain-file", none, "file of a DOMAIN", "its bytes differ, its access is the same"),
     change("default-value", none, "default", "a master that configures what it needs is not affected"),
     change("service-cob-id", master, "CAN-ID", "the service uses another CAN-ID"),
     change("service-disabled", master, "bit 31 (does not exist) set",

@@ -237,8 +237,8 @@ bool is_overlay(const SourceFile& source) {
 }
 
 const Field& reading_choice(const OverlayHeader& header, const ReadingChoiceRow& row) {
-  const auto key = std::ranges::find(overlay_keys, row.key, [](const auto& one) { return one.name; });
-  return header.*key->member;
+  const auto key = std::ranges::find(overlay_keys, row.key, [](const auto& one) { return one.key.name; });
+  return header.*key->field;
 }
 
 OverlayFile read_overlay(const SourceFile& source, Diagnostics& diagnostics) {

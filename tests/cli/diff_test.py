@@ -48,6 +48,43 @@ class ExitCodes(CommandLine):
         self.expect(WRONG_USAGE, self.edsc("diff", self.old, "--against", "HEAD"), "expected git:REF, got HEAD")
 
 
+class Output(CommandLine):
+    def test_does_not_have_the_warnings_of_the_files(self) -> None:
+        text = SMALL + "[Strange]\na=1\n"
+        result = self.edsc("diff", self.write("old.eds", text), self.write("new.eds", text))
+        self.expect(FINE, result, "0 breaking, 0 compatible")
+        self.assertEqual(result.stderr, "")
+        broken = text.replace("DataType=6", "DataType=99")
+        result = self.edsc("diff", self.write("old.eds", broken), self.write("new.eds", text))
+        self.expect(WRONG_USAGE, result, "[data-type]")
+        self.assertNotIn("unknown-section", result.stderr)
+
+    def test_does_not_call_the_behaviour_the_same_beside_a_breaking_change(self) -> None:
+        old = SMALL.replace("[DeviceInfo]\n", "[DeviceInfo]\nRevisionNumber=0x10001\n", 1)
+        new = REDUCED.replace("[DeviceInfo]\n", "[DeviceInfo]\nRevisionNumber=0x10002\n", 1)
+        result = self.edsc("diff", self.write("old.eds", old), self.write("new.eds", new))
+        self.expect(INPUT_HAS_ERRORS, result, "[revision-minor]", "[revision-unchanged]")
+        self.assertNotIn("behaviour is the same", result.stdout)
+
+
+class DomainFiles(CommandLine):
+    TEXT = SMALL.replace("SupportedObjects=1\n1=0x1017", "SupportedObjects=2\n1=0x1017\n2=0x1021") + (
+        "[1021]\nParameterName=Store EDS\nObjectType=2\nDataType=0xF\nAccessType=rw\nUploadFile=NAME\n")
+
+    def sheets(self, old: str, new: str) -> tuple[Path, Path]:
+        return tuple(self.write(f"{name}.eds", self.TEXT.replace("NAME", file)) for name, file in (("old", old), ("new", new)))
+
+    def test_are_compared_by_content(self) -> None:
+        (self.folder / "a.bin").write_bytes(b"\0\1\2")
+        (self.folder / "b.bin").write_bytes(b"\0\1\2")
+        (self.folder / "c.bin").write_bytes(b"\0\1\3\4")
+        self.expect(FINE, self.edsc("diff", *self.sheets("a.bin", "b.bin")), "0 breaking, 0 compatible")
+        self.expect(FINE, self.edsc("diff", *self.sheets("a.bin", "c.bin")),
+                    "file of a DOMAIN UploadFile a.bin (3 bytes) becomes c.bin (4 bytes)", "[domain-file]")
+        self.expect(FINE, self.edsc("diff", *self.sheets("a.bin", "none.bin")), "a.bin (3 bytes) becomes none.bin: ")
+        self.expect(FINE, self.edsc("diff", *self.sheets("none.bin", "none.bin")), "0 breaking, 0 compatible")
+
+
 class KeepGoing(CommandLine):
     BROKEN = SMALL.replace("DataType=6", "DataType=99")
 
@@ -133,6 +170,16 @@ class Git(CommandLine):
         self.git("commit", "-q", "-a", "-m", "two")
         self.expect(FINE, self.against("HEAD", self.sheet))
         self.expect(INPUT_HAS_ERRORS, self.against("HEAD~1", self.sheet), "access-reduced")
+
+    def test_compares_the_file_of_a_domain_with_the_one_of_the_revision(self) -> None:
+        self.sheet.write_text(DomainFiles.TEXT.replace("NAME", "a.bin"))
+        content = self.folder / "eds/a.bin"
+        content.write_bytes(b"\x80\0\1")
+        self.git("add", ".")
+        self.git("commit", "-q", "-m", "domain")
+        self.expect(FINE, self.against("HEAD", self.sheet), "0 breaking, 0 compatible")
+        content.write_bytes(b"\x80\0\2")
+        self.expect(FINE, self.against("HEAD", self.sheet), "a.bin (3 bytes) becomes a.bin (3 bytes)", "[domain-file]")
 
     def test_works_in_a_subfolder_and_from_elsewhere(self) -> None:
         self.sheet.write_text(ADDED)
