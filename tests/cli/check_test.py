@@ -65,6 +65,28 @@ class CheckTest(unittest.TestCase):
                 self.assertLessEqual(named, rules)
 
 
+class UserProfile(CheckTest):
+    """A profile database in the syntax of an EDS."""
+    ROWS = "[2003]\nParameterName=Speed\nObjectType=7\nDataType=7\nAccessType=ro\n"
+
+    def check_with(self, rows: str) -> subprocess.CompletedProcess[str]:
+        (self.folder / "profile.eds").write_text(rows, encoding="utf-8")
+        return self.run_edsc("check", "--profile", "profile.eds", self.sheet())
+
+    def test_gives_rows_for_objects(self) -> None:
+        result = self.check_with(self.ROWS)
+        self.assertRegex(result.stdout, r"2003h:00 .* is VISIBLE_STRING; .*profile.eds requires UNSIGNED32 \[profile-data-type\]")
+
+    def test_is_for_the_devices_of_its_profile(self) -> None:
+        other = "[1000]\nParameterName=Type\nObjectType=7\nDataType=7\nAccessType=const\nDefaultValue=404\n"
+        self.assertNotIn("profile-", self.check_with(other + self.ROWS).stdout)
+
+    def test_without_objects_is_an_error(self) -> None:
+        result = self.check_with("[FileInfo]\n")
+        self.assertEqual(result.returncode, INPUT_HAS_ERRORS, result.stdout)
+        self.assertIn("the profile does not have an object from 2000h on [no-objects]", result.stdout)
+
+
 class Severities(CheckTest):
     def test_only_errors_fail(self) -> None:
         for changes, code in (((), FINE), ((NOTE,), FINE), ((NOTE, WARNING), FINE), ((ERROR,), INPUT_HAS_ERRORS)):
