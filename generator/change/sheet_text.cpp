@@ -33,7 +33,7 @@ SheetText::SheetText(const SourceFile& source) : source_(source) {
     const auto title = read_ini_header(text);
     if (!title) continue;
     if (!sections_.empty()) sections_.back().end = line;
-    const SectionName name = read_section_name(*title);
+    const SectionName name = read_section_name(*title, source.choices().sub_indices);
     const auto place = static_cast<std::uint32_t>(sections_.size());
     if (is_known(name.kind)) first_.try_emplace(identity(name), place);
     sections_.push_back({name, *title, line, source.lines() + 1});
@@ -41,7 +41,7 @@ SheetText::SheetText(const SourceFile& source) : source_(source) {
 }
 
 const TextSection* SheetText::find(std::string_view title, unsigned occurrence) const {
-  const SectionName name = read_section_name(title);
+  const SectionName name = read_section_name(title, source_.choices().sub_indices);
   const bool is_of_standard = is_known(name.kind);
   std::size_t place = 0;
   if (is_of_standard) {

@@ -25,7 +25,7 @@ struct LoadSettings {
   bool check = true;            ///< run the rules over the device
   bool keep_going = false;      ///< errors in the EDS become warnings; what is wrong is left out
   bool needs_reasons = false;   ///< report sections of an overlay without a reason
-  std::string profile_path;     ///< a profile database of the user; empty: none
+  std::string profile_path{};   ///< a profile database of the user; empty: none
 };
 
 /// A device and the files to which its positions point.

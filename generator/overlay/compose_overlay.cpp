@@ -74,7 +74,8 @@ class OverlayComposer {
     return file;
   }
 
-  /// The choices of the overlay, and those of the caller where it has none. An invalid one is reported with the overlay.
+  /// The choices of the overlay, and those of the caller where it has none. An invalid one is reported with the
+  /// overlay.
   [[nodiscard]] ReadingChoices choices_of(const OverlayFile& overlay) const {
     ReadingChoices choices = settings_.choices;
     for (const ReadingChoiceRow& row : reading_choice_rows()) {

@@ -29,8 +29,8 @@ struct ComposedOverlay {
 };
 
 struct ComposeSettings {
-  ReadBase read;               ///< empty: from the file system
-  bool needs_reasons = false;  ///< report sections of the outermost overlay without a reason
+  ReadBase read;                ///< empty: from the file system
+  bool needs_reasons = false;   ///< report sections of the outermost overlay without a reason
   ReadingChoices choices = {};  ///< of the bases, unless an overlay has other ones
 };
 

@@ -95,7 +95,10 @@ SourceFile::SourceFile(std::string name, std::string bytes, Packing packing, con
 
 SourceFile::SourceFile(std::string name, const std::vector<ComposedLine>& lines,
                        std::vector<std::shared_ptr<const SourceFile>> parts)
-    : name_(std::move(name)), encoding_(parts.back()->encoding_), choices_(parts.back()->choices_), parts_(std::move(parts)) {
+    : name_(std::move(name)),
+      encoding_(parts.back()->encoding_),
+      choices_(parts.back()->choices_),
+      parts_(std::move(parts)) {
   std::size_t size = 0;
   for (const ComposedLine& line : lines) size += line.text.size() + line.end.size();
   if (size > max_bytes) {

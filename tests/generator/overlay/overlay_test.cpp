@@ -250,7 +250,8 @@ TEST(Overlay, ReportsStaleLinesOfMissingParts) {
 }
 
 TEST(Overlay, ReportsObsoleteLines) {
-  EXPECT_EQ(composed_with("[2000]\nDataType=0x0004 => 0x0001\n").findings(), Findings{"overlay-obsolete x.overlay:5:10"});
+  EXPECT_EQ(composed_with("[2000]\nDataType=0x0004 => 0x0001\n").findings(),
+            Findings{"overlay-obsolete x.overlay:5:10"});
   EXPECT_EQ(composed_with("[2000]\nAccessType=rwr\n").findings(), Findings{"overlay-obsolete x.overlay:5:12"});
   EXPECT_EQ(composed_with("[2000]\nLowLimit=1 =>\n").findings(), Findings{"overlay-obsolete x.overlay:5:10"});
   EXPECT_EQ(composed_with("[3000]\nLowLimit=1 =>\n").findings(), Findings{"overlay-obsolete x.overlay:5:10"});
@@ -265,8 +266,10 @@ TEST(Overlay, ReportsAValueThatWouldOverrideUnnoticed) {
 TEST(Overlay, ReportsChangesWithoutEffect) {
   EXPECT_EQ(composed_with("[3000]\nRemove=1\n").findings(), Findings{"overlay-effect x.overlay:5:1"});
   EXPECT_EQ(composed_with("[3000]\nRename=3001\n").findings(), Findings{"overlay-effect x.overlay:5:1"});
-  EXPECT_EQ(composed_with("[3000-3FFF]\nAccessType=rwr => rww\n").findings(), Findings{"overlay-effect x.overlay:5:12"});
-  EXPECT_EQ(composed_with("[2000-5FFF]\nAccessType=rwr => rww\nCount=3\n").findings(), Findings{"overlay-effect x.overlay:6:7"});
+  EXPECT_EQ(composed_with("[3000-3FFF]\nAccessType=rwr => rww\n").findings(),
+            Findings{"overlay-effect x.overlay:5:12"});
+  EXPECT_EQ(composed_with("[2000-5FFF]\nAccessType=rwr => rww\nCount=3\n").findings(),
+            Findings{"overlay-effect x.overlay:6:7"});
 }
 
 TEST(Overlay, ReportsTwoChangesOfOneValue) {
@@ -283,7 +286,8 @@ TEST(Overlay, ReportsAMissingReasonOnlyIfItIsRequired) {
   EXPECT_EQ(composed_with(unexplained, true).findings(), Findings{"overlay-reason x.overlay:5:2"});
   EXPECT_EQ(composed_with("; seen in TPDO 1\n[6041]\nPDOMapping=0 => 1\n", true).findings(), Findings{});
   EXPECT_EQ(composed_with("[6041]\n; seen in TPDO 1\nPDOMapping=0 => 1\n", true).findings(), Findings{});
-  EXPECT_EQ(composed_with("[6041]\nPDOMapping=0 => 1\n; too late\n", true).findings(), Findings{"overlay-reason x.overlay:4:2"});
+  EXPECT_EQ(composed_with("[6041]\nPDOMapping=0 => 1\n; too late\n", true).findings(),
+            Findings{"overlay-reason x.overlay:4:2"});
 }
 
 TEST(Overlay, ReportsInvalidHeaders) {
@@ -351,7 +355,8 @@ std::string place_in(const SourceFile& text, const std::string& part, std::size_
 }
 
 TEST(Overlay, PointsToTheFileThatAValueComesFrom) {
-  const ComposedTexts result = composed_with("[DeviceInfo]\nBaudRate_800=1 =>\n[1018sub3]\nDefaultValue=0x01610000 => 23\n");
+  const ComposedTexts result =
+      composed_with("[DeviceInfo]\nBaudRate_800=1 =>\n[1018sub3]\nDefaultValue=0x01610000 => 23\n");
   const SourceFile& text = *result.composed.text;
   EXPECT_EQ(place_in(text, "=23", 1), "x.overlay:7:28");
   EXPECT_EQ(place_in(text, "DefaultValue=23"), "x.overlay:7:1");
