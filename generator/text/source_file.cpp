@@ -107,12 +107,24 @@ SourceFile::SourceFile(std::string name, const std::vector<ComposedLine>& lines,
   text_.reserve(size);
   starts_.reserve(lines.size() + 1);
   origins_.reserve(lines.size());
+  std::string_view run;  // of lines that follow each other in memory
+  std::size_t start = 0;
+  const auto append = [&](std::string_view part) {
+    start += part.size();
+    if (part.data() == run.data() + run.size()) {
+      run = {run.data(), run.size() + part.size()};
+      return;
+    }
+    text_ += run;
+    run = part;
+  };
   for (const ComposedLine& line : lines) {
-    starts_.push_back(static_cast<std::uint32_t>(text_.size()));
+    starts_.push_back(static_cast<std::uint32_t>(start));
     origins_.push_back(line.origin);
-    text_ += line.text;
-    text_ += line.end;
+    append(line.text);
+    if (!line.end.empty()) append(line.end);
   }
+  text_ += run;
   starts_.push_back(static_cast<std::uint32_t>(text_.size()));
 }
 
