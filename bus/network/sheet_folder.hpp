@@ -17,9 +17,9 @@ struct SheetFile {
   std::optional<std::uint8_t> node_id;  ///< of a DCF
   std::string node_name;                ///< of a DCF
   Identity identity;
-  bool has_heartbeat = false;      ///< 1017h can be written
-  std::uint32_t heartbeat_ms = 0;  ///< default value of 1017h
-  std::vector<std::string> bases;  ///< of an overlay
+  bool has_heartbeat = false;        ///< 1017h can be written
+  std::uint32_t heartbeat_ms = 0;    ///< default value of 1017h
+  std::vector<std::string> bases{};  ///< of an overlay
 };
 
 struct SheetFolder {
