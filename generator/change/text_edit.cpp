@@ -85,6 +85,11 @@ struct RawLine {
 
 constexpr std::array<std::string_view, 3> byte_order_marks = {"\xEF\xBB\xBF", "\xFF\xFE", "\xFE\xFF"};
 
+bool has_several_bytes(Encoding encoding) {
+  return encoding == Encoding::shift_jis || encoding == Encoding::gb18030 || encoding == Encoding::big5 ||
+         encoding == Encoding::cp949;
+}
+
 bool is_utf16(Encoding encoding) { return encoding == Encoding::utf16_le || encoding == Encoding::utf16_be; }
 
 /// Splits bytes at LF, CR LF and CR, as SourceFile splits their text.
@@ -110,12 +115,21 @@ std::vector<RawLine> raw_lines(std::string_view bytes, Encoding encoding) {
   return lines;
 }
 
-/// The byte of a code page for a character; nothing if it does not have one.
-std::optional<char> byte_in(Encoding encoding, std::string_view character) {
-  for (unsigned byte = 0x80; byte < 0x100; ++byte) {
-    const auto c = static_cast<char>(static_cast<unsigned char>(byte));
-    const std::string_view one{&c, 1};
-    if ((encoding == Encoding::cp1252 ? from_cp1252(one) : from_cp437(one)) == character) return c;
+/// The bytes of a character in a code page, one or two; nothing if it does not have them.
+std::optional<std::string> bytes_in(Encoding encoding, std::string_view character) {
+  const auto is_character = [&](std::string_view bytes) {
+    const DecodedText decoded = decode_text(bytes, encoding);
+    return decoded.is_valid() && decoded.text == character;
+  };
+  for (unsigned first = 0x80; first < 0x100; ++first) {
+    std::string bytes(1, static_cast<char>(static_cast<unsigned char>(first)));
+    if (is_character(bytes)) return bytes;
+    if (!has_several_bytes(encoding)) continue;
+    bytes += ' ';
+    for (unsigned second = 0x30; second < 0x100; ++second) {
+      bytes[1] = static_cast<char>(static_cast<unsigned char>(second));
+      if (is_character(bytes)) return bytes;
+    }
   }
   return std::nullopt;
 }
@@ -151,10 +165,10 @@ class TextEncoder {
         out += character;
         continue;
       }
-      const bool has_code_page = encoding_ == Encoding::cp1252 || encoding_ == Encoding::cp437;
-      const auto byte = has_code_page ? byte_in(encoding_, character) : std::nullopt;
-      if (byte) {
-        out += *byte;
+      const bool has_code_page = encoding_ != Encoding::ascii && encoding_ != Encoding::unknown;
+      const auto bytes = has_code_page ? bytes_in(encoding_, character) : std::nullopt;
+      if (bytes) {
+        out += *bytes;
       } else if (error_.empty()) {
         error_ = fmt::format("the encoding of the file, {}, does not have the character {}{}", to_string(encoding_),
                              character, encoding_ == Encoding::ascii ? "; --utf8 writes UTF-8" : "");

@@ -42,7 +42,10 @@ std::optional<std::uint64_t> parse_unsigned(std::string_view text) {
 }
 
 std::optional<std::uint64_t> parse_h_suffix(std::string_view text) {
-  if (text.size() < 2 || !is_digit(text.front()) || to_lower(text.back()) != 'h') return std::nullopt;
+  // A word such as `beach` is not a number, `FFh` is.
+  const bool has_digit =
+      !text.empty() && (is_digit(text.front()) || (is_hex_digit(text.front()) && !is_lower(text.front())));
+  if (text.size() < 2 || !has_digit || to_lower(text.back()) != 'h') return std::nullopt;
   std::string digits{"0x"};
   for (const char c : text.substr(0, text.size() - 1)) {
     if (!is_blank(c)) digits += c;

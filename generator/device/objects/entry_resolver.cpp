@@ -268,7 +268,7 @@ Access EntryResolver::access(const EntryDescription& description, const EntryPla
     diagnostics_.warning(
         "access-type", field.position,
         fmt::format("reading the AccessType {} as {}", quote(text), canopen::row_of(letter->access).name), {},
-        std::string{letter->letter});
+        "letter");
     diagnostics_.offer_value("access-type", field.position, std::string{canopen::row_of(letter->access).name},
                              fmt::format("{} means {}", quote(text), canopen::row_of(letter->access).name));
     return letter->access;

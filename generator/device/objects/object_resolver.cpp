@@ -46,13 +46,17 @@ std::string_view implied_count_clause(std::uint16_t index) {
   return index < 0x1A00 ? "7.5.2.36" : "7.5.2.38";
 }
 
-/// The object code of an object with sub-objects, and where it comes from.
-std::pair<std::string, std::string> object_code_for(std::uint16_t index) {
+struct ObjectCode {
+  std::string text;
+  std::string reason;
+};
+
+/// The object code of an object of CiA 301 with sub-objects. That of another object may be ARRAY or RECORD.
+std::optional<ObjectCode> standard_object_code(std::uint16_t index) {
   const StandardObject* const standard = find_standard_object(index);
-  const bool is_array = standard != nullptr && standard->type == ObjectType::array;
-  return {is_array ? "0x8" : "0x9",
-          standard == nullptr ? fmt::format("{} has sub-objects", index_label(index))
-                              : fmt::format("object code of {} (CiA 301, {})", index_label(index), standard->clause)};
+  if (standard == nullptr || standard->type == ObjectType::var) return std::nullopt;
+  return ObjectCode{fmt::format("0x{:X}", static_cast<unsigned>(standard->type)),
+                    fmt::format("object code of {} (CiA 301, {})", index_label(index), standard->clause)};
 }
 
 /// Whether a VAR or DOMAIN with sub-objects is a value, and the index of the sub-objects is wrong: it has its own data
@@ -107,8 +111,9 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
     if (has_subs) {
       diagnostics_.warning("object-type", description.position,
                            "missing ObjectType of an object with sub-objects; assuming RECORD", {}, "missing");
-      const auto [type_text, reason] = object_code_for(description.index);
-      diagnostics_.offer_key("object-type", description.position, "ObjectType", type_text, reason);
+      if (const auto code = standard_object_code(description.index)) {
+        diagnostics_.offer_key("object-type", description.position, "ObjectType", code->text, code->reason);
+      }
     }
     return fallback;
   }
@@ -140,8 +145,9 @@ ObjectType ObjectResolver::object_type(const ObjectDescription& description) {
   diagnostics_.warning("object-type", field.position,
                        fmt::format("a {} cannot have sub-objects; assuming RECORD", to_string(*known)), {},
                        fmt::format("{} with sub-objects", to_string(*known)));
-  const auto [code_text, reason] = object_code_for(description.index);
-  diagnostics_.offer_value("object-type", field.position, code_text, reason);
+  if (const auto standard = standard_object_code(description.index)) {
+    diagnostics_.offer_value("object-type", field.position, standard->text, standard->reason);
+  }
   return ObjectType::record;
 }
 
@@ -225,8 +231,9 @@ void ObjectResolver::check_sub_indices(const ObjectDescription& description) {
   if (count != nullptr && number_of(count->default_value) == as_decimal) {
     diagnostics_.error(
         "sub-index-base", written->position,
-        fmt::format("{}; those of this object are decimal, for sub-index 0 is {}", hexadecimal, as_decimal), {},
-        "decimal");
+        fmt::format("{}; those of this object are decimal, for sub-index 0 is {}; the option sub_indices reads them so",
+                    hexadecimal, as_decimal),
+        {}, "decimal");
     diagnostics_.offer_value("sub-index-base", {description.position.file}, "decimal",
                              "sub-index 0 states the highest sub-index as a decimal number");
   } else {

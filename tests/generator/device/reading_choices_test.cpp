@@ -61,7 +61,7 @@ TEST(ReadingChoices, RejectASubIndexThatIsNotDecimal) {
   EXPECT_EQ(device.finding("section-name").message,
             "\"2022subA\" is not a valid section name: with decimal sub-indices, a sub-index has one to three decimal "
             "digits, 255 at most");
-  EXPECT_EQ(findings(device.diagnostics, "section-name").size(), 2U);
+  EXPECT_EQ(device.finding("section-name").places, 2U);
 }
 
 TEST(ReadingChoices, ExchangeTheAccessTypes) {

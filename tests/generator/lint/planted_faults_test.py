@@ -170,7 +170,7 @@ SYSTEMATIC: list[tuple[str, str, Change]] = [
     ("no node-ID in CAN-IDs of RPDOs", "cob-id-node-id",
      each(r"^(DefaultValue=)\$NODEID\+0x([2345]00)$", r"\g<1>0x\2")),
     ("access types as letters", "access-type",
-     each(r"^AccessType=(ro|rw|wo|const)$", lambda at: "AccessType=" + {"ro": "R", "rw": "RW", "wo": "W"}.get(at[1], "ro"))),
+     each(r"^AccessType=(ro|rw|wo|const)$", lambda at: "AccessType=" + {"ro": "R", "rw": "R/W", "wo": "W"}.get(at[1], at[1]))),
     ("no lists of objects", "object-not-listed", each(r"^\[(?:Optional|Manufacturer)Objects\]\n(?:[^\[\n].*\n|\n)*", "")),
     ("no SubNumber fits", "sub-number", each(r"^SubNumber=(\d+)$", lambda at: f"SubNumber={int(at[1]) - 1}")),
     ("no object codes", "object-type", each(r"^ObjectType=.*\n", "")),

@@ -19,9 +19,10 @@ struct ComposedTexts {
 
   ComposedTexts(const std::map<std::string, std::string>& files, std::string overlay, bool needs_reasons = false) {
     ComposeSettings settings;
-    settings.read = [&files](const std::string& path, std::string& error) -> std::unique_ptr<SourceFile> {
+    settings.read = [&files](const std::string& path, const ReadingChoices& choices,
+                             std::string& error) -> std::unique_ptr<SourceFile> {
       const auto file = files.find(path);
-      if (file != files.end()) return std::make_unique<SourceFile>(path, file->second);
+      if (file != files.end()) return std::make_unique<SourceFile>(path, file->second, Packing::none, choices);
       error = "cannot read " + path;
       return nullptr;
     };
