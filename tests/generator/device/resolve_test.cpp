@@ -98,11 +98,13 @@ TEST(Resolve, AssumesTheAccessTypeOfCia301) {
 }
 
 TEST(Resolve, ReadsTheLettersOfAnAccessTypeWithAWarning) {
-  const DeviceFromText text(var("2000", "Value", "5", "R") + var("2001", "Command", "5", "w"));
+  const DeviceFromText text(var("2000", "Value", "5", "R") + var("2001", "Command", "5", "w") +
+                            var("2002", "Setting", "5", "R/W"));
   EXPECT_EQ(text.entry(0x2000).access, Access::ro);
   EXPECT_EQ(text.entry(0x2001).access, Access::wo);
-  EXPECT_EQ(findings(text.diagnostics, "access-type"),
-            (std::vector{warning_at(5, 12, "access-type"), warning_at(10, 12, "access-type")}));
+  EXPECT_EQ(text.entry(0x2002).access, Access::rw);
+  EXPECT_EQ(findings(text.diagnostics, "access-type"), (std::vector{warning_at(5, 12, "access-type")}));
+  EXPECT_EQ(text.finding("access-type").places, 3U);
 }
 
 TEST(Resolve, TakesAMissingPdoMappingForNone) {
