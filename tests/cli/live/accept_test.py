@@ -114,6 +114,29 @@ class Accept(unittest.TestCase):
             self.assertEqual(len(found), int(suites.get("failures" if name == "failure" else name)), name)
         return suites
 
+    def test_an_overlay_has_what_the_eds_has_wrong(self) -> None:
+        self.start_slave()
+        first = self.accept("--json", "before.json", "--only", "1.0", timeout_ms=SILENCE_MS)
+        self.assertTrue((self.folder / "before.json").is_file(), first.stdout + first.stderr)
+        before = json.loads((self.folder / "before.json").read_text(encoding="utf-8"))["comparison"]["differences"]
+        corrections = [one for difference in before if difference["mark"] == "eds_wrong" for one in difference["corrections"]]
+        self.assertGreaterEqual(len(corrections), 5)
+        made = subprocess.run([EDSC, "overlay", "from-bus", self.address, "5", "planted.eds", "-o", "planted.overlay",
+                               "--timeout", str(SILENCE_MS)], cwd=self.folder, capture_output=True, text=True, timeout=1200)
+        self.assertEqual(made.returncode, 0, made.stdout + made.stderr)
+        text = (self.folder / "planted.overlay").read_text(encoding="utf-8")
+        self.assertIn("Base=planted.eds\n", text)
+        for one in corrections:
+            self.assertIn(f"[{one['section']}]\n", text)
+            self.assertRegex(text, rf"; .*\(605#40[0-9A-F]{{14}}( [0-9A-F]{{3}}#[0-9A-F]*)*( \.\.\.)?\)\n(?:[^;\[].*\n)*"
+                                   rf"{re.escape(one['key'])}=.*{re.escape(one['new'])}\n")
+        (self.folder / "planted.eds").rename(self.folder / "base.eds")
+        overlay = text.replace("Base=planted.eds", "Base=base.eds")
+        (self.folder / "planted.eds").write_text(overlay, encoding="utf-8")
+        self.accept("--json", "report.json", "--only", "1.0", timeout_ms=SILENCE_MS)
+        left = [one for one in self.report()["comparison"]["differences"] if one["mark"] == "eds_wrong"]
+        self.assertEqual(left, [])
+
     def test_each_planted_difference_has_its_mark(self) -> None:
         self.start_slave()
         result = self.accept("-o", "report.html", "--json", "report.json", "--junit", "report.xml", "--only", "2.1", "--title",
