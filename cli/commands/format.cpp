@@ -182,7 +182,8 @@ ReadingChoices choices_for(const Settings& settings, ReadingChoices choices) {
 void check_conversion(const Settings& settings, const Input& input, const std::string& path) {
   const SourceFile& file = *input.file;
   if (!file.undefined_bytes().empty() && !settings.check) {
-    fail(fmt::format("{}: {}; nothing is converted: --encoding names the encoding", path, undefined_bytes_text(file)));
+    fail(fmt::format("{}: {}; nothing is converted: --encoding names the encoding", path, undefined_bytes_text(file)),
+         exit_input_has_errors);
   }
   const bool replaces = settings.in_place || (!settings.output.empty() && is_file_of(file, settings.output));
   if (!replaces) return;
@@ -190,7 +191,8 @@ void check_conversion(const Settings& settings, const Input& input, const std::s
     fail(
         fmt::format("{}: the encoding of the file is not known; {} is the most likely one. A file is not replaced by a "
                     "guess: --encoding names its encoding, or -o another file",
-                    path, to_string(file.encoding())));
+                    path, to_string(file.encoding())),
+        exit_input_has_errors);
   }
   if (settings.keep_going) fail(path + ": with --keep-going a file is not replaced; name another file with -o");
   if (input.of_options.choices != ReadingChoices{}) {

@@ -106,7 +106,7 @@ class OtherBytes(CommandLine):
                 with self.subTest(encoding=encoding, place=place):
                     sheet = self.sheet("a.eds", SMALL.encode() + f"; {text}\n".encode(encoding))
                     before = sheet.read_bytes()
-                    self.expect(WRONG_USAGE, self.edsc("format", sheet, *place), "--encoding names")
+                    self.expect(INPUT_HAS_ERRORS, self.edsc("format", sheet, *place), "--encoding names")
                     self.assertEqual(sheet.read_bytes(), before)
             with self.subTest(encoding=encoding):
                 sheet = self.sheet("a.eds", SMALL.encode() + f"; {text}\n".encode(encoding))

@@ -80,6 +80,12 @@ class EveryCommand(ReferenceDevices):
                 self.run_command("diff", sheet, f"{device}.dcf", "--node-id", 5, exit_codes=(FINE, FAILED))
                 self.run_command("diff", sheet, SOURCE_DIR / "eds/rk5c.eds", "--storage", "--format", "markdown",
                                  exit_codes=(FINE, FAILED))
+                (self.folder / f"{device}.eds").write_text(sheet.read_text(encoding="utf-8").replace("BaudRate_10=1", "BaudRate_10=0"),
+                                                           encoding="utf-8")
+                self.run_command("overlay from", sheet, f"{device}.eds", "-o", f"{device}.overlay")
+                self.run_command("overlay apply", f"{device}.overlay", "-o", f"applied-{device}.eds")
+                self.run_command("overlay rebase", f"{device}.overlay", sheet, "-o", f"rebased-{device}.overlay")
+                self.run_command("check", f"{device}.overlay", exit_codes=(FINE, FAILED))
                 self.run_command("document", sheet, "-o", f"{device}.html")
                 self.run_command("document", f"{device}.dcf", "--against", sheet, "-o", f"{device}.md")
 
@@ -125,6 +131,7 @@ class EveryCommand(ReferenceDevices):
                 self.on_bus("configure", node_id, f"saved-{device}.dcf", "--all", exit_codes=(FINE, FAILED))
                 self.on_bus("conform", node_id, sheet, "--level", "read", "--html", f"{device}.html", "--junit",
                             f"{device}.xml", exit_codes=(FINE, FAILED))
+                self.on_bus("overlay from-bus", node_id, sheet, "-o", f"bus-{device}.overlay", exit_codes=(FINE, FAILED))
                 self.on_bus("accept", node_id, sheet, "-o", f"accept-{device}.html", "--json", f"accept-{device}.json", "--junit",
                             f"accept-{device}.xml", "--only", "4.*", exit_codes=(FINE, FAILED))
         self.on_bus("nmt", "start", "all")
