@@ -159,11 +159,16 @@ async function texts(page, [file, ...selectors]) {
 async function meaning(page, [file, id]) {
   const seen = watch(page);
   await open(page, file);
+  // Text that is not rendered yet is empty: what the browser skips is shown, and the next frame is waited for.
+  await page.evaluate((object) => {
+    for (const one of document.querySelectorAll('.chunk')) one.style.contentVisibility = 'visible';
+    for (const one of document.querySelectorAll(`details[id="${object}"], section[id="${object}"] details`)) one.open = true;
+    return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  }, id);
   return { seen, tables: await page.evaluate((object) => {
     const textOf = (one) => one.innerText.trim();
     const rowOf = (row) => [...row.cells].map((cell) => cell.closest('.bits') && cell.localName === 'td'
       ? [cell.textContent, cell.colSpan, cell.classList[0]] : textOf(cell));
-    for (const one of document.querySelectorAll(`details[id="${object}"], section[id="${object}"] details`)) one.open = true;
     return [...document.querySelectorAll(`[id="${object}"] table, section[id="${object}"] table`)].map(
       (table) => [table.caption ? textOf(table.caption) : '', ...[...table.rows].map(rowOf)]);
   }, id) };
