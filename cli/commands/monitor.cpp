@@ -10,6 +10,7 @@
 #include "online/live_bus.hpp"
 #include "server/listen_address.hpp"
 #include "shared/common_options.hpp"
+#include "shared/default_scales.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_device.hpp"

@@ -9,6 +9,7 @@
 #include "device/entry_text.hpp"
 #include "online/live_bus.hpp"
 #include "shared/common_options.hpp"
+#include "shared/default_scales.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_device.hpp"

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
-#include <set>
 #include <string>
 
 #include "lookup/find_entry.hpp"
@@ -113,19 +112,6 @@ bool report_live_scales(LiveScales& scales) {
   const std::string failure = scales.take_failure();
   if (!failure.empty()) print_visibly(stderr, "edsc: {}; values in its unit are raw numbers\n", failure);
   return failure.empty();
-}
-
-void report_default_scales(std::uint8_t node, const Device& device) {
-  std::set<std::string> sources;
-  for (const Object& object : device.objects) {
-    for (const Entry& entry : object.entries) {
-      const bool can_change = entry.meaning && entry.meaning->quantity && !entry.meaning->quantity->stated_by.empty();
-      if (can_change) sources.insert(entry.meaning->quantity->text);
-    }
-  }
-  for (const std::string& source : sources) {
-    print_visibly(stderr, "edsc: node {}: units {} in the EDS\n", node, source);
-  }
 }
 
 bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes, std::string& problem) {

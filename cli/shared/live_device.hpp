@@ -42,9 +42,6 @@ void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome);
 /// not be read. Returns whether all could be read.
 bool report_live_scales(LiveScales& scales);
 
-/// Reports that units and scales are those of the default values of the EDS, if the node can have others.
-void report_default_scales(std::uint8_t node, const Device& device);
-
 /// Reads the bytes of a file; returns false with the reason if it cannot be read.
 [[nodiscard]] bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes, std::string& problem);
 

@@ -8,8 +8,8 @@
 #include "decode/formats/log_formats.hpp"
 #include "eds/number.hpp"
 #include "pdo/mapping_fault.hpp"
+#include "shared/default_scales.hpp"
 #include "shared/exit_code.hpp"
-#include "shared/live_device.hpp"
 #include "system/input_file.hpp"
 #include "system/waiting_signals.hpp"
 

@@ -194,7 +194,7 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
                                     [("error", "network-value"), ("warning", "network-unmonitored")]),
     "two_consumers_for_a_node": (network(a={**NODE_A, "set": {"1016h:01": "0x200C8", "1016h:02": "0x200FA"}}),
                                  [("warning", "heartbeat-consumer")]),
-    "more_objects_than_a_mapping_has": (network(a={**NODE_A, "set": {"1A00h:00": 5}}), [("warning", "pdo-mapping-gap")]),
+    "more_objects_than_a_mapping_has": (network(a={**NODE_A, "set": {"1A00h:00": 5}}), [("warning", "pdo-mapping-count")]),
     "synchronous_without_1005h": (network(signal("w", "2001h", "m", every_sync=1), w=wide(9)), [("warning", "pdo-sync")]),
     "254_entries_of_a_node": (network(*[signal("w", one, "m", every_ms=100) for one in bytes_of_wide(254)], w=wide(9)), []),
     "255_entries_of_a_node": (network(*[signal("w", one, "m", every_ms=100) for one in bytes_of_wide(255)], w=wide(9)),
