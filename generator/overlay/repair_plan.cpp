@@ -66,6 +66,8 @@ bool RepairPlan::add_value(const Remedy& remedy) {
     change.old_text = strip_inline_comment(entry->value);
   } else if (change.key.empty()) {
     return false;
+  } else if (const auto existing = text.find_entry(section, change.key)) {
+    change.old_text = existing->value;  // without a number: empty, or only a comment
   }
   const auto [place, is_new] = places_.try_emplace({change.section, change.key}, changes_.size());
   if (is_new) {

@@ -107,6 +107,18 @@ class Repair(unittest.TestCase):
         (elements,) = (one for one in self.dump(overlay)["objects"] if one["index"] == 0x2FF0)
         self.assertEqual([entry["sub_index"] for entry in elements["entries"]], list(range(13)))
 
+    def test_gives_a_value_to_a_key_without_one(self) -> None:
+        text = (SOURCE_DIR / "eds/can-2017c.eds").read_text(encoding="utf-8")
+        planted = re.sub(r"(\[1018sub0\]\n(?:[^\[\n].*\n)*?DataType=).*", r"\g<1># of the count", text)
+        self.assertNotEqual(planted, text)
+        (self.folder / "right").mkdir()
+        right, wrong, overlay = (self.folder / name for name in ("right/device.eds", "device.eds", "device.overlay"))
+        right.write_text(text, encoding="utf-8")
+        wrong.write_text(planted, encoding="utf-8")
+        ran = self.edsc("check", wrong, "--repair", "-o", overlay, env=NO_COMPILER)
+        self.assertNotIn("overlay-", ran.stdout)
+        self.assertEqual(self.dump(right), self.dump(overlay))
+
     def test_gives_a_reason_for_each_line(self) -> None:
         _, wrong = self.plant("node-ID 1 in each CAN-ID", "can-2017c.eds")
         overlay = self.folder / "device.overlay"
