@@ -147,7 +147,11 @@ int check_and_repair(const Settings& settings) {
   if (settings.paths.size() != 1) fail("--repair repairs one file");
   if (settings.format != "text")
     fail("--repair writes text; edsc check --format " + settings.format + " FILE.overlay checks the result");
-  return repair({settings.paths.front(), settings.options_path, settings.output, settings.node_id, settings.color});
+  if (settings.strict || settings.keep_going || settings.all || !settings.profile.empty()) {
+    fail("--strict, --keep-going, --all and --profile are for a check; check the overlay that --repair writes");
+  }
+  return repair({settings.paths.front(), settings.options_path, settings.output, settings.node_id, settings.silence,
+                 settings.color});
 }
 
 int check(const Settings& settings) {

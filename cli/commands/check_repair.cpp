@@ -10,6 +10,7 @@
 #include "load/load_device.hpp"
 #include "overlay/repair_plan.hpp"
 #include "overlay/write_overlay.hpp"
+#include "rules/check_rules.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/output.hpp"
 #include "system/path.hpp"
@@ -57,6 +58,7 @@ class Rounds {
   void add(const std::string& path) {
     Checked& one = *all_.emplace_back(std::make_unique<Checked>());
     one.findings.collect_remedies();
+    for (const std::string& rule : settings_.silence) one.findings.silence(*find_rule(check_rules, rule));
     one.loaded = load_device({path, settings_.options_path, "", settings_.node_id}, one.findings);
   }
 

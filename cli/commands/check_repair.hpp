@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "shared/common_options.hpp"
 
@@ -14,6 +15,7 @@ struct RepairSettings {
   std::string options_path;  ///< of its options; empty: beside it
   std::string output;        ///< of the overlay
   std::optional<std::uint8_t> node_id;
+  std::vector<std::string> silence;  ///< rules whose findings are not repaired
   ColorOption color;
 };
 

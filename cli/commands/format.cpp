@@ -216,7 +216,8 @@ int format_file(const Settings& settings, const std::string& path) {
     if (settings.check || settings.in_place) {
       fail(path + ": an overlay does not have a canonical form; -o FILE writes the EDS or DCF that it results in");
     }
-    ComposedOverlay composed = compose_overlay(input.file, {}, diagnostics);
+    ComposedOverlay composed =
+        compose_overlay(input.file, {{}, false, choices_for(settings, input.of_options.choices)}, diagnostics);
     input.source = std::move(composed.text);
     if (!input.source) {
       print_findings(stderr, diagnostics, settings.color);

@@ -125,18 +125,31 @@ std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnost
   read_options_file(own_options, *loaded, diagnostics);
   loaded->source = read_or_report(settings.path, loaded->options.reading, *loaded, diagnostics);
   if (loaded->unreadable) return loaded;
+  if (loaded->options.reading.encoding && is_overlay(*loaded->source)) {
+    // The choice is for the base.
+    loaded->source = read_or_report(settings.path, {}, *loaded, diagnostics);
+    if (loaded->unreadable) return loaded;
+  }
   const std::shared_ptr<const SourceFile> given = loaded->source;
+  const Diagnostics without_overlay = diagnostics;
   const auto apply = [&] {
     return apply_overlays(*loaded, {{}, settings.needs_reasons, loaded->options.reading}, diagnostics);
   };
   if (!apply()) return loaded;
   if (own_options.empty() && !loaded->parts.empty()) {
-    read_options_file(options_path_of(settings, *loaded), *loaded, diagnostics);
-    if (loaded->unreadable) return loaded;
-    if (loaded->options.reading != ReadingChoices{}) {
+    const std::string of_base = options_path_of(settings, *loaded);
+    Diagnostics of_options;
+    LoadedDevice peek;
+    read_options_file(of_base, peek, of_options);
+    if (peek.options.reading != ReadingChoices{}) {
+      // The base is read again: findings of the first reading point to files that are gone then.
+      diagnostics = without_overlay;
       loaded->source = given;
+      loaded->options.reading = peek.options.reading;
       if (!apply()) return loaded;
     }
+    read_options_file(of_base, *loaded, diagnostics);
+    if (loaded->unreadable) return loaded;
   }
   if (settings.keep_going) diagnostics.keep_going(loaded->source.get());
   if (settings.check && !settings.profile_path.empty()) {

@@ -54,6 +54,24 @@ class Commands(Overlay):
         self.assertEqual(heartbeat["name"], "Heartbeat")
         self.assertEqual((heartbeat["file"], heartbeat["line"]), ("small.eds", SMALL.split("\n").index("[1017]") + 1))
 
+    def test_read_a_base_as_its_options_say(self) -> None:
+        """The encoding is that of the base, not of the overlay. The options are found beside the base, or the overlay has the key."""
+        base = SMALL.replace("[1017]\nParameterName=", "[1017]\nParameterName=ハートビート ")
+        self.assertNotEqual(base, SMALL)
+        (self.folder / "small.eds").write_bytes(base.encode("shift-jis"))
+        wrong = "; für\n[1017]\nDataType=9 => 7\n"
+        for options, key in (("small.options.json", ""), ("x.options.json", ""), (None, "Encoding=Shift-JIS\n")):
+            with self.subTest(options=options):
+                for name in ("small.options.json", "x.options.json"):
+                    (self.folder / name).unlink(missing_ok=True)
+                if options:
+                    self.write(options, '{"encoding": "Shift-JIS"}')
+                self.write("x.overlay", HEADER + key + "[1018sub1]\nAccessType=ro => const\n")
+                self.assertTrue(self.heartbeat("x.overlay")["name"].startswith("ハートビート "))
+                self.write("x.overlay", HEADER + key + wrong)
+                found = self.run_edsc("check", "x.overlay").stdout
+                self.assertEqual((found.count("[overlay-stale]"), found.count("für [overlay-stale]")), (1, 1), found)
+
     def test_findings_point_to_the_file_of_the_value(self) -> None:
         self.write("x.overlay", HEADER + "[1017]\nDataType=6 => 99\n[1018sub1]\nDataType=7 =>\n")
         found = json.loads(self.run_edsc("check", "x.overlay", "--format", "json").stdout)["diagnostics"]

@@ -152,6 +152,24 @@ class Repair(unittest.TestCase):
         self.assertIn("no finding has a certain remedy", ran.stdout)
         self.assertFalse((self.folder / "x.overlay").exists())
 
+    def test_does_not_repair_what_is_silenced(self) -> None:
+        _, wrong = self.plant("no SubNumber fits", "rk5c.eds")
+        ran = self.edsc("check", wrong, "--repair", "-o", self.folder / "x.overlay", "--silence", "sub-number", env=NO_COMPILER)
+        self.assertIn("no finding has a certain remedy", ran.stdout)
+        self.assertEqual(self.edsc("check", wrong, "--repair", "-o", self.folder / "x.overlay", "--strict").returncode, 2)
+
+    def test_repairs_an_xdd(self) -> None:
+        text = (SOURCE_DIR / "tests/fixtures/drive.xdd").read_text(encoding="utf-8")
+        planted = re.sub(r'subNumber="(\d+)"', lambda at: f'subNumber="{int(at[1]) - 1}"', text)
+        self.assertNotEqual(planted, text)
+        (self.folder / "right").mkdir()
+        right, wrong, overlay = (self.folder / name for name in ("right/device.xdd", "device.xdd", "device.overlay"))
+        right.write_text(text, encoding="utf-8")
+        wrong.write_text(planted, encoding="utf-8")
+        self.edsc("check", wrong, "--repair", "-o", overlay, env=NO_COMPILER)
+        self.assertIn("Base=device.xdd\n", overlay.read_text(encoding="utf-8"))
+        self.assertEqual(self.dump(right)["objects"], self.dump(overlay)["objects"])
+
     def test_needs_a_file_to_write(self) -> None:
         ran = self.edsc("check", SOURCE_DIR / "eds/rk5c.eds", "--repair")
         self.assertEqual(ran.returncode, 2)
