@@ -96,6 +96,10 @@ void SheetEdit::add_comments(const IniEntry& entry, std::vector<NewLine> comment
   if (!comments.empty()) std::ranges::move(comments, std::back_inserter(lines_[entry.line].before));
 }
 
+void SheetEdit::add_lines_at_start(std::vector<NewLine> lines) {
+  if (!lines.empty()) lines_[1].before = std::move(lines);
+}
+
 void SheetEdit::remove_entry(const IniEntry& entry) {
   lines_[entry.line].is_removed = true;
   touched_.insert(entry.line);

@@ -29,6 +29,8 @@ class SheetEdit {
 
   /// A comment after a number remains, unless `with_comment`.
   void set_value(const IniEntry& entry, std::string_view value, const ValueOrigin& origin, bool with_comment = false);
+  /// Adds lines before the first one.
+  void add_lines_at_start(std::vector<NewLine> lines);
   /// Adds comments before an entry.
   void add_comments(const IniEntry& entry, std::vector<NewLine> comments);
   void remove_entry(const IniEntry& entry);

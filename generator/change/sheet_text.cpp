@@ -1,5 +1,6 @@
 #include "change/sheet_text.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include "eds/number.hpp"
@@ -13,31 +14,21 @@ bool is_comment_line(std::string_view line) {
   return content.starts_with(';') || content.starts_with('#');
 }
 
-/// Removes the first line, with its LF, CR LF or CR, from a text that is not empty.
-std::string_view take_line(std::string_view& text) {
-  std::string_view line = text.substr(0, text.find('\n'));
-  const std::size_t cr = line.find('\r');
-  const bool has_cr_only = cr != std::string_view::npos && (cr + 1 < line.size() || line.size() == text.size());
-  line = text.substr(0, has_cr_only ? cr + 1 : line.size() + 1);
-  text.remove_prefix(line.size());
-  return line;
-}
-
 }  // namespace
 
 SheetText::SheetText(const SourceFile& source) : source_(source) {
-  std::string_view rest = source.text();
-  for (std::uint32_t line = 1; !rest.empty(); ++line) {
-    const std::string_view text = take_line(rest);
-    if (text.front() != '[' && !is_blank(text.front())) continue;
-    const auto title = read_ini_header(text);
+  for (std::uint32_t line = 1; line <= source.lines(); ++line) {
+    const char first = source.first_character(line);
+    if (first != '[' && !is_blank(first)) continue;
+    const auto title = read_ini_header(source.line(line));
     if (!title) continue;
     if (!sections_.empty()) sections_.back().end = line;
     const SectionName name = read_section_name(*title, source.choices().sub_indices);
     const auto place = static_cast<std::uint32_t>(sections_.size());
-    if (is_known(name.kind)) first_.try_emplace(identity(name), place);
+    if (is_known(name.kind)) places_.emplace_back(identity(name), place);
     sections_.push_back({name, *title, line, source.lines() + 1});
   }
+  std::ranges::sort(places_);
 }
 
 const TextSection* SheetText::find(std::string_view title, unsigned occurrence) const {
@@ -45,10 +36,9 @@ const TextSection* SheetText::find(std::string_view title, unsigned occurrence) 
   const bool is_of_standard = is_known(name.kind);
   std::size_t place = 0;
   if (is_of_standard) {
-    const auto first = first_.find(identity(name));
-    if (first == first_.end()) return nullptr;
-    if (occurrence == 1) return &sections_[first->second];
-    place = first->second;
+    const TextSection* const first = find(name);
+    if (first == nullptr || occurrence == 1) return first;
+    place = static_cast<std::size_t>(first - sections_.data());
   }
   for (; place < sections_.size(); ++place) {
     const TextSection& section = sections_[place];
@@ -60,8 +50,9 @@ const TextSection* SheetText::find(std::string_view title, unsigned occurrence) 
 }
 
 const TextSection* SheetText::find(const SectionName& name) const {
-  const auto first = first_.find(identity(name));
-  return first == first_.end() ? nullptr : &sections_[first->second];
+  const std::uint64_t wanted = identity(name);
+  const auto first = std::ranges::lower_bound(places_, wanted, {}, &IdentityPlace::first);
+  return first == places_.end() || first->first != wanted ? nullptr : &sections_[first->second];
 }
 
 std::vector<IniEntry> SheetText::entries(const TextSection& section) const {
@@ -75,11 +66,9 @@ std::vector<IniEntry> SheetText::entries(const TextSection& section) const {
 std::optional<IniEntry> SheetText::find_entry(const TextSection& section, std::string_view key,
                                               unsigned occurrence) const {
   for (std::uint32_t line = section.line + 1; line < section.end; ++line) {
-    const std::string_view text = source_.line(line);
-    if (text.empty() || (!is_blank(text.front()) && !key.empty() && to_lower(text.front()) != to_lower(key.front()))) {
-      continue;
-    }
-    const auto entry = read_ini_entry(text, line);
+    const char first = source_.first_character(line);
+    if (!is_blank(first) && !key.empty() && to_lower(first) != to_lower(key.front())) continue;
+    const auto entry = read_ini_entry(source_.line(line), line);
     if (entry && equal_ignoring_case(entry->key, key) && --occurrence == 0) return entry;
   }
   return std::nullopt;

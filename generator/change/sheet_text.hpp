@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
-#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "eds/ini.hpp"
@@ -46,9 +46,11 @@ class SheetText {
   [[nodiscard]] bool is_blank_line(std::uint32_t line) const;
 
  private:
+  using IdentityPlace = std::pair<std::uint64_t, std::uint32_t>;  ///< of a section
+
   const SourceFile& source_;
   std::vector<TextSection> sections_;
-  std::unordered_map<std::uint64_t, std::uint32_t> first_;  ///< by identity: place of the first section
+  std::vector<IdentityPlace> places_;  ///< sorted
 };
 
 /// The key without `#N`, and N; 1 without it.

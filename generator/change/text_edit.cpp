@@ -188,24 +188,21 @@ std::unique_ptr<SourceFile> edited_text(const std::shared_ptr<const SourceFile>&
                                         const std::shared_ptr<const SourceFile>& changed_by) {
   const std::uint32_t count = base->lines();
   const EditPlan plan(count, count > 0 && !base->line_end(count).empty(), edits);
-  std::vector<ComposedLine> lines;
-  lines.reserve(count + edits.size());
+  std::vector<ComposedPart> lines;
+  lines.reserve(plan.lines().size());
   for (const PlannedLine& planned : plan.lines()) {
-    std::string_view line = planned.added != nullptr ? planned.added->text : base->line(planned.of_base);
-    for (std::uint32_t i = 1; i < planned.count; ++i) {
-      const std::uint32_t number = planned.of_base + i;
-      const std::string_view next = base->line(number);
-      // With its line end.
-      lines.push_back(
-          {{line.data(), static_cast<std::size_t>(next.data() - line.data())}, {}, base->origin(number - 1)});
-      line = next;
+    if (planned.count > 1) {
+      lines.emplace_back(LineRange{base.get(), planned.of_base, planned.count});
+      continue;
     }
     const std::string_view end = planned.end_of == no_end        ? std::string_view{}
                                  : planned.end_of == default_end ? default_line_end
                                                                  : base->line_end(planned.end_of);
-    lines.push_back(
-        {line, end,
-         planned.added != nullptr ? planned.added->origin : base->origin(planned.of_base + planned.count - 1)});
+    if (planned.added != nullptr) {
+      lines.emplace_back(ComposedLine{planned.added->text, end, planned.added->origin});
+    } else {
+      lines.emplace_back(ComposedLine{base->line(planned.of_base), end, base->origin(planned.of_base)});
+    }
   }
   std::vector<std::shared_ptr<const SourceFile>> parts = base->parts();
   if (parts.empty()) parts.push_back(base);

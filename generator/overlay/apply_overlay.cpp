@@ -32,6 +32,7 @@ class OverlayApplier {
       : overlay_(overlay), base_(base), edit_(base), diagnostics_(diagnostics) {}
 
   OverlayEdits apply() {
+    if (!overlay_.ini.sections.empty()) edit_.add_lines_at_start(comments_above(overlay_.ini.sections.front().line));
     for (const OverlaySection& section : overlay_.sections) {
       if (section.range) {
         apply_range(section);
@@ -62,14 +63,20 @@ class OverlayApplier {
     return message;
   }
 
-  /// A line of the overlay, or `text` in its place, with the comments for edsc directly above it.
-  std::vector<NewLine> added_lines(std::uint32_t line, std::optional<std::string> text = {}) const {
+  /// The comments for edsc directly above a line of the overlay.
+  [[nodiscard]] std::vector<NewLine> comments_above(std::uint32_t line) const {
     std::vector<NewLine> lines;
     std::uint32_t first = line;
     while (first > 1 && is_for_edsc(trim(overlay_.source->line(first - 1)))) --first;
     for (std::uint32_t number = first; number < line; ++number) {
       lines.push_back({std::string{overlay_.source->line(number)}, {.file = overlay_.source, .line = number}});
     }
+    return lines;
+  }
+
+  /// A line of the overlay, or `text` in its place, with the comments for edsc directly above it.
+  [[nodiscard]] std::vector<NewLine> added_lines(std::uint32_t line, std::optional<std::string> text = {}) const {
+    std::vector<NewLine> lines = comments_above(line);
     lines.push_back(
         {text ? *std::move(text) : std::string{overlay_.source->line(line)}, {.file = overlay_.source, .line = line}});
     return lines;
@@ -226,9 +233,7 @@ class OverlayApplier {
       obsolete(line, place);
     } else {
       edit_.set_value(*entry, line.new_value, value_origin(line), line.old_value == value);
-      std::vector<NewLine> comments = added_lines(line.entry.line);
-      comments.pop_back();
-      edit_.add_comments(*entry, std::move(comments));
+      edit_.add_comments(*entry, comments_above(line.entry.line));
     }
   }
 
@@ -307,9 +312,10 @@ class OverlayApplier {
 
   std::size_t count_in(const OverlaySection& section, const CountedName& key, std::string_view value) {
     std::size_t count = 0;
+    const OverlayValue compared{value};
     for_each_in(section, [&](const TextSection& one) {
       const auto entry = base_.find_entry(one, key.name, key.occurrence);
-      if (entry && is_same_value(entry->value, value)) ++count;
+      if (entry && compared.is_same(entry->value)) ++count;
     });
     return count;
   }
@@ -321,10 +327,10 @@ class OverlayApplier {
       return 0;
     }
     std::size_t changed = 0;
+    const OverlayValue old_value{line.old_value};
     for_each_in(section, [&](const TextSection& one) {
       const auto entry = base_.find_entry(one, line.key.name, line.key.occurrence);
-      if (!entry) return;
-      if (!is_same_value(entry->value, line.old_value)) return;
+      if (!entry || !old_value.is_same(entry->value)) return;
       ++changed;
       if (edit_.is_touched(*entry)) {
         diagnostics_.error("overlay-file", edsc::position_of(overlay_, line),

@@ -154,7 +154,7 @@ std::shared_ptr<const SourceFile> text_of_base(std::shared_ptr<const SourceFile>
   name.replace_extension(sheet.is_dcf ? ".dcf" : ".eds");
   const SourceFile converted{from_native(name), to_text(document_of(sheet, from_native(name)))};
   const XddOrigins origins{sheet};
-  std::vector<ComposedLine> lines;
+  std::vector<ComposedPart> lines;
   SectionName section;
   for (std::uint32_t line = 1; line <= converted.lines(); ++line) {
     const std::string_view text = converted.line(line);
@@ -168,7 +168,7 @@ std::shared_ptr<const SourceFile> text_of_base(std::shared_ptr<const SourceFile>
       origin.value_column = entry->value_column;
       origin.origin_key_column = origin.origin_value_column;
     }
-    lines.push_back({text, converted.line_end(line), origin});
+    lines.emplace_back(ComposedLine{text, converted.line_end(line), origin});
   }
   return std::make_shared<const SourceFile>(file->name(), lines, std::vector<std::shared_ptr<const SourceFile>>{file});
 }

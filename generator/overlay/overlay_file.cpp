@@ -208,21 +208,6 @@ class OverlayReader {
   std::size_t next_remark_ = 0;
 };
 
-struct NumberValue {
-  bool is_negative = false;
-  std::uint64_t magnitude = 0;
-  bool operator==(const NumberValue&) const = default;
-};
-
-std::optional<NumberValue> read_number_value(std::string_view text) {
-  text = trim(strip_inline_comment(text));
-  const bool is_negative = text.starts_with('-');
-  if (is_negative) text.remove_prefix(1);
-  const auto number = parse_unsigned(text);
-  if (!number) return std::nullopt;
-  return NumberValue{is_negative && *number != 0, *number};
-}
-
 }  // namespace
 
 bool is_overlay(const SourceFile& source) {
@@ -245,17 +230,29 @@ OverlayFile read_overlay(const SourceFile& source, Diagnostics& diagnostics) {
   return OverlayReader(source, diagnostics).read();
 }
 
-bool is_same_value(std::string_view a, std::string_view b) {
-  if (a == b) return true;
-  const auto first = read_number_value(a);
-  const auto second = read_number_value(b);
-  if (first || second) return first == second;
-  const Formula of_a = split_formula(strip_inline_comment(a));
-  const Formula of_b = split_formula(strip_inline_comment(b));
+OverlayValue::OverlayValue(std::string_view text) : text_(text), number_(number_in(text)) {}
+
+std::optional<OverlayValue::Number> OverlayValue::number_in(std::string_view text) {
+  text = trim(strip_inline_comment(text));
+  const bool is_negative = text.starts_with('-');
+  if (is_negative) text.remove_prefix(1);
+  const auto number = parse_unsigned(text);
+  if (!number) return std::nullopt;
+  return Number{is_negative && *number != 0, *number};
+}
+
+bool OverlayValue::is_same(std::string_view other) const {
+  if (text_ == other) return true;
+  const auto number = number_in(other);
+  if (number_ || number) return number_ == number;
+  const Formula of_a = split_formula(strip_inline_comment(text_));
+  const Formula of_b = split_formula(strip_inline_comment(other));
   if (!of_a.variable.starts_with('$') || !equal_ignoring_case(of_a.variable, of_b.variable)) return false;
   if (of_a.constant.has_value() != of_b.constant.has_value()) return false;
   return !of_a.constant || is_same_value(*of_a.constant, *of_b.constant);
 }
+
+bool is_same_value(std::string_view a, std::string_view b) { return OverlayValue{a}.is_same(b); }
 
 Position position_of(const OverlayFile& file, const OverlayLine& line) {
   return value_position(*file.source, line.entry);

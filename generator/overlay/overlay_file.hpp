@@ -67,7 +67,25 @@ struct OverlayFile {
 
 [[nodiscard]] OverlayFile read_overlay(const SourceFile& source, Diagnostics& diagnostics);
 
-/// Whether two values are equal: numbers and formulas by their value, other texts exactly.
+/// A value to compare others with: numbers and formulas by their value, other texts exactly.
+class OverlayValue {
+ public:
+  explicit OverlayValue(std::string_view text);
+
+  [[nodiscard]] bool is_same(std::string_view other) const;
+
+ private:
+  struct Number {
+    bool is_negative = false;
+    std::uint64_t magnitude = 0;
+    friend bool operator==(const Number&, const Number&) = default;
+  };
+  [[nodiscard]] static std::optional<Number> number_in(std::string_view text);
+
+  std::string_view text_;
+  std::optional<Number> number_;
+};
+
 [[nodiscard]] bool is_same_value(std::string_view a, std::string_view b);
 
 [[nodiscard]] Position position_of(const OverlayFile& file, const OverlayLine& line);

@@ -93,39 +93,54 @@ SourceFile::SourceFile(std::string name, std::string bytes, Packing packing, con
   find_lines();
 }
 
-SourceFile::SourceFile(std::string name, const std::vector<ComposedLine>& lines,
+SourceFile::SourceFile(std::string name, const std::vector<ComposedPart>& lines,
                        std::vector<std::shared_ptr<const SourceFile>> parts)
     : name_(std::move(name)),
       encoding_(parts.back()->encoding_),
       choices_(parts.back()->choices_),
       parts_(std::move(parts)) {
   std::size_t size = 0;
-  for (const ComposedLine& line : lines) size += line.text.size() + line.end.size();
+  std::size_t count = 0;
+  for (const ComposedPart& part : lines) {
+    const auto* const range = std::get_if<LineRange>(&part);
+    const auto* const line = std::get_if<ComposedLine>(&part);
+    size += range != nullptr ? text_of(*range).size() : line->text.size() + line->end.size();
+    count += range != nullptr ? range->count : 1;
+  }
   if (size > max_bytes) {
     throw std::length_error(name_ + ": " + std::string(too_large));
   }
   text_.reserve(size);
-  starts_.reserve(lines.size() + 1);
-  origins_.reserve(lines.size());
-  std::string_view run;  // of lines that follow each other in memory
-  std::size_t start = 0;
-  const auto append = [&](std::string_view part) {
-    start += part.size();
-    if (part.data() == run.data() + run.size()) {
-      run = {run.data(), run.size() + part.size()};
-      return;
+  starts_.reserve(count + 1);
+  origins_.reserve(count);
+  for (const ComposedPart& part : lines) {
+    const auto start = static_cast<std::uint32_t>(text_.size());
+    if (const auto* const line = std::get_if<ComposedLine>(&part)) {
+      starts_.push_back(start);
+      origins_.push_back(line->origin);
+      text_.append(line->text).append(line->end);
+      continue;
     }
-    text_ += run;
-    run = part;
-  };
-  for (const ComposedLine& line : lines) {
-    starts_.push_back(static_cast<std::uint32_t>(start));
-    origins_.push_back(line.origin);
-    append(line.text);
-    if (!line.end.empty()) append(line.end);
+    const LineRange& range = std::get<LineRange>(part);
+    const std::uint32_t start_there = range.file->starts_[range.first - 1];
+    for (std::uint32_t line = range.first; line < range.first + range.count; ++line) {
+      starts_.push_back(start + range.file->starts_[line - 1] - start_there);
+    }
+    if (const std::vector<LineOrigin>& origins = range.file->origins_; !origins.empty()) {
+      origins_.insert(origins_.end(), origins.begin() + (range.first - 1),
+                      origins.begin() + (range.first - 1 + range.count));
+    } else {
+      for (std::uint32_t i = 0; i < range.count; ++i) origins_.push_back({.file = range.file, .line = range.first + i});
+    }
+    text_ += text_of(range);
   }
-  text_ += run;
   starts_.push_back(static_cast<std::uint32_t>(text_.size()));
+}
+
+std::string_view SourceFile::text_of(const LineRange& range) {
+  const std::vector<std::uint32_t>& starts = range.file->starts_;
+  const std::uint32_t start = starts[range.first - 1];
+  return range.file->text().substr(start, starts[range.first + range.count - 1] - start);
 }
 
 void SourceFile::decode(std::string bytes) {
@@ -181,8 +196,6 @@ void SourceFile::find_lines() {
     starts_.push_back(static_cast<std::uint32_t>(text_.size()));
   }
 }
-
-std::uint32_t SourceFile::lines() const { return static_cast<std::uint32_t>(starts_.size() - 1); }
 
 std::string_view SourceFile::line(std::uint32_t number) const {
   if (number == 0 || number > lines()) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "text/encoding.hpp"
@@ -34,6 +35,15 @@ struct ComposedLine {
   LineOrigin origin;
 };
 
+/// Lines of another text, with their line ends and origins.
+struct LineRange {
+  const SourceFile* file = nullptr;
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
+using ComposedPart = std::variant<ComposedLine, LineRange>;
+
 class SourceFile {
  public:
   static constexpr std::size_t max_bytes = std::size_t{1} << 30;
@@ -47,7 +57,7 @@ class SourceFile {
 
   /// A text composed of lines of other files, which it keeps: `parts` are these files, the last one the file that the
   /// others change.
-  SourceFile(std::string name, const std::vector<ComposedLine>& lines,
+  SourceFile(std::string name, const std::vector<ComposedPart>& lines,
              std::vector<std::shared_ptr<const SourceFile>> parts);
 
   SourceFile(const SourceFile&) = delete;
@@ -69,9 +79,11 @@ class SourceFile {
   /// Whether `text()` is the file byte for byte: ASCII or UTF-8, without byte order mark, not packed.
   [[nodiscard]] bool is_verbatim() const { return is_verbatim_; }
   /// Number of lines; text after the last line end counts if it is not empty.
-  [[nodiscard]] std::uint32_t lines() const;
+  [[nodiscard]] std::uint32_t lines() const { return static_cast<std::uint32_t>(starts_.size() - 1); }
   /// Line `number` (from 1) without its line end (LF, CR LF or CR); empty if it does not exist.
   [[nodiscard]] std::string_view line(std::uint32_t number) const;
+  /// The first character of line `number`, which exists, or of its line end; NUL for an empty line without one.
+  [[nodiscard]] char first_character(std::uint32_t number) const { return text_[starts_[number - 1]]; }
   /// The line end of line `number`: LF, CR LF, CR, or empty.
   [[nodiscard]] std::string_view line_end(std::uint32_t number) const;
 
@@ -86,6 +98,7 @@ class SourceFile {
   void decode(std::string bytes);
   void convert(std::string_view bytes, Encoding encoding);
   void find_lines();
+  [[nodiscard]] static std::string_view text_of(const LineRange& range);
 
   std::string name_;
   std::string text_;

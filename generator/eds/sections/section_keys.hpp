@@ -272,23 +272,25 @@ struct OtherTitle {
 
 inline constexpr OtherTitle other_titles[] = {{"DeviceCommissioning", SectionKind::device_commissioning}};
 
-/// The row of a section, or null for unknown and malformed names.
-[[nodiscard]] constexpr const SectionRow* find_section(SectionKind kind) {
-  const auto* const row = std::ranges::find(section_rows, kind, &SectionRow::kind);
-  return row != std::end(section_rows) ? row : nullptr;
-}
+/// The place of each section kind in `section_rows`; their number for unknown and malformed names.
+inline constexpr auto section_places = [] {
+  std::array<std::uint8_t, static_cast<std::size_t>(SectionKind::unknown) + 1> places{};
+  places.fill(static_cast<std::uint8_t>(std::size(section_rows)));
+  for (std::size_t i = 0; i < std::size(section_rows); ++i) {
+    places[static_cast<std::size_t>(section_rows[i].kind)] = static_cast<std::uint8_t>(i);
+  }
+  return places;
+}();
 
 /// The place of a section in the canonical order; after all others for unknown and malformed names.
 [[nodiscard]] constexpr std::uint32_t place_of_section(SectionKind kind) {
-  constexpr auto places = [] {
-    std::array<std::uint8_t, static_cast<std::size_t>(SectionKind::unknown) + 1> all{};
-    all.fill(static_cast<std::uint8_t>(std::size(section_rows)));
-    for (std::size_t i = 0; i < std::size(section_rows); ++i) {
-      all[static_cast<std::size_t>(section_rows[i].kind)] = static_cast<std::uint8_t>(i);
-    }
-    return all;
-  }();
-  return places[static_cast<std::size_t>(kind)];
+  return section_places[static_cast<std::size_t>(kind)];
+}
+
+/// The row of a section, or null for unknown and malformed names.
+[[nodiscard]] constexpr const SectionRow* find_section(SectionKind kind) {
+  const std::uint32_t place = place_of_section(kind);
+  return place < std::size(section_rows) ? &section_rows[place] : nullptr;
 }
 
 /// The values of a section in `edsc dump`.

@@ -17,7 +17,7 @@ struct Profile {
   std::string objects;
   std::string process;
   std::string identity;
-  std::string network;
+  std::string network = {};
 
   [[nodiscard]] std::string text() const {
     return "<ISO15745ProfileContainer xmlns:xsi='x'><ISO15745Profile><ProfileBody "
