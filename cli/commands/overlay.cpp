@@ -8,6 +8,7 @@
 #include "change/sheet_text.hpp"
 #include "change/text_edit.hpp"
 #include "commands/commands.hpp"
+#include "load/load_device.hpp"
 #include "overlay/compose_overlay.hpp"
 #include "overlay/derive_overlay.hpp"
 #include "overlay/overlay_file.hpp"
@@ -41,9 +42,9 @@ struct ApplySettings {
   ColorOption color;
 };
 
-std::shared_ptr<const SourceFile> read_or_fail(const std::string& path) {
+std::shared_ptr<const SourceFile> read_or_fail(const std::string& path, const ReadingChoices& choices = {}) {
   std::string error;
-  std::shared_ptr<const SourceFile> file = read_source_file(path, error);
+  std::shared_ptr<const SourceFile> file = read_source_file(path, error, choices);
   if (!file) fail(error);
   return file;
 }
@@ -64,11 +65,12 @@ EditedBytes result_bytes(const ComposedOverlay& composed, bool allow_utf8) {
 }
 
 int apply(const ApplySettings& settings) {
-  const std::shared_ptr<const SourceFile> overlay = read_or_fail(settings.path);
   Diagnostics diagnostics;
+  const ChoicesOfOptions options = choices_beside(settings.path, diagnostics);
+  const std::shared_ptr<const SourceFile> overlay = read_or_fail(settings.path);
   ComposedOverlay composed;
   if (is_overlay(*overlay)) {
-    composed = compose_overlay(overlay, {}, diagnostics);
+    composed = compose_overlay(overlay, {{}, false, options.choices}, diagnostics);
   } else {
     diagnostics.error("overlay-file", {overlay.get()}, "missing section [Overlay]");
   }
@@ -98,15 +100,22 @@ struct FromSettings {
   std::string output;
 };
 
+/// The text that an overlay is for, read as the options beside the file state it: that of an overlay has the changes.
+/// Null after errors.
+std::shared_ptr<const SourceFile> read_base(const std::string& path, Diagnostics& diagnostics) {
+  const ChoicesOfOptions options = choices_beside(path, diagnostics);
+  const std::shared_ptr<const SourceFile> file = read_or_fail(path);
+  std::shared_ptr<const SourceFile> text = is_overlay(*file)
+                                               ? compose_overlay(file, {{}, false, options.choices}, diagnostics).text
+                                               : text_of_base(read_or_fail(path, options.choices));
+  return diagnostics.errors() == 0 ? text : nullptr;
+}
+
 int from(const FromSettings& settings) {
-  const std::shared_ptr<const SourceFile> base = read_or_fail(settings.base);
-  const std::shared_ptr<const SourceFile> edited = read_or_fail(settings.edited);
-  std::shared_ptr<const SourceFile> text = text_of_base(base);
-  if (is_overlay(*base)) {
-    Diagnostics ignored;
-    text = compose_overlay(base, {}, ignored).text;
-    if (!text || ignored.errors() > 0) fail(settings.base + ": the overlay has errors; \"edsc check\" lists them");
-  }
+  Diagnostics ignored;
+  const std::shared_ptr<const SourceFile> text = read_base(settings.base, ignored);
+  if (!text) fail(settings.base + ": the file has errors; \"edsc check\" lists them");
+  const std::shared_ptr<const SourceFile> edited = read_or_fail(settings.edited, text->choices());
   DerivedOverlay derived = derive_overlay(text, *text_of_base(edited), path_from(settings.output, settings.base));
   if (!derived.problem.empty()) {
     print_visibly(stderr, "edsc: {}: an overlay cannot express {}; nothing was written\n", settings.edited,
@@ -139,10 +148,8 @@ int rebase(const RebaseSettings& settings) {
   if (!is_overlay(*file) || !overlay.header.base.present) {
     fail(settings.path + ": not an overlay with a Base");
   }
-  const std::shared_ptr<const SourceFile> base = read_or_fail(settings.base);
-  std::shared_ptr<const SourceFile> text = text_of_base(base);
-  if (is_overlay(*base)) text = compose_overlay(base, {}, diagnostics).text;
-  if (!text || diagnostics.errors() > 0) {
+  const std::shared_ptr<const SourceFile> text = read_base(settings.base, diagnostics);
+  if (!text) {
     print_findings(stderr, diagnostics, {});
     return exit_input_has_errors;
   }

@@ -55,6 +55,17 @@ std::unique_ptr<SourceFile> read_or_report(const std::string& path, const Readin
   return file;
 }
 
+/// An overlay and its bases; nothing for another file.
+std::vector<std::shared_ptr<const SourceFile>> parts_of_overlay(const std::string& path) {
+  std::error_code missing;
+  if (!fs::is_regular_file(to_native(path), missing)) return {};
+  std::string error;
+  const std::shared_ptr<const SourceFile> file = read_source_file(path, error);
+  if (!file || !is_overlay(*file)) return {};
+  Diagnostics ignored;
+  return compose_overlay(file, {}, ignored).parts;
+}
+
 void read_options_file(const std::string& path, LoadedDevice& loaded, Diagnostics& diagnostics) {
   if (path.empty()) return;
   loaded.options_source = read_or_report(path, {}, loaded, diagnostics);
@@ -192,10 +203,16 @@ bool apply_overlays(LoadedDevice& loaded, const ComposeSettings& settings, Diagn
 }
 
 ChoicesOfOptions choices_beside(const std::string& path, Diagnostics& diagnostics) {
+  if (path == "-") return {};
   LoadSettings settings;
   settings.path = path;
   LoadedDevice loaded;
-  if (path != "-") read_options_file(options_path_of(settings, loaded), loaded, diagnostics);
+  std::string options = options_path_of(settings, loaded);
+  if (options.empty()) {
+    loaded.parts = parts_of_overlay(path);
+    options = options_path_of(settings, loaded);
+  }
+  read_options_file(options, loaded, diagnostics);
   return {std::move(loaded.options_source), loaded.options.reading};
 }
 

@@ -59,7 +59,8 @@ struct ChoicesOfOptions {
   std::unique_ptr<SourceFile> options;  ///< null without options file
   ReadingChoices choices;
 };
-/// Errors in the options file are in `diagnostics`, whose positions point into the result.
+/// The choices in the options file beside a file; of an overlay, else of its base. Errors in the options file are in
+/// `diagnostics`, whose positions point into the result.
 [[nodiscard]] ChoicesOfOptions choices_beside(const std::string& path, Diagnostics& diagnostics);
 
 /// The device of the data sheet with another node-ID, or without one. Findings are not reported: those of the first

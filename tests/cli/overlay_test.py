@@ -142,6 +142,32 @@ class Commands(Overlay):
         self.assertEqual([one for one in found["diagnostics"] if one["rule"] == rule], [])
         self.assertEqual(found["allowed_diagnostics"][0]["allowance"]["reason"], "known")
 
+    def test_allow_comments_before_the_first_section_apply_to_the_file(self) -> None:
+        self.write("x.overlay", HEADER + "[1017]\nLowLimit=abc\n")
+        rule = json.loads(self.run_edsc("check", "x.overlay", "--format", "json").stdout)["diagnostics"][0]["rule"]
+        self.write("x.overlay", f"; edsc: allow {rule} - everywhere\n{HEADER}[1017]\nLowLimit=abc\n[1001]\nLowLimit=abc\n")
+        found = json.loads(self.run_edsc("check", "x.overlay", "--format", "json").stdout)
+        self.assertEqual([one for one in found["diagnostics"] if one["rule"] == rule], [])
+        self.assertEqual([one["allowance"]["reason"] for one in found["allowed_diagnostics"]], ["everywhere"] * 2)
+
+    def test_a_conformance_test_has_the_node_id_of_the_result(self) -> None:
+        self.write("a.dcf", SMALL + "[DeviceComissioning]\nNodeID=7\n")
+        self.write("removed.dcf", SMALL)
+        header = HEADER.replace("small.eds", "a.dcf")
+        change = "[DeviceComissioning]\nNodeID={}\n"
+        rows = (("base", header, "7"), ("set", header + change.format("7 => 0x0B"), "0x0B"),
+                ("new", HEADER + change.format("9 ; ours"), "9"), ("none", HEADER, ""),
+                ("nested", header.replace("a.dcf", "base.overlay"), "7"))
+        for name, overlay, node_id in rows:
+            with self.subTest(name):
+                self.write(f"{name}.overlay", overlay)
+                self.write("ask.cmake", f'include("{SOURCE_DIR}/cmake/EdscAddConformanceTest.cmake")\n'
+                                        f'edsc_node_id_of_file("{self.folder}/{name}.overlay" node_id)\n'
+                                        'message("<${node_id}>")\n')
+                result = subprocess.run(["cmake", "-P", "ask.cmake"], cwd=self.folder, capture_output=True, text=True,
+                                        check=True)
+                self.assertEqual(result.stderr.strip(), f"<{node_id}>")
+
 
 class OverlayCommands(Overlay):
     def apply(self, *words: str) -> bytes:
@@ -167,6 +193,27 @@ class OverlayCommands(Overlay):
         self.assertIn("\u00b5", result.stderr)
         self.assertFalse((self.folder / "out.eds").exists())
         self.assertIn("\u00b5s".encode(), self.apply("--utf8"))
+
+    def test_the_commands_read_the_base_as_its_options_say(self) -> None:
+        """Sub-indices 10 to 12 are Ah to Ch."""
+        subs = "".join(f"[2000sub{i}]\nParameterName=S{i}\nObjectType=7\nDataType=5\nAccessType=rw\n" for i in range(13))
+        base = SMALL + "[2000]\nParameterName=A\nObjectType=9\nSubNumber=13\n" + subs
+        self.write("small.eds", base)
+        for options in ("x.options.json", "small.options.json", None):
+            with self.subTest(options):
+                for name in ("small.options.json", "x.options.json"):
+                    (self.folder / name).unlink(missing_ok=True)
+                if options:
+                    self.write(options, '{"sub_indices": "decimal"}')
+                self.write("x.overlay", HEADER + "[2000sub10]\nParameterName=S10 => Tenth\n")
+                self.assertEqual(self.apply().decode(), base.replace("ParameterName=S10", "ParameterName=Tenth"))
+                result = self.run_edsc("format", "x.overlay", "-o", "formatted.eds")
+                text = (self.folder / "formatted.eds").read_text()
+                self.assertEqual("[2000subA]" in text, options is not None, result.stderr)
+                self.write("edited.eds", base.replace("ParameterName=S10", "ParameterName=Tenth"))
+                self.assertIn("ParameterName=S10 => Tenth", self.run_edsc("overlay", "from", "small.eds", "edited.eds").stdout)
+                result = self.run_edsc("overlay", "rebase", "x.overlay", "small.eds")
+                self.assertEqual((result.returncode, ": kept: " in result.stdout), (FINE, True), result.stderr)
 
     def test_apply_writes_what_every_command_reads(self) -> None:
         self.write("x.overlay", RENAMED + "\n; not there\n[1018sub1]\nRemove=1\n")
