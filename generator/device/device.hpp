@@ -107,6 +107,7 @@ struct Pdo {
   bool multiplexed = false;         ///< sub-index 0 of its mapping is 254 or 255: an MPDO, which has no entries
   bool dynamic = false;             ///< the mapping can be changed: the mapping parameter is in RAM
   bool broken = false;              ///< the mapping is invalid
+  bool can_id_is_allowed = false;   ///< CiA 301 restricts the default CAN-ID, and the options allow it
 
   [[nodiscard]] unsigned bits() const { return total_bits(entries); }
   [[nodiscard]] unsigned bytes() const { return static_cast<unsigned>(bytes_for(bits())); }

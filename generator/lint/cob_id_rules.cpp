@@ -29,6 +29,7 @@ struct CobIdUse {
 
   [[nodiscard]] bool valid() const { return !parameter->has_valid_bit || cob_id.valid(); }
   [[nodiscard]] CobIdService service() const { return parameter->service; }
+  [[nodiscard]] bool is_of_pdo() const { return service() == CobIdService::rpdo || service() == CobIdService::tpdo; }
   [[nodiscard]] CobId of(std::uint32_t node_id) const {
     return plus_node_id ? CobId{cob_id.value() + node_id} : cob_id;
   }
@@ -83,18 +84,23 @@ bool check_frame(const RuleContext& context, const CobIdUse& use) {
 }
 
 /// Why a service may not use its CAN-ID; null if it may.
-const char* restriction_of(const CobIdUse& use, std::uint32_t can_id) {
+const char* restriction_of(const RuleContext& context, const CobIdUse& use, std::uint32_t can_id) {
   if (!canopen::is_restricted_for(use.entry->index, can_id)) return nullptr;
+  if (use.is_of_pdo() && context.options.allows_for_pdo(can_id)) return nullptr;
   const char* const reason = canopen::restriction_of(can_id);
   return reason != nullptr ? reason : "SYNC";
 }
 
 /// 180h for TPDO 1 means 180h + node-ID.
+bool lacks_node_id(const CobIdUse& use) {
+  if (use.plus_node_id || !use.parameter->plus_node_id) return false;
+  return use.cob_id.can_id() == use.parameter->predefined_of(use.entry->index);
+}
+
 std::string hint(const CobIdUse& use) {
-  if (use.plus_node_id || !use.parameter->plus_node_id) return "";
-  const std::uint32_t function_code = use.parameter->predefined_of(use.entry->index);
-  if (use.cob_id.can_id() != function_code) return "";
-  return fmt::format("; use $NODEID+0x{:X} to add the node-ID", use.cob_id.value());
+  if (lacks_node_id(use)) return fmt::format("; use $NODEID+0x{:X} to add the node-ID", use.cob_id.value());
+  if (use.plus_node_id || !use.is_of_pdo()) return "";
+  return "; the option pdo.allowed_can_ids allows a CAN-ID that an application profile defines";
 }
 
 /// The CAN-ID of the pre-defined connection set, with the flags that the COB-ID has.
@@ -131,23 +137,23 @@ void check_restricted(const RuleContext& context, const CobIdUse& use) {
   if (!use.valid() || use.cob_id.extended() || use.entry->index == default_sdo) return;
   if (!use.plus_node_id) {
     const std::uint32_t can_id = use.cob_id.can_id();
-    if (const char* reason = restriction_of(use, can_id)) {
+    if (const char* reason = restriction_of(context, use, can_id)) {
       context.report("cob-id-restricted", use.place(),
                      fmt::format("{} is CAN-ID {:03X}h, which is restricted ({}){}", named(*use.entry), can_id, reason,
                                  hint(use)));
-      if (!hint(use).empty()) offer_formula(context, "cob-id-restricted", use);
+      if (lacks_node_id(use)) offer_formula(context, "cob-id-restricted", use);
     }
     return;
   }
   RestrictedNodeIds node_ids;
   for (std::uint32_t node_id = 1; node_id <= last_node_id; ++node_id) {
-    if (restriction_of(use, use.of(node_id).can_id()) != nullptr) node_ids.add(node_id);
+    if (restriction_of(context, use, use.of(node_id).can_id()) != nullptr) node_ids.add(node_id);
   }
   if (node_ids.count == 0) return;
   const std::uint32_t can_id = use.of(node_ids.first).can_id();
   context.report("cob-id-restricted", use.place(),
                  fmt::format("{} is restricted{} (CAN-ID {:03X}h of node {}: {}){}", named(*use.entry),
-                             node_ids.words(), can_id, node_ids.first, restriction_of(use, can_id),
+                             node_ids.words(), can_id, node_ids.first, restriction_of(context, use, can_id),
                              node_ids.count < last_node_id ? "; a given node-ID is checked alone" : ""));
 }
 
@@ -187,7 +193,7 @@ void check_node_id(const RuleContext& context, const CobIdUse& use) {
                                node_id, given ? fmt::format("and not of node {}", *given) : "only", formula),
                    {}, fmt::format("node {}", node_id));
     offer_formula(context, "cob-id-node-id", use);
-  } else if (restriction_of(use, can_id) == nullptr) {
+  } else if (restriction_of(context, use, can_id) == nullptr) {
     context.report(
         "cob-id-node-id", use.place(),
         fmt::format("{} is {:03X}h for each node; {} to add the node-ID", named(*use.entry), can_id, formula), {},

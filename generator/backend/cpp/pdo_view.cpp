@@ -69,6 +69,7 @@ void add_cob_id(const Pdo& pdo, PdoParameters& parameters) {
   const Entry* entry = pdo.communication->find(1);
   parameters.cob_id = static_cast<std::uint32_t>(start_value(pdo, 1, CobId::invalid_bit));
   parameters.plus_node_id = entry->default_value && entry->default_value->plus_node_id;
+  parameters.can_id_is_allowed = pdo.can_id_is_allowed;
 }
 
 /// Times that the transmission type does not use are harmless.
@@ -127,6 +128,7 @@ std::vector<std::string> member_initializers(const PdoParameters& parameters) {
   }
   if (parameters.inhibit_time != 0) members.push_back(fmt::format(".inhibit_time = {}", parameters.inhibit_time));
   if (parameters.event_timer != 0) members.push_back(fmt::format(".event_timer = {}", parameters.event_timer));
+  if (parameters.can_id_is_allowed) members.emplace_back(".can_id_is_allowed = true");
   if (parameters.compatibility_entry) members.emplace_back(".compatibility_entry = true");
   return members;
 }

@@ -112,6 +112,10 @@ inline constexpr OptionRow rows[] = {
      "range of CAN-IDs, first and last, that PDOs must not use, in addition to those restricted by CiA 301: `[\"0x080\", "
      "\"0x100\"]`; 0609 0030h for them",
      "", "none"},
+    {pdo, "allowed_can_ids", "pdo_allowed_can_ids", can_id_range,
+     "range of CAN-IDs, first and last, that PDOs may use although CiA 301, 7.3.5 restricts it, as an application profile "
+     "defines: `[\"0x180\", \"0x180\"]` for RPDO 261 of CiA 417",
+     "", "none"},
     {pdo, "extended_ids", "pdo_extended_ids", flag, "PDOs may use 29-bit CAN-IDs; if false, 0609 0030h", "true"},
     {pdo, "remote_frames", "tpdo_remote_frames", flag,
      "TPDOs answer remote frames; if false, bit 30 of their COB-ID must be 1, else 0609 0030h", "true"},

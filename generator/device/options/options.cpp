@@ -192,6 +192,12 @@ std::uint32_t Options::inhibit_time_unit() const {
   return stated == runtime.end() ? usual_inhibit_time_unit : stated->value;
 }
 
+bool Options::allows_for_pdo(std::uint32_t can_id) const {
+  constexpr const OptionRow* allowed = find_option("pdo", "allowed_can_ids");
+  const auto stated = std::ranges::find(runtime, allowed, &RuntimeOption::row);
+  return stated != runtime.end() && can_id >= stated->value && can_id <= stated->last;
+}
+
 bool Options::states(const OptionRow& row) const {
   return std::ranges::find(runtime, &row, &RuntimeOption::row) != runtime.end();
 }

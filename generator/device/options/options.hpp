@@ -128,6 +128,8 @@ struct Options {
   /// Adds an option of the runtime that is not stated.
   void set(const RuntimeOption& option);
 
+  /// Whether PDOs may use an 11-bit CAN-ID although CiA 301 restricts it.
+  [[nodiscard]] bool allows_for_pdo(std::uint32_t can_id) const;
   /// The unit of the inhibit times of PDOs in microseconds.
   [[nodiscard]] std::uint32_t inhibit_time_unit() const;
 };

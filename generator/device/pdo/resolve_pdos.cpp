@@ -62,6 +62,14 @@ bool is_dynamic(const Pdo& pdo, const Options& options) {
   return std::ranges::all_of(pdo.mapping->entries, [&](const Entry& entry) { return changes(entry, options); });
 }
 
+/// Whether the options allow the default COB-ID, which has the CAN-ID of one node or of all.
+bool can_id_is_allowed(const Pdo& pdo, const Options& options) {
+  const Entry* const entry = pdo.communication == nullptr ? nullptr : pdo.communication->find(1);
+  if (entry == nullptr || !entry->default_value || entry->default_value->plus_node_id) return false;
+  const canopen::CobId cob_id{static_cast<std::uint32_t>(entry->default_value->bits)};
+  return cob_id.valid() && !cob_id.extended() && options.allows_for_pdo(cob_id.can_id());
+}
+
 }  // namespace
 
 void resolve_pdos(Device& device, const Options& options) {
@@ -80,6 +88,7 @@ void resolve_pdos(Device& device, const Options& options) {
       if (mapping != nullptr) pdo.entries = default_mapping(device, *mapping);
       pdo.multiplexed = mapping != nullptr && is_multiplexed(default_of(mapping->find(0)));
       pdo.dynamic = is_dynamic(pdo, options);
+      pdo.can_id_is_allowed = can_id_is_allowed(pdo, options);
       device.pdos.push_back(std::move(pdo));
     }
   }

@@ -70,6 +70,7 @@ void check_services(const NetworkContext& context, const std::vector<const CobId
 
 void check_restricted(const NetworkContext& context, const CobIdUse& use) {
   const bool is_default_sdo = use.service == FrameService::sdo;
+  if (use.pdo != nullptr && use.pdo->can_id_is_allowed) return;
   if (!use.is_configurable || use.extended || is_default_sdo || !canopen::is_restricted(use.can_id)) return;
   context.diagnostics.error("network-cob-id", use.position,
                             fmt::format("CAN-ID {} of {} is restricted", can_id_text(use.can_id, false), named(use)));

@@ -343,7 +343,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
     if (services_.on_fixed_frame(host(), frame, cob_id)) return;
     if (cob_id == function_code::nmt) {
       if (is_nmt_command(frame, node_id_)) carry_out(static_cast<NmtCommand>(frame.data[0]));
-    } else if (is_usable(cob_id)) {
+    } else if (is_usable_by_pdo<Device>(cob_id)) {
       static_cast<void>(services_.on_frame(host(), frame, cob_id));
     }
   }

@@ -108,6 +108,12 @@ inline constexpr const char* restricted_can_id_reasons[] = {
   return (cob_id & CobId::extended_bit) != 0 || !is_restricted(cob_id & 0x7FF);
 }
 
+/// Whether a COB-ID is valid and has an 11-bit CAN-ID of `range`; {1, 0} has none.
+[[nodiscard]] constexpr bool is_in(RestrictedCanIds range, std::uint32_t cob_id) {
+  const std::uint32_t value = cob_id & ~CobId::no_rtr_bit;
+  return value >= range.first && value <= range.last;
+}
+
 /// Whether a COB-ID may be written: a 29-bit CAN-ID if the device supports it, or an 11-bit one, which must not be
 /// restricted if it is in use.
 [[nodiscard, gnu::noinline]] constexpr bool may_be_written(CobId cob_id, bool in_use, bool extended_ids) {

@@ -32,6 +32,9 @@ struct DeviceOptions {
   std::uint32_t pdo_cob_id_writable = 0xFFFF'FFFF;
   /// First and last CAN-ID of a range that PDOs may not use, in addition to those of CiA 301: 0609 0030h. {1, 0}: none.
   RestrictedCanIds pdo_reserved_can_ids{1, 0};
+  /// First and last CAN-ID of a range that PDOs may use although CiA 301, 7.3.5 restricts it, as an application profile
+  /// defines them: 180h of CiA 417. {1, 0}: none.
+  RestrictedCanIds pdo_allowed_can_ids{1, 0};
   /// PDOs may have 29-bit CAN-IDs. If false, a write with bit 29 set is rejected: 0609 0030h.
   bool pdo_extended_ids = true;
   /// TPDOs respond to remote frames. If false, bit 30 of their COB-ID must be 1, and transmission types 252 and 253 are

@@ -23,6 +23,20 @@ namespace canopen {
   return index >> 9 == tpdo_indices.communication >> 9;
 }
 
+/// Whether a PDO of the device may send or receive with a COB-ID: is_usable(), and the CAN-IDs that its options allow.
+template <class Device>
+[[nodiscard]] constexpr bool is_usable_by_pdo(std::uint32_t cob_id) {
+  if (is_in(Device::options.pdo_allowed_can_ids, cob_id)) return true;
+  return is_usable(cob_id);
+}
+
+/// The same for may_be_written() if the COB-ID is in use.
+template <class Device>
+[[nodiscard]] constexpr bool may_be_used_by_pdo(CobId cob_id, bool extended_ids) {
+  if (is_in(Device::options.pdo_allowed_can_ids, cob_id.value())) return true;
+  return may_be_written(cob_id, true, extended_ids);
+}
+
 /// Converts an inhibit time of 1800h..19FFh:03.
 [[nodiscard]] constexpr Duration inhibit_duration(const DeviceOptions& options, std::uint16_t count) {
   return Duration{std::uint32_t{count} * options.inhibit_time_unit};
@@ -71,7 +85,8 @@ template <class Device>
       if (!has_pdo_parameter_size<Device>(pdo_parameter::cob_id, 4) && bytes.size() != 4)
         return AbortCode::internal_incompatibility;
       const CobId after = written_cob_id(cob_id, Device::options.pdo_cob_id_writable, bytes);
-      if (!may_change(cob_id, after, Device::options.pdo_extended_ids)) return AbortCode::invalid_value;
+      const bool is_allowed = !cob_id.valid() && is_in(Device::options.pdo_allowed_can_ids, after.value());
+      if (!is_allowed && !may_change(cob_id, after, Device::options.pdo_extended_ids)) return AbortCode::invalid_value;
       return check_pdo_features(Device::options, tpdo, after);
     }
     case pdo_parameter::transmission_type: return check_transmission_type(Device::options, tpdo, bytes[0]);

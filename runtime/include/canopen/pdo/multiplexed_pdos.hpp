@@ -80,7 +80,8 @@ class MultiplexedPdos {
   /// Returns the first usable one with this mode; null if there is none.
   [[nodiscard]] static const Parameters* find(EntryAccess<Device> entries, std::uint8_t wanted) {
     for (const Parameters& row : rows) {
-      if (mode(entries, row) == wanted && is_usable(entries.number(row.cob_id)) && event_driven(entries, row)) {
+      if (mode(entries, row) == wanted && is_usable_by_pdo<Device>(entries.number(row.cob_id)) &&
+          event_driven(entries, row)) {
         return &row;
       }
     }

@@ -20,6 +20,7 @@ struct PdoParameters {
   std::uint8_t transmission_type = 255;       ///< sub-index 2
   std::uint16_t inhibit_time = 0;             ///< sub-index 3, in 100 us
   std::uint16_t event_timer = 0;              ///< sub-index 5, in ms
+  bool can_id_is_allowed = false;             ///< although CiA 301 restricts it: DeviceOptions::pdo_allowed_can_ids
   bool compatibility_entry = false;           ///< sub-index 4 exists, although CiA 301 does not use it
 };
 
@@ -34,6 +35,7 @@ inline constexpr std::uint32_t highest_node_id = 127;
   const std::uint32_t first = base + (parameters.plus_node_id ? 1 : 0);
   const std::uint32_t last = base + (parameters.plus_node_id ? highest_node_id : 0);
   if (last > 0x7FF) return false;
+  if (parameters.can_id_is_allowed) return true;
   for (const RestrictedCanIds& range : restricted_can_ids) {
     if (first <= range.last && last >= range.first) return false;
   }

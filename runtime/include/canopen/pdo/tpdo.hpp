@@ -271,7 +271,7 @@ class TpdoService {
     slot.type = inactive;
     slot.size = look_up(i, entries);
     const CobId cob_id{cob_id_of(i, entries)};
-    if (slot.size == 0 || !cob_id.valid() || !may_be_written(cob_id, true, true)) return;
+    if (slot.size == 0 || !cob_id.valid() || !may_be_used_by_pdo<Device>(cob_id, true)) return;
     slot.type = static_cast<std::uint8_t>(Column<pdo_parameter::transmission_type>::get(entries, i, event_driven_type));
     if (slot.type >= first_event_driven) {
       slot.flags |= event_driven;
@@ -347,9 +347,12 @@ class TpdoService {
     if constexpr (prefers_size) {
       FrameWords words;
       pack(which, store, reinterpret_cast<Data&>(words));
+      if (is_in(Device::options.pdo_allowed_can_ids, cob_id)) {
+        return send_words(bus, cob_id, slot.size, words.first, words.second);
+      }
       return send_configured(bus, cob_id, slot.size, words.first, words.second);
     } else {
-      if (!is_usable(cob_id)) return true;
+      if (!is_usable_by_pdo<Device>(cob_id)) return true;
       Frame frame;
       frame.id = cob_id & 0x1FFF'FFFF;
       frame.extended = (cob_id & CobId::extended_bit) != 0;

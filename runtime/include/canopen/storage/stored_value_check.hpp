@@ -41,6 +41,7 @@ class StoredValueCheck {
   static constexpr std::uint8_t max_mapped = 64;
   static constexpr std::uint8_t emcy_inhibit_time = 0xF7;
   static constexpr std::uint8_t error_behavior = 0xF8;
+  static constexpr std::uint8_t pdo_cob_id = 0xF6;  ///< of a device that allows restricted CAN-IDs
   static constexpr std::uint8_t rpdo_transmission = 0xF9;
   static constexpr std::uint8_t tpdo_transmission = 0xFA;
   static constexpr std::uint8_t sync_start = 0xFB;
@@ -57,6 +58,10 @@ class StoredValueCheck {
 
   [[nodiscard]] static constexpr std::uint8_t what_is(std::uint16_t index, std::uint8_t sub_index) {
     if (const std::optional<CobIdEntries> row = find_cob_id_entries(index, sub_index)) {
+      constexpr RestrictedCanIds allowed = Device::options.pdo_allowed_can_ids;
+      if (allowed.first <= allowed.last && (is_rpdo_communication(index) || is_tpdo_communication(index))) {
+        return pdo_cob_id;
+      }
       return row->has_valid_bit ? cob_id : identifier;
     }
     const bool tpdo = is_tpdo_communication(index);
@@ -183,6 +188,12 @@ class StoredValueCheck {
         const CobId id{value & (what == cob_id ? 0xFFFF'FFFF : CobId::identifier)};
         return !id.valid() || may_be_written(id, true, Device::options.pdo_extended_ids);
       }
+      case pdo_cob_id:
+        if constexpr (std::ranges::any_of(checked, is<pdo_cob_id>)) {
+          const CobId id{value};
+          return !id.valid() || may_be_used_by_pdo<Device>(id, Device::options.pdo_extended_ids);
+        }
+        return true;
       default: return true;  // a mapping
     }
   }
