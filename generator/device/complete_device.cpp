@@ -216,7 +216,7 @@ class Completion {
     const std::uint64_t bits = entry.default_value->bits;
     if (entry.index != store_parameters || bits > (on_command | autonomously) || (bits & autonomously) == 0) return;
     if (std::ranges::find(options_.autonomous_storage, entry.sub_index) != options_.autonomous_storage.end()) return;
-    diagnostics_.warning(
+    diagnostics_.note(
         "storage-autonomous", entry.default_value->position,
         fmt::format("{} is {}: the device stores by itself (bit 1), but a node stores on command; using {}; the option "
                     "storage.autonomous keeps the bit for an application that stores by itself",

@@ -102,7 +102,7 @@ inline constexpr Rule check[] = {
          "CiA 301, 7.2.8.2.2"},
     Rule{"sync-counter", warning, "1019h is 1 or above 240", "CiA 301, 7.5.2.22"},
     Rule{"error-behavior", warning, "1029h has a reserved value", "CiA 301, 7.5.2.32"},
-    Rule{"storage-autonomous", warning, "1010h says that the device stores parameters by itself", "CiA 301, 7.5.2.13"},
+    Rule{"storage-autonomous", note, "1010h says that the device stores parameters by itself", "CiA 301, 7.5.2.13"},
     Rule{"storage-default", note, "a sub-index of 1010h or 1011h has no default value", "CiA 301, 7.5.2.13"},
     Rule{"storage-sub-index", note, "a manufacturer-specific sub-index of 1010h or 1011h without entries",
          "CiA 301, 7.5.2.13"},
