@@ -12,11 +12,6 @@ struct ForeignRow {
 };
 
 constexpr ForeignRow foreign_rows[] = {
-#ifdef EDSC_WITHOUT_PCAP
-    {"\x0A\x0D\x0D\x0A", "a capture of Wireshark; this edsc was built without libpcap"},
-    {"\xD4\xC3\xB2\xA1", "a capture of tcpdump; this edsc was built without libpcap"},
-    {"\xA1\xB2\xC3\xD4", "a capture of tcpdump; this edsc was built without libpcap"},
-#endif
     {"\x1F\x8B", "compressed with gzip; use zcat and LOG -"},
     {"\x28\xB5\x2F\xFD", "compressed with zstd; use zstdcat and LOG -"},
     {"\xFD"

@@ -30,10 +30,7 @@ extern const LogFormat candump_format;
 
 /// In the order of detection; the last one is that of all other logs.
 inline constexpr const LogFormat* log_formats[] = {
-#ifndef EDSC_WITHOUT_PCAP
-    &pcapng_format, &pcap_format,
-#endif
-    &trc_format,    &asc_format,  &candump_format,
+    &pcapng_format, &pcap_format, &trc_format, &asc_format, &candump_format,
 };
 
 /// The format that the content has.

@@ -1,16 +1,17 @@
-/// Captures of tcpdump and Wireshark: pcap and pcapng with the link type CAN_SOCKETCAN. The time is in seconds since
-/// 1970 with six decimals; there is no name of an interface.
+/// Captures of tcpdump and Wireshark: the frames of interfaces with the link type CAN_SOCKETCAN, and of captures of all
+/// interfaces of Linux (LINUX_SLL, LINUX_SLL2). The time is in seconds since 1970 with six decimals. Packets of other
+/// interfaces are skipped.
 #include <fmt/format.h>
-#include <pcap/pcap.h>
-#include <stdio.h>  // fopencookie
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
+#include "decode/formats/capture_file.hpp"
 #include "decode/formats/log_formats.hpp"
 #include "decode/formats/words.hpp"
 
@@ -54,70 +55,88 @@ void parse_packet(std::span<const std::uint8_t> packet, LogLine& line) {
   std::ranges::copy(data.first(frame.size), frame.data.begin());
 }
 
+// The headers of a capture of all interfaces, "cooked mode" of Linux: the kind of the interface and the protocol.
+constexpr std::uint16_t arphrd_can = 280;
+constexpr std::uint16_t can_protocol = 0x000C, can_fd_protocol = 0x000D, can_xl_protocol = 0x000E;
+constexpr std::size_t sll_header = 16, sll2_header = 20;
+
+std::uint16_t big_endian_16(std::span<const std::uint8_t> bytes, std::size_t at) {
+  return static_cast<std::uint16_t>(bytes[at] << 8U | bytes[at + 1]);
+}
+
+bool has_frames(std::uint16_t link_type) {
+  const auto type = static_cast<LinkType>(link_type);
+  return type == LinkType::can_socketcan || type == LinkType::linux_sll || type == LinkType::linux_sll2;
+}
+
 class PacketSource final : public LogSource {
  public:
-  explicit PacketSource(LogInput& input) : input_{input} {}
-  PacketSource(const PacketSource&) = delete;
-  PacketSource& operator=(const PacketSource&) = delete;
-  ~PacketSource() override {
-    if (capture_ != nullptr) pcap_close(capture_);
-  }
+  explicit PacketSource(LogInput& input) : input_{input}, capture_{input} {}
 
   /// Returns a problem, or nothing.
   [[nodiscard]] std::string open() {
-    const cookie_io_functions_t functions{read, nullptr, nullptr, nullptr};
-    std::FILE* const file = ::fopencookie(&input_, "r", functions);
-    if (file == nullptr) return "not enough memory";
-    std::setvbuf(file, nullptr, _IONBF, 0);  // packets of a pipe are available at once, and their offset is known
-    std::array<char, PCAP_ERRBUF_SIZE> error{};
-    capture_ = pcap_fopen_offline(file, error.data());
-    if (capture_ == nullptr) {
-      std::fclose(file);
-      return fmt::format("byte {}: {}", input_.position(), error.data());
-    }
-    const int link_type = pcap_datalink(capture_);
-    if (link_type == DLT_CAN_SOCKETCAN) return "";
-    const char* const name = pcap_datalink_val_to_name(link_type);
-    return fmt::format("the link type is {}, not CAN_SOCKETCAN (227)",
-                       name != nullptr ? name : std::to_string(link_type));
+    if (!capture_.open(has_frames)) return fmt::format("byte {}: {}", input_.position(), capture_.problem());
+    const std::vector<std::uint16_t> types = capture_.link_types();
+    if (types.empty() || std::ranges::any_of(types, has_frames)) return "";
+    return fmt::format("the link type is {}, not CAN_SOCKETCAN (227)", link_type_name(types.front()));
   }
 
   [[nodiscard]] bool next(LogLine& line) override {
     if (at_end_) return false;
-    line = {};
-    line.byte = input_.position();
-    pcap_pkthdr* header = nullptr;
-    const u_char* bytes = nullptr;
-    const int result = pcap_next_ex(capture_, &header, &bytes);
-    at_end_ = result != 1;
-    if (result == PCAP_ERROR_BREAK || input_.error() != 0) return false;
-    line.number = ++packets_;
-    if (result != 1) {
-      problem_ = pcap_geterr(capture_);
-      line.kind = LogLineKind::unreadable;
-      line.problem = problem_;
-      return true;
+    while (true) {
+      line = {};
+      line.byte = input_.position();
+      CapturedPacket packet;
+      if (!capture_.next(packet)) return end_with(line);
+      line.number = ++packets_;
+      if (parse(packet, line)) return true;
     }
-    line.has_time = true;
-    const std::int64_t seconds = std::clamp<std::int64_t>(header->ts.tv_sec, 0, max_log_time_us / 1'000'000 - 1);
-    line.microseconds = seconds * 1'000'000 + std::clamp<std::int64_t>(header->ts.tv_usec, 0, 999'999);
-    time_.clear();
-    append_seconds(time_, line.microseconds);
-    line.time = time_;
-    parse_packet({bytes, header->caplen}, line);
-    return true;
   }
 
  private:
-  static ssize_t read(void* input, char* to, std::size_t most) {
-    return static_cast<ssize_t>(static_cast<LogInput*>(input)->read(to, most));
+  /// The end of the log, or an error, which is a last line.
+  bool end_with(LogLine& line) {
+    at_end_ = true;
+    if (input_.error() != 0 || capture_.problem().empty()) return false;
+    line.number = ++packets_;
+    line.kind = LogLineKind::unreadable;
+    line.problem = capture_.problem();
+    return true;
+  }
+
+  /// Returns false for a packet of an interface that is not CAN.
+  [[nodiscard]] bool parse(const CapturedPacket& packet, LogLine& line) {
+    if (!has_frames(packet.link_type)) return false;
+    bytes_.assign(packet.bytes.begin(), packet.bytes.end());
+    std::span<std::uint8_t> frame{bytes_};
+    if (const auto type = static_cast<LinkType>(packet.link_type); type != LinkType::can_socketcan) {
+      const bool is_first = type == LinkType::linux_sll;
+      const std::size_t header = is_first ? sll_header : sll2_header;
+      if (frame.size() < header || big_endian_16(frame, is_first ? 2 : 8) != arphrd_can) return false;
+      const std::uint16_t protocol = big_endian_16(frame, is_first ? 14 : 0);
+      if (protocol != can_protocol && protocol != can_fd_protocol && protocol != can_xl_protocol) return false;
+      frame = frame.subspan(header);
+      // Here the CAN-ID has the byte order of the computer, which is that of the capture.
+      if (!packet.is_big_endian && frame.size() >= packet_header) std::ranges::reverse(frame.first(4));
+    }
+    line.interface = packet.interface;
+    if (packet.microseconds) {
+      line.has_time = true;
+      line.microseconds = std::clamp<std::int64_t>(*packet.microseconds, 0, max_log_time_us - 1);
+      time_.clear();
+      append_seconds(time_, line.microseconds);
+      line.time = time_;
+    }
+    parse_packet(frame, line);
+    return true;
   }
 
   LogInput& input_;
-  pcap_t* capture_ = nullptr;
+  CaptureFile capture_;
   bool at_end_ = false;
   std::size_t packets_ = 0;
-  std::string time_, problem_;
+  std::vector<std::uint8_t> bytes_;
+  std::string time_;
 };
 
 bool begins_with_one_of(std::string_view beginning, std::span<const std::string_view> words) {

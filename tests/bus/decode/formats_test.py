@@ -40,6 +40,10 @@ def without_interface(text: str) -> list[str]:
     return [" ".join(line.split(" ")[:1] + line.split(" ")[2:]) for line in text.splitlines()]
 
 
+def candump_text(one: Frame) -> str:
+    return f"{one.can_id:0{8 if one.extended else 3}X}#{one.data.hex().upper()}"
+
+
 class Formats(unittest.TestCase):
     maxDiff = None
 
@@ -116,6 +120,72 @@ class Formats(unittest.TestCase):
             refused = edsc(log=capture)
             self.assertEqual(refused.returncode, WRONG_USAGE)
             self.assertIn(b"the link type is EN10MB, not CAN_SOCKETCAN (227)", refused.stderr)
+
+    def test_interfaces_of_a_capture(self) -> None:
+        """Packets of Ethernet are skipped, whatever their place; each section has interfaces of its own."""
+        log = log_frames.frames(60, 3)
+        ethernet = log_frames.pcapng_packet(0, 5, bytes(60))
+        capture = log_frames.pcapng_section() + log_frames.pcapng_interface("eth0", 1) + ethernet
+        capture += log_frames.pcapng_interface("can0") + log_frames.pcapng_interface("can1")
+        capture += log_frames.pcapng_block("<", 4, bytes(200_000))  # names of hosts: a block to skip
+        for number, one in enumerate(log[:40]):
+            capture += ethernet + log_frames.pcapng_packet(1 + number % 2, one.time_us, one.packet)
+        capture += log_frames.pcapng_section(">") + log_frames.pcapng_interface("can1", order=">", offset=-2)
+        for one in log[40:]:
+            capture += log_frames.pcapng_packet(0, one.time_us + 2_000_000, one.packet, ">")
+        path, reference = self.folder / "a.pcapng", self.folder / "reference.log"
+        path.write_bytes(capture)
+        names = ["can0" if number < 40 and number % 2 == 0 else "can1" for number in range(60)]
+        reference.write_text("".join(f"({one.seconds}) {name} {candump_text(one)}\n" for name, one in zip(names, log)))
+        self.assertEqual(self.text(path), self.text(reference))
+        for name in ("can0", "can1"):
+            self.assertEqual(self.text(path, "--interface", name), self.text(reference, "--interface", name))
+            self.assertEqual(self.text(path, "--interface", name).count("\n"), names.count(name))
+        self.assertEqual(self.text(path, "--interface", "can9"), "")
+
+    def test_interfaces_without_a_name_have_their_number(self) -> None:
+        one = Frame(0, 0x706, b"\x05")
+        capture = log_frames.pcapng_section() + log_frames.pcapng_interface("") * 2
+        capture += log_frames.pcapng_packet(1, 0, one.packet)
+        self.assertEqual(edsc("--interface", "1", log=capture).stdout.count(b"\n"), 1)
+        self.assertEqual(edsc("--interface", "0", log=capture).stdout, b"")
+
+    def test_captures_of_all_interfaces_of_linux(self) -> None:
+        log = log_frames.frames(200, 9)
+        for order in "<>":
+            for second in (False, True):
+                with self.subTest(order=order, second=second):
+                    capture = log_frames.pcap([], order, link_type=276 if second else 113)
+                    ethernet = log_frames.cooked(log[0], order, hardware=1, second=second)
+                    for one in log:
+                        for packet in (ethernet, log_frames.cooked(one, order, second=second)):
+                            capture += struct.pack(order + "IIII", 0, one.time_us, len(packet), len(packet)) + packet
+                    self.same(log, lambda path, _, capture=capture: path.write_bytes(capture) and None, False)
+
+    def test_older_packets_of_pcapng(self) -> None:
+        """Simple packets, which have no time, and those that are obsolete."""
+        one = Frame(0, 0x706, b"\x05")
+        start = log_frames.pcapng_section() + log_frames.pcapng_interface("")
+        simple = log_frames.pcapng_block("<", 3, struct.pack("<I", len(one.packet)) + one.packet)
+        self.assertIn(b"706 05 ", edsc(log=start + simple).stdout)
+        old = log_frames.pcapng_block("<", 2, struct.pack("<HHIIII", 0, 0, 0, 1_500_000, len(one.packet), 9) + one.packet)
+        self.assertIn(b"1.500000 706 05 ", edsc(log=start + old).stdout)
+
+    def test_damaged_captures(self) -> None:
+        one = Frame(0, 0x706, b"\x05")
+        start, packet = log_frames.pcapng_section() + log_frames.pcapng_interface("can0"), one.packet
+        good = log_frames.pcapng_packet(0, 0, packet)
+        for name, block, problem in (
+                ("interface", log_frames.pcapng_packet(7, 0, packet), "a packet of interface 7, which is unknown"),
+                ("length", good[:20] + struct.pack("<I", 400) + good[24:], "a packet that is longer than its block"),
+                ("trailer", good[:-4] + bytes(4), "the two lengths of a block differ"),
+                ("short", struct.pack("<II", 6, 8), "a block of 8 bytes"), ("odd", struct.pack("<II", 6, 33), "a block of 33 bytes"),
+                ("large", struct.pack("<II", 6, 1 << 31), "a block of 2147483648 bytes"), ("cut", good[:30], "ends within a packet"),
+                ("cut header", good[:6], "ends within the header of a block"), ("order", good[:0] + log_frames.pcapng_section()[:8] + bytes(20), "a section without byte order")):
+            with self.subTest(name):
+                result = edsc(log=start + good + block)
+                self.assertEqual((result.returncode, result.stdout.count(b"\n")), (INPUT_HAS_ERRORS, 1), result.stderr)
+                self.assertIn(problem, result.stderr.decode())
 
     def test_files_that_must_be_converted_before(self) -> None:
         line = "(1.000000) can0 706#05\n"

@@ -136,6 +136,30 @@ def pcapng_block(order: str, kind: int, body: bytes) -> bytes:
     return struct.pack(order + "II", kind, len(body) + 12) + body + struct.pack(order + "I", len(body) + 12)
 
 
+def pcapng_section(order: str = "<") -> bytes:
+    return pcapng_block(order, 0x0A0D0D0A, struct.pack(order + "IHHq", 0x1A2B3C4D, 1, 0, -1))
+
+
+def pcapng_interface(name: str, link_type: int = SOCKETCAN, order: str = "<", offset: int | None = None) -> bytes:
+    """With the options if_name and if_tsoffset."""
+    option = struct.pack(order + "HH", 2, len(name)) + name.encode() + bytes(-len(name) % 4) if name else b""
+    if offset is not None:
+        option += struct.pack(order + "HHq", 14, 8, offset)
+    return pcapng_block(order, 1, struct.pack(order + "HHI", link_type, 0, 0) + option + bytes(4))
+
+
+def pcapng_packet(interface: int, time_us: int, packet: bytes, order: str = "<") -> bytes:
+    body = struct.pack(order + "IIIII", interface, time_us >> 32, time_us & 0xFFFF_FFFF, len(packet), len(packet))
+    return pcapng_block(order, 6, body + packet)
+
+
+def cooked(one: Frame, order: str, protocol: int = 0x000C, hardware: int = 280, second: bool = False) -> bytes:
+    """LINKTYPE_LINUX_SLL, or LINKTYPE_LINUX_SLL2; the CAN-ID is in the byte order of the computer."""
+    header = (struct.pack(">HHIHBB8x", protocol, 0, 3, hardware, 0, 0) if second else
+              struct.pack(">HHH8xH", 0, hardware, 0, protocol))
+    return header + struct.pack(order + "I", struct.unpack(">I", one.packet[:4])[0]) + one.packet[4:]
+
+
 def pcapng(log: list[Frame], order: str = "<", resolution: int | None = None, link_type: int = SOCKETCAN) -> bytes:
     """draft-ietf-opsawg-pcapng, clauses 4.1 to 4.3: a section, an interface with if_tsresol, enhanced packets.
 
