@@ -16,6 +16,8 @@ help() {
   asan      the GoogleTest programs (unit and trace tests) and a short run of each fuzz target with AddressSanitizer
             and UBSan
   firmware  the images of the reference devices for Cortex-M under QEMU
+  long      builds the static program, and compares what it writes in an empty root folder with the release build; before a
+            release
 
 Without a gear: gates, odr, test, asan, firmware. The last two use the program edsc of the release build, and build it there
 if it is missing. The time of each test is printed at the end of a gear, slowest first.
@@ -26,7 +28,7 @@ HELP
 run() {
   local build=build/$1 status=0
   case $1 in
-    gates | sources | quick) build=build/test ;;
+    gates | sources | quick | long) build=build/test ;;
     unit) build=build/asan ;;
   esac
   rm -f "$build/times-$1.xml"
@@ -40,7 +42,7 @@ gears=("$@")
 [ $# -gt 0 ] || gears=(gates odr test asan firmware)
 for gear in "${gears[@]}"; do
   case $gear in
-    gates | sources | quick | odr | test | asan | firmware) ;;
+    gates | sources | quick | odr | test | asan | firmware | long) ;;
     -h | --help) help; exit ;;
     *) echo "unknown gear $gear; see ./test.sh --help" >&2; exit 2 ;;
   esac
@@ -50,6 +52,10 @@ done
 for gear in "${gears[@]}"; do
   case $gear in
     quick) for part in gates quick unit; do run "$part"; done ;;
+    long)
+      cmake --workflow --preset static
+      run long
+      ;;
     *) run "$gear" ;;
   esac
 done

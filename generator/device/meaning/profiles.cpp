@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <deque>
 #include <iterator>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -19,18 +20,23 @@ namespace {
 
 constexpr std::uint16_t first_profile_index = 0x6000, last_profile_index = 0x9FFF;
 
-struct BuiltInProfiles {
-  std::deque<SourceFile> sources;  ///< positions point to them
-  std::vector<MeaningProfile> profiles;
+/// A profile of edsc, which is read when it is needed: reading all of them takes longer than checking a device.
+class LazyProfile {
+ public:
+  explicit LazyProfile(const BuiltInProfile& file) : source_{std::string{file.name}, std::string{file.text}} {}
 
-  BuiltInProfiles() {
-    for (const BuiltInProfile& file : built_in_profiles()) {
+  [[nodiscard]] const MeaningProfile& get() {
+    std::call_once(read_, [&] {
       Diagnostics diagnostics;
-      const SourceFile& source = sources.emplace_back(std::string{file.name}, std::string{file.text});
-      profiles.push_back(read_meaning_profile(source, diagnostics));
-    }
-    std::ranges::sort(profiles, {}, &MeaningProfile::number);
+      profile_ = read_meaning_profile(source_, diagnostics);
+    });
+    return profile_;
   }
+
+ private:
+  std::once_flag read_;
+  SourceFile source_;  ///< positions point to it
+  MeaningProfile profile_;
 };
 
 constexpr std::string_view object_codes[] = {"VAR", "ARRAY", "RECORD"};
@@ -84,9 +90,10 @@ const ProfileObject* MeaningProfile::find(std::uint16_t index) const {
 }
 
 const MeaningProfile* find_profile(std::uint16_t number) {
-  const auto profiles = meaning_profiles();
-  const auto found = std::ranges::find(profiles, number, &MeaningProfile::number);
-  return found != profiles.end() ? &*found : nullptr;
+  const std::span<const BuiltInProfile> files = built_in_profiles();
+  static std::deque<LazyProfile> profiles(files.begin(), files.end());
+  const auto found = std::ranges::find(files, number, &BuiltInProfile::number);
+  return found != files.end() ? &profiles[static_cast<std::size_t>(found - files.begin())].get() : nullptr;
 }
 
 MeaningProfile::Place MeaningProfile::place_of(std::uint16_t index) const {
@@ -95,11 +102,6 @@ MeaningProfile::Place MeaningProfile::place_of(std::uint16_t index) const {
   if (axis >= repeat_count) return {index, 0};
   const auto offset = static_cast<std::uint16_t>(axis * repeat_offset);
   return {static_cast<std::uint16_t>(index - offset), offset};
-}
-
-std::span<const MeaningProfile> meaning_profiles() {
-  static const BuiltInProfiles built_in;
-  return built_in.profiles;
 }
 
 MeaningProfile read_meaning_profile(const SourceFile& source, Diagnostics& diagnostics) {

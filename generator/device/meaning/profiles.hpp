@@ -64,9 +64,6 @@ struct MeaningProfile {
   [[nodiscard]] Place place_of(std::uint16_t index) const;
 };
 
-/// The profiles of edsc, in the order of their numbers.
-[[nodiscard]] std::span<const MeaningProfile> meaning_profiles();
-
 /// The profile with this number; null if edsc does not have it.
 [[nodiscard]] const MeaningProfile* find_profile(std::uint16_t number);
 

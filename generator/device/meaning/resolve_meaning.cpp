@@ -169,12 +169,12 @@ class Resolver {
     constexpr std::uint16_t communication_profile = 301;
     const Entry* const type = device_.find(0x1000, 0);
     const auto number = type != nullptr && type->default_value ? type->default_value->bits & 0xFFFF : 0;
-    for (const MeaningProfile& profile : meaning_profiles()) {
-      if (profile.number == communication_profile || profile.number == number) {
-        profiles_.push_back({&profile, DescriptionTable{profile.meanings}});
-      }
-    }
-    std::ranges::reverse(profiles_);  // that of the device before that of all devices
+    const auto use = [&](std::uint64_t wanted) {
+      const MeaningProfile* const profile = find_profile(static_cast<std::uint16_t>(wanted));
+      if (profile != nullptr) profiles_.push_back({profile, DescriptionTable{profile->meanings}});
+    };
+    if (number != communication_profile) use(number);  // before that of all devices
+    use(communication_profile);
   }
 
   void resolve(const Object& object, Entry& entry) {

@@ -90,7 +90,7 @@ class MonitorPage(ReferenceDevices):
         self.monitor = self.start("monitor", *arguments, "--web", "127.0.0.1:0")
         url = self.monitor.stdout.readline().strip()
         if select.select([self.monitor.stderr], [], [], 0)[0]:
-            self.skipTest(self.monitor.stderr.readline().strip())  # npm could not bring uPlot when edsc was built
+            self.skipTest(self.monitor.stderr.readline().strip())  # built without plots
         return url
 
     def browse(self, script: str, *arguments: str) -> dict:

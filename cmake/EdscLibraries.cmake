@@ -1,0 +1,45 @@
+# The libraries of the program edsc, by one name each: EDSC_FMT, EDSC_PUGIXML, EDSC_ZLIB, EDSC_NETTLE and EDSC_HTTPLIB. With
+# EDSC_STATIC they are part of the program, which then needs no library of the machine.
+
+option(EDSC_STATIC "Build a program that contains its libraries and runs on any Linux with this processor" OFF)
+
+# The shared cpp-httplib of Debian brings OpenSSL and brotli. This is its source, without both.
+set(EDSC_HTTPLIB_ARCHIVE "http://deb.debian.org/debian/pool/main/c/cpp-httplib/cpp-httplib_0.11.4+ds.orig.tar.xz"
+    CACHE STRING "Source of cpp-httplib for a static program: URL or file")
+set(httplib_hash 8b1a5df569003b6a4f24c68489bbda5c64aec94697bdc9ebba5d79408b2ae7eb)
+
+if(EDSC_STATIC)
+  set(CMAKE_FIND_LIBRARY_SUFFIXES .a)
+endif()
+find_package(fmt REQUIRED)
+find_package(pugixml REQUIRED)
+find_package(ZLIB REQUIRED)
+set(EDSC_FMT fmt::fmt)
+set(EDSC_PUGIXML pugixml::pugixml)
+set(EDSC_ZLIB ZLIB::ZLIB)
+if(EDSC_STATIC)
+  set(EDSC_FMT fmt::fmt-header-only) # Debian has no static one
+  set(EDSC_PUGIXML pugixml::static)
+endif()
+
+if(NOT EDSC_OFFLINE)
+  find_path(NETTLE_INCLUDE_DIR nettle/sha2.h REQUIRED)
+  find_library(NETTLE_LIBRARY nettle REQUIRED)
+  add_library(edsc_nettle INTERFACE)
+  target_include_directories(edsc_nettle SYSTEM INTERFACE ${NETTLE_INCLUDE_DIR})
+  target_link_libraries(edsc_nettle INTERFACE ${NETTLE_LIBRARY})
+  set(EDSC_NETTLE edsc_nettle)
+  if(EDSC_STATIC)
+    include(FetchContent)
+    FetchContent_Declare(httplib URL ${EDSC_HTTPLIB_ARCHIVE} URL_HASH SHA256=${httplib_hash} DOWNLOAD_EXTRACT_TIMESTAMP OFF
+                                     SOURCE_SUBDIR none)
+    FetchContent_MakeAvailable(httplib)
+    add_library(edsc_httplib INTERFACE)
+    target_include_directories(edsc_httplib SYSTEM INTERFACE ${httplib_SOURCE_DIR})
+    set(EDSC_HTTPLIB edsc_httplib)
+  else()
+    find_package(PkgConfig REQUIRED)
+    pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
+    set(EDSC_HTTPLIB PkgConfig::HTTPLIB)
+  endif()
+endif()
