@@ -153,7 +153,10 @@ std::optional<std::string> read_file_of(const Pair& pair, const Device& device, 
   const bool is_committed = pair.before && &device == &*pair.before->device && !pair.revision.empty();
   const std::filesystem::path sheet = to_native(is_committed ? pair.path : device.source->name());
   const std::filesystem::path file = sheet.parent_path() / to_native(name);
-  return is_committed ? read_git_bytes(pair.revision, from_native(file)) : read_bytes(file);
+  if (!is_committed) return read_bytes(file);
+  GitBytes committed = read_git_bytes(pair.revision, from_native(file));
+  if (!committed.bytes && !committed.is_missing) fail(committed.error);
+  return std::move(committed.bytes);
 }
 
 void compare(Pair& pair) {

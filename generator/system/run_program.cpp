@@ -6,9 +6,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdlib>
+#include <utility>
 
 namespace edsc {
 namespace {
@@ -62,14 +64,37 @@ void drain(const Pipe& output, const Pipe& errors, ProgramOutcome& outcome,
   }
 }
 
+/// Pointers to the texts, and a null pointer after them.
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  pointers.reserve(texts.size() + 1);
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+/// `variables`, and those of this process that they do not replace.
+std::vector<std::string> environment_with(std::vector<std::string> variables) {
+  const std::size_t own = variables.size();
+  for (char** variable = environ; *variable != nullptr; ++variable) {
+    const std::string_view text = *variable;
+    const std::string_view name = text.substr(0, text.find('=') + 1);
+    const auto replaces = [&](const std::string& one) { return one.starts_with(name); };
+    if (std::none_of(variables.begin(), variables.begin() + static_cast<std::ptrdiff_t>(own), replaces)) {
+      variables.emplace_back(text);
+    }
+  }
+  return variables;
+}
+
 }  // namespace
 
 std::optional<ProgramOutcome> run_program(std::vector<std::string> words,
-                                          const std::function<void(std::string_view)>& on_output) {
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
+                                          const std::function<void(std::string_view)>& on_output,
+                                          std::vector<std::string> variables) {
+  const std::vector<char*> arguments = pointers_to(words);
+  variables = environment_with(std::move(variables));
+  const std::vector<char*> environment = pointers_to(variables);
   Pipe output;
   Pipe errors;
   if (!output.is_open() || !errors.is_open()) return std::nullopt;
@@ -79,7 +104,7 @@ std::optional<ProgramOutcome> run_program(std::vector<std::string> words,
   posix_spawn_file_actions_adddup2(&actions, output.writing(), STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, errors.writing(), STDERR_FILENO);
   pid_t process = -1;
-  const int failed = posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
+  const int failed = posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environment.data());
   posix_spawn_file_actions_destroy(&actions);
   if (failed != 0) return std::nullopt;
   output.close_writing();

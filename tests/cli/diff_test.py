@@ -233,8 +233,8 @@ class Git(CommandLine):
         self.expect(WRONG_USAGE, self.against("HEAD", new), "new.eds is not in the git revision HEAD")
         self.expect(FINE, self.against("HEAD", new, "--allow-new"), "0 breaking, 0 compatible")
         self.expect(FINE, self.against("HEAD", new, "--allow-new", "--format", "markdown"), "is new")
-        self.expect(WRONG_USAGE, self.against("nowhere", self.sheet), "git does not know a revision nowhere")
-        self.expect(WRONG_USAGE, self.against("nowhere", self.sheet, "--allow-new"), "does not know a revision nowhere")
+        self.expect(WRONG_USAGE, self.against("nowhere", self.sheet), '"nowhere" is not a git revision')
+        self.expect(WRONG_USAGE, self.against("nowhere", self.sheet, "--allow-new"), '"nowhere" is not a git revision')
         self.expect(WRONG_USAGE, self.against("--output=x", self.sheet), "is not a git revision")
         self.expect(WRONG_USAGE, self.against("HEAD", "eds/none.eds"), "none.eds is not in the git revision HEAD")
         self.sheet.unlink()
@@ -254,6 +254,73 @@ class Git(CommandLine):
         self.expect(INPUT_HAS_ERRORS, self.against("HEAD", committed), "1 breaking")
         new = self.write("eds/new[2].eds", SMALL)
         self.expect(WRONG_USAGE, self.against("HEAD", new), "new[2].eds is not in the git revision HEAD")
+
+    def test_takes_neither_a_range_nor_an_exclusion_for_a_revision(self) -> None:
+        for revision in ("^HEAD", "HEAD..HEAD", "HEAD^!", "HEAD^@", "HEAD...HEAD"):
+            for more in ((), ("--allow-new",)):
+                with self.subTest(revision=revision, more=more):
+                    self.expect(WRONG_USAGE, self.against(revision, self.sheet, *more),
+                                f'"{revision}" is not a git revision')
+
+    def test_reads_a_file_whose_folder_the_working_tree_no_longer_has(self) -> None:
+        self.sheet.unlink()
+        (self.folder / "eds").rmdir()
+        self.expect(WRONG_USAGE, self.against("HEAD", "eds/device.eds"), "cannot read eds/device.eds: No such file")
+        self.expect(WRONG_USAGE, self.against("HEAD", "eds/none.eds"), "none.eds is not in the git revision HEAD")
+
+    def object_file(self, name: str) -> Path:
+        found = subprocess.run(["git", "rev-parse", name], cwd=self.folder, capture_output=True, text=True, check=True)
+        number = found.stdout.strip()
+        return self.folder / ".git/objects" / number[:2] / number[2:]
+
+    def test_an_object_that_git_cannot_read_is_not_a_missing_file(self) -> None:
+        """A device that breaks masters is not accepted as a new one, whatever of the old one is damaged or missing."""
+        self.write("eds/device.options.json", '{"names": {"1017": "beat"}}')
+        self.write("eds/a.bin", b"\x80\0\1")
+        self.sheet.write_text(DomainFiles.TEXT.replace("NAME", "a.bin"))
+        self.git("add", ".")
+        self.git("commit", "-q", "-m", "complete")
+        self.expect(FINE, self.against("HEAD", self.sheet, "--allow-new"), "0 breaking, 0 compatible")
+        for name, message in (("HEAD:eds/device.eds", "its blob is damaged, or missing"),
+                              ("HEAD:eds/device.options.json", "its blob is damaged, or missing"),
+                              ("HEAD:eds/a.bin", "its blob is damaged, or missing"),
+                              ("HEAD:eds", "cannot read the tree of the git revision HEAD"),
+                              ("HEAD^{tree}", "cannot read the tree of the git revision HEAD"),
+                              ("HEAD", "cannot read the tree of the git revision HEAD")):
+            file = self.object_file(name)
+            content = file.read_bytes()
+            for state in ("damaged", "missing"):
+                with self.subTest(object=name, state=state):
+                    file.unlink()
+                    if state == "damaged":
+                        file.write_bytes(b"no object")
+                    self.expect(WRONG_USAGE, self.against("HEAD", self.sheet, "--allow-new"), message)
+                    file.unlink(missing_ok=True)
+                    file.write_bytes(content)
+        self.expect(FINE, self.against("HEAD", self.sheet, "--allow-new"), "0 breaking, 0 compatible")
+
+    def test_what_is_not_a_file_in_the_revision_is_named(self) -> None:
+        (self.folder / "eds/link.eds").symlink_to("device.eds")
+        self.git("add", ".")
+        self.git("commit", "-q", "-m", "link")
+        self.expect(WRONG_USAGE, self.against("HEAD", "eds/link.eds", "--allow-new"),
+                    "eds/link.eds is a symbolic link in the git revision HEAD")
+        self.expect(WRONG_USAGE, self.against("HEAD", "eds", "--allow-new"), "eds is a folder in the git revision HEAD")
+
+    def test_a_repository_of_someone_else_runs_nothing(self) -> None:
+        """A missing blob would be fetched from the promisor remote, whose address here is a command."""
+        ran = self.folder / "ran"
+        self.git("config", "core.repositoryFormatVersion", "1")
+        self.git("config", "extensions.partialClone", "origin")
+        self.git("config", "remote.origin.promisor", "true")
+        self.git("config", "remote.origin.url", f"ext::touch {ran}")
+        self.git("config", "protocol.ext.allow", "always")
+        self.object_file("HEAD:eds/device.eds").unlink()
+        self.expect(WRONG_USAGE, self.against("HEAD", self.sheet, "--allow-new"), "missing as in a partial clone")
+        self.assertFalse(ran.exists())
+        subprocess.run(["git", "show", "HEAD:eds/device.eds"], cwd=self.folder, capture_output=True, check=False,
+                       env={**os.environ, **self.environment})
+        self.assertTrue(ran.exists(), "git alone does not fetch: the repository of this test is wrong")
 
     def test_says_that_a_folder_is_not_in_a_repository(self) -> None:
         shutil_free = self.folder / ".git"
