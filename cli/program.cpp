@@ -69,9 +69,8 @@ bool report_unknown_command(const CLI::App& app) {
   const auto words = app.remaining(false);
   if (names.empty() || words.empty() || words.front().starts_with('-')) return false;
   const std::string word = without_mark(words.front());
-  edsc::print_visibly(stderr, "{}: unknown command {}{}\n",
-                      app.get_parent() == nullptr ? "edsc" : "edsc " + app.get_name(), edsc::quote(word),
-                      edsc::did_you_mean(word, names));
+  edsc::print_to_stderr("{}: unknown command {}{}\n", app.get_parent() == nullptr ? "edsc" : "edsc " + app.get_name(),
+                        edsc::quote(word), edsc::did_you_mean(word, names));
   return true;
 }
 
@@ -91,7 +90,7 @@ std::string failure_message(const CLI::App* app, const CLI::Error& problem) {
 
 /// Write errors of standard output are reported at the end.
 int report(const std::exception& problem) {
-  if (std::ferror(stdout) == 0) edsc::print_visibly(stderr, "edsc: {}\n", problem.what());
+  if (std::ferror(stdout) == 0) edsc::print_to_stderr("edsc: {}\n", problem.what());
   return edsc::exit_wrong_usage;
 }
 

@@ -22,16 +22,14 @@ bool ProgressLine::due() const { return terminal_ && Clock::now() >= next_; }
 
 void ProgressLine::show(const std::string& text) {
   if (!due()) return;
-  print_visibly(stderr, "\r{}\x1B[K", text);
-  std::fflush(stderr);
+  print_to_stderr("\r{}\x1B[K", text);
   shown_ = true;
   next_ = Clock::now() + between;
 }
 
 void ProgressLine::hide() {
   if (!shown_) return;
-  print_visibly(stderr, "\r\x1B[K");
-  std::fflush(stderr);
+  print_to_stderr("\r\x1B[K");
   shown_ = false;
 }
 

@@ -93,7 +93,7 @@ int audit_log(const Settings& given) {
   const auto print_complaints = [&] {
     if (complaints.empty()) return;
     progress.hide();
-    std::fwrite(complaints.data(), 1, complaints.size(), stderr);
+    write_to_stderr(complaints);
     complaints.clear();
   };
   const auto use = [&](LogLine& line) {

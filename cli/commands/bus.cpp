@@ -42,10 +42,15 @@ int serve(const Settings& settings) {
   events.on_frame = [&settings](const canopen::Frame& frame, const std::string& bus, socketcand::TimeStamp time) {
     if (settings.log) print_visibly(stdout, "{}\n", candump_line(frame, bus, time));
   };
-  events.on_trouble = [](const std::string& message) { print_visibly(stderr, "edsc bus: {}\n", message); };
+  events.on_trouble = [](const std::string& message) { print_to_stderr("edsc bus: {}\n", message); };
   BusServer server{address, settings.buses, settings.limits, std::move(events)};
   for (const std::string& bus : settings.buses) {
-    print_visibly(settings.log ? stderr : stdout, "socketcand:{}/{}\n", to_text(server.address()), bus);
+    const std::string place = fmt::format("socketcand:{}/{}\n", to_text(server.address()), bus);
+    if (settings.log) {
+      write_to_stderr(place);
+    } else {
+      write_output(place);
+    }
   }
   while (!WaitingSignals::noted()) {
     flush_output();

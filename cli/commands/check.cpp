@@ -160,7 +160,7 @@ int check(const Settings& settings) {
   if (!settings.explained_rule.empty())
     return explain(find_rule(check_rules, settings.explained_rule)->row(), settings.format);
   if (settings.paths.empty()) {
-    print_visibly(stderr, "edsc check: FILE is required\n");
+    print_to_stderr("edsc check: FILE is required\n");
     return exit_wrong_usage;
   }
   if (settings.repair) return check_and_repair(settings);

@@ -158,7 +158,7 @@ int repair(const RepairSettings& settings) {
   Rounds rounds{settings};
   const Checked& given = rounds.last();
   if (given.loaded->unreadable) {
-    print_findings(stderr, given.findings, settings.color);
+    print_findings(given.findings, settings.color);
     return exit_wrong_usage;
   }
   RepairPlan plan{*given.loaded->source};

@@ -51,7 +51,7 @@ Configuration read_dcf(const Settings& settings, const LoadedDevice& loaded) {
   if (!loaded.sheet.is_dcf) fail(settings.path + " is not a DCF; \"edsc format --dcf\" makes one from an EDS");
   Diagnostics diagnostics;
   Configuration configuration = configuration_of(loaded.sheet, *loaded.device, diagnostics);
-  print_findings(stderr, diagnostics, ColorOption{});
+  print_findings(diagnostics, ColorOption{});
   if (diagnostics.errors() > 0) throw Exit{};
   return configuration;
 }
@@ -95,9 +95,8 @@ void print_changes(const ConfigurationRun& run) {
 
 void print_withheld(const ConfigurationRun& run) {
   for (const ConfigurationChange& change : run.withheld) {
-    print_visibly(stderr,
-                  "edsc: not written, the node's own node-ID or bit rate: {} (--node-id-and-bit-rate writes it)\n",
-                  withheld_text(run, change));
+    print_to_stderr("edsc: not written, the node's own node-ID or bit rate: {} (--node-id-and-bit-rate writes it)\n",
+                    withheld_text(run, change));
   }
 }
 
@@ -132,8 +131,8 @@ void write_values(LiveBus& bus, SdoAccess& node, const Settings& settings, const
 }
 
 void print_result(const ConfigurationRun& run, bool text) {
-  for (const ConfigurationFailure& failure : run.result.failures) print_visibly(stderr, "{}\n", failure_text(failure));
-  for (const std::string& problem : run.problems) print_visibly(stderr, "edsc: {}\n", problem);
+  for (const ConfigurationFailure& failure : run.result.failures) print_to_stderr("{}\n", failure_text(failure));
+  for (const std::string& problem : run.problems) print_to_stderr("edsc: {}\n", problem);
   if (text) {
     print_visibly(stdout, "{}\n", summary_text(run));
   } else {

@@ -30,8 +30,8 @@ struct Settings : LogSettings {
 };
 
 /// Ends the command without a message if the reader of standard output has closed it.
-void write_out(std::FILE* stream, std::string& text) {
-  const int error_number = write_unbuffered(stream, text);
+void write_out(std::string& text) {
+  const int error_number = write_unbuffered(stdout, text);
   if (error_number == EPIPE) throw Exit{exit_fine};
   if (error_number != 0) fail(fmt::format("cannot write to standard output: {}", std::strerror(error_number)));
   text.clear();
@@ -64,8 +64,9 @@ int decode(const Settings& settings) {
   report_closed_pipes();
   std::string out, complaints;
   const auto flush = [&] {
-    write_out(stdout, out);
-    write_out(stderr, complaints);
+    write_out(out);
+    write_to_stderr(complaints);
+    complaints.clear();
   };
   if (settings.format == "csv") append_csv_header(out);
   const auto use = [&](LogLine& line) {

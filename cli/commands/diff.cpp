@@ -68,7 +68,7 @@ Diagnostics errors_of(const Diagnostics& diagnostics) {
 /// Null if the device cannot be compared; the errors are printed.
 std::unique_ptr<LoadedDevice> reported(std::unique_ptr<LoadedDevice> loaded, const Diagnostics& diagnostics,
                                        const Settings& settings) {
-  print_findings(stderr, errors_of(diagnostics), settings.color);
+  print_findings(errors_of(diagnostics), settings.color);
   return loaded->device && diagnostics.errors() == 0 ? std::move(loaded) : nullptr;
 }
 
@@ -112,7 +112,7 @@ std::optional<std::vector<Pair>> load_pairs(const Settings& settings) {
     if (committed.source) {
       pair.before = load_committed(std::move(committed), revision, path, settings);
     } else if (!is_new) {
-      print_visibly(stderr, "edsc: {}\n", committed.error);
+      print_to_stderr("edsc: {}\n", committed.error);
     }
     pair.after = load(path, settings);
     failed = failed || !pair.after || (!pair.before && !is_new);

@@ -59,7 +59,7 @@ std::unique_ptr<LoadedDevice> load_older(const Settings& settings, std::vector<s
     older = load_device(load, diagnostics);
   }
   if (older->device && diagnostics.errors() == 0) return older;
-  print_findings(stderr, diagnostics, settings.color);
+  print_findings(diagnostics, settings.color);
   throw Exit{older->unreadable ? exit_wrong_usage : exit_input_has_errors};
 }
 
@@ -74,9 +74,9 @@ int document_device(const Settings& settings) {
   const auto loaded = load_device(settings.load, diagnostics);
   if (loaded->device) report_unused_allowances(*loaded, diagnostics);
   if (loaded->unreadable || !loaded->device || diagnostics.errors() > 0) {
-    print_findings(stderr, diagnostics, settings.color);
+    print_findings(diagnostics, settings.color);
     if (can_keep_going(*loaded, diagnostics)) {
-      fmt::print(stderr, "edsc: nothing was written; --keep-going documents the rest of the device\n");
+      print_to_stderr("edsc: nothing was written; --keep-going documents the rest of the device\n");
     }
     return loaded->unreadable ? exit_wrong_usage : exit_input_has_errors;
   }
@@ -99,7 +99,7 @@ int document_network(const Settings& settings) {
   const auto loaded = load_network(settings.load.path, diagnostics);
   check_network(loaded->network, diagnostics);
   if (loaded->unreadable || diagnostics.errors() > 0) {
-    print_findings(stderr, diagnostics, settings.color);
+    print_findings(diagnostics, settings.color);
     return loaded->unreadable ? exit_wrong_usage : exit_input_has_errors;
   }
   std::vector<std::string> inputs = {settings.load.path};

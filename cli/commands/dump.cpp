@@ -45,7 +45,7 @@ int dump(const Settings& settings) {
     separate_configured_values(loaded->sheet, *loaded->device, view);
     if (settings.cpp) view["cpp"] = cpp_view(loaded->named(), loaded->options, diagnostics);
   }
-  print_findings(stderr, diagnostics, settings.color);
+  print_findings(diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
   const bool failed = !loaded->device || is_incomplete(diagnostics);
   if (!failed) fmt::print("{}\n", json_text(view));

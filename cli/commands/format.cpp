@@ -133,12 +133,12 @@ std::string_view byte_form(const SourceFile& source) {
 int check(const SourceFile& source, const std::string& text) {
   if (source.is_verbatim() && source.text() == text) return exit_fine;
   if (source.text() == text) {
-    print_visibly(stderr, "{}: the file is {}; the canonical form is UTF-8\n", source.name(), byte_form(source));
+    print_to_stderr("{}: the file is {}; the canonical form is UTF-8\n", source.name(), byte_form(source));
     return exit_input_has_errors;
   }
   const auto [in_file, in_text] = std::ranges::mismatch(source.text(), text);
   const std::uint32_t line = position_at(source, static_cast<std::size_t>(in_file - source.text().begin())).line;
-  print_visibly(stderr, "{}:{}: the canonical form differs from here on\n", source.name(), line);
+  print_to_stderr("{}:{}: the canonical form differs from here on\n", source.name(), line);
   return exit_input_has_errors;
 }
 
@@ -157,7 +157,7 @@ void write(const Settings& settings, const SourceFile& source, const std::string
   write_output(path, std::move(content));
   const bool is_utf8 = source.encoding() == Encoding::ascii || source.encoding() == Encoding::utf8;
   if (!path.empty() && !is_utf8 && !settings.concise) {
-    print_visibly(stderr, "edsc: {}: converted from {} to UTF-8\n", path, to_string(source.encoding()));
+    print_to_stderr("edsc: {}: converted from {} to UTF-8\n", path, to_string(source.encoding()));
   }
 }
 
@@ -220,7 +220,7 @@ int format_file(const Settings& settings, const std::string& path) {
         compose_overlay(input.file, {{}, false, choices_for(settings, input.of_options.choices)}, diagnostics);
     input.source = std::move(composed.text);
     if (!input.source) {
-      print_findings(stderr, diagnostics, settings.color);
+      print_findings(diagnostics, settings.color);
       return composed.is_unreadable ? exit_wrong_usage : exit_input_has_errors;
     }
   }
@@ -241,7 +241,7 @@ int format_file(const Settings& settings, const std::string& path) {
   if (diagnostics.errors() == 0) {
     content = settings.concise ? concise_dcf(input.sheet, input.device, diagnostics) : canonical_text(settings, input);
   }
-  print_findings(stderr, diagnostics, settings.color);
+  print_findings(diagnostics, settings.color);
   if (diagnostics.errors() > 0) return exit_input_has_errors;
   if (!settings.options.empty()) return write_options(settings, path, input);
   if (settings.check) return check(*input.file, content);

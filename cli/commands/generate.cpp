@@ -134,15 +134,14 @@ std::vector<OutputFile> render_all(const Settings& settings, LoadedDevice& loade
 OutputFile render_dbc(const Settings& settings, const NamedDevice& named) {
   if (!named.device.node_id) throw_requires("--dbc", "--node-id or a DCF, since CAN-IDs depend on the node-ID");
   Dbc dbc = dbc_of(named.device, named.identifiers());
-  for (const std::string& note : dbc.notes) fmt::print(stderr, "edsc: not in the DBC file: {}\n", note);
+  for (const std::string& note : dbc.notes) print_to_stderr("edsc: not in the DBC file: {}\n", note);
   return {settings.dbc, std::move(dbc.text)};
 }
 
 /// A note on the value of an option that the next version does not have.
 void print_removed_option(const Settings& settings, const LoadedDevice& loaded) {
   if (loaded.options.typed_values || settings.output.empty() || settings.target != targets().front().name) return;
-  print_visibly(
-      stderr,
+  print_to_stderr(
       "{}: note: \"typed_values\": false will be removed in the next version; values with a meaning then have "
       "a type of their own\n",
       loaded.options_source->name());
@@ -179,14 +178,14 @@ int generate(const Settings& settings) {
     if (!settings.output.empty()) files = render_all(settings, *loaded, diagnostics, inputs);
     files.insert(files.end(), std::make_move_iterator(dbc.begin()), std::make_move_iterator(dbc.end()));
   }
-  print_findings(stderr, diagnostics, settings.color);
+  print_findings(diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
   if (!is_device || diagnostics.errors() > 0) {
-    if (has_hint && files.empty()) fmt::print(stderr, "{}\n", keep_going_hint);
+    if (has_hint && files.empty()) print_to_stderr("{}\n", keep_going_hint);
     return exit_input_has_errors;
   }
   if (settings.load.keep_going || diagnostics.any_silenced() || !lists_all(diagnostics)) {
-    fmt::print(stderr, "{}", left_out_text(left_out));
+    write_to_stderr(left_out_text(left_out));
   }
   print_removed_option(settings, *loaded);
   write_all_files(files, inputs);

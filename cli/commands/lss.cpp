@@ -181,8 +181,8 @@ std::string confirm_node_id(LssSession& session, const Settings& settings, const
     if (is_node_id(after) && after.value != settings.node_id && after.value != before.value) {
       return fmt::format("the device accepted node-ID {}, but reports {}", settings.node_id, after.value);
     }
-    print_visibly(stderr, "edsc: node-ID {} is used after \"edsc nmt BUS reset-communication {}\"\n", settings.node_id,
-                  before.value);
+    print_to_stderr("edsc: node-ID {} is used after \"edsc nmt BUS reset-communication {}\"\n", settings.node_id,
+                    before.value);
     return "";
   }
   if (session.responds(settings.node_id, boot_time)) return "";
@@ -220,7 +220,7 @@ int run_lss(const Settings& settings) {
     timeouts.fastscan_step = canopen::Duration{settings.step_ms * 1000U};
     LssSession session{bus, timeouts};
     const std::string problem = settings.service(session, settings);
-    if (!problem.empty()) print_visibly(stderr, "edsc: {}\n", problem);
+    if (!problem.empty()) print_to_stderr("edsc: {}\n", problem);
     bus.listen(canopen::from_milliseconds(10));  // the port may still hold the last frame
     return problem.empty() ? exit_fine : exit_device_failed;
   });

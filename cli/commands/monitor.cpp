@@ -87,10 +87,9 @@ class Monitor {
     EmergencyLog emergencies;
     const WebServer server{address, monitor_page(view_.bus), rows};
     if (!RequestGuard::is_loopback(address.host)) {
-      fmt::print(stderr,
-                 "edsc: whoever sees this URL in the network can read the bus; the connection is not encrypted\n");
+      print_to_stderr("edsc: whoever sees this URL in the network can read the bus; the connection is not encrypted\n");
     }
-    if (!has_plots()) fmt::print(stderr, "edsc: this program was built without uPlot: the page has no plots\n");
+    if (!has_plots()) print_to_stderr("edsc: this program was built without uPlot: the page has no plots\n");
     fmt::print("{}\n", server.url());
     flush_output();
     while (!Interruption::noted()) {
@@ -171,7 +170,7 @@ int serve(Monitor& monitor, const ListenAddress& address) {
   try {
     return monitor.show_in_browser(address);
   } catch (const CannotListen& problem) {
-    fmt::print(stderr, "edsc: {}\n", problem.what());
+    print_to_stderr("edsc: {}\n", problem.what());
     return exit_wrong_usage;
   }
 }

@@ -74,7 +74,7 @@ int apply(const ApplySettings& settings) {
   } else {
     diagnostics.error("overlay-file", {overlay.get()}, "missing section [Overlay]");
   }
-  print_findings(stderr, diagnostics, settings.color);
+  print_findings(diagnostics, settings.color);
   if (composed.is_unreadable) return exit_wrong_usage;
   if (diagnostics.errors() > 0) return exit_input_has_errors;
   EditedBytes result = result_bytes(composed, settings.utf8);
@@ -118,8 +118,7 @@ int from(const FromSettings& settings) {
   const std::shared_ptr<const SourceFile> edited = read_or_fail(settings.edited, text->choices());
   DerivedOverlay derived = derive_overlay(text, *text_of_base(edited), path_from(settings.output, settings.base));
   if (!derived.problem.empty()) {
-    print_visibly(stderr, "edsc: {}: an overlay cannot express {}; nothing was written\n", settings.edited,
-                  derived.problem);
+    print_to_stderr("edsc: {}: an overlay cannot express {}; nothing was written\n", settings.edited, derived.problem);
     return exit_input_has_errors;
   }
   write_output(settings.output, std::move(derived.text), {settings.base, settings.edited});
@@ -150,7 +149,7 @@ int rebase(const RebaseSettings& settings) {
   }
   const std::shared_ptr<const SourceFile> text = read_base(settings.base, diagnostics);
   if (!text) {
-    print_findings(stderr, diagnostics, {});
+    print_findings(diagnostics, {});
     return exit_input_has_errors;
   }
   const std::vector<LineOutcome> outcomes = edits_of(overlay, SheetText{*text}, false, diagnostics).outcomes;

@@ -38,7 +38,7 @@ int write_corrections(const Settings& settings, NewOverlay overlay) {
   Diagnostics findings;
   findings.limit_notes(Notes::none);
   const auto corrected = load_device({settings.output, settings.options, "", std::nullopt}, findings);
-  if (findings.errors() > 0) print_findings(stderr, findings, settings.color);
+  if (findings.errors() > 0) print_findings(findings, settings.color);
   return findings.errors() > 0 ? exit_input_has_errors : exit_fine;
 }
 

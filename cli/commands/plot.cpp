@@ -204,7 +204,7 @@ int plot(const Settings& settings) {
   const auto print_complaints = [&] {
     if (complaints.empty()) return;
     progress.hide();
-    std::fwrite(complaints.data(), 1, complaints.size(), stderr);
+    write_to_stderr(complaints);
     complaints.clear();
   };
   const auto use = [&](LogLine& line) {
@@ -231,7 +231,7 @@ int plot(const Settings& settings) {
                {}};
   for (Wanted& one : wanted) {
     if (one.line.empty()) {
-      print_visibly(stderr, "{}: {} has no values\n", settings.log_name(), one.line.name);
+      print_to_stderr("{}: {} has no values\n", settings.log_name(), one.line.name);
     } else {
       picture.lines.push_back(std::move(one.line));
     }

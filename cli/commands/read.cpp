@@ -154,7 +154,7 @@ void print_line(const LiveEntry& entry, const SdoOutcome& outcome, bool raw) {
   if (outcome.done()) {
     print_visibly(stdout, "{} = {}\n", title(entry), raw ? hex_bytes(outcome.bytes) : value_of(entry, outcome.bytes));
   } else {
-    print_visibly(stderr, "edsc: {}: {}\n", title(entry), failure_text(outcome));
+    print_to_stderr("edsc: {}: {}\n", title(entry), failure_text(outcome));
   }
 }
 
@@ -198,7 +198,7 @@ int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chose
     silent = outcome.end == SdoEnd::no_answer ? silent + 1 : 0;
     heard = heard || silent == 0;
     if (silent >= (heard ? max_silent : 1) && i + 1 != entries.size()) {
-      print_visibly(stderr, "edsc: node {} does not answer: {} more not read\n", settings.node, entries.size() - i - 1);
+      print_to_stderr("edsc: node {} does not answer: {} more not read\n", settings.node, entries.size() - i - 1);
       break;
     }
   }

@@ -58,7 +58,7 @@ Json as_json(const Settings& settings, const NodeConfiguration& found, const Sav
 }
 
 void report(const Settings& settings, const NodeConfiguration& found, const SavedDcf& saved) {
-  for (const NotSaved& one : saved.missing) print_visibly(stderr, "edsc: {}: {}\n", title(one.entry), one.what);
+  for (const NotSaved& one : saved.missing) print_to_stderr("edsc: {}: {}\n", title(one.entry), one.what);
   if (settings.format == "json") {
     fmt::print("{}\n", json_text(as_json(settings, found, saved)));
     return;
@@ -68,7 +68,11 @@ void report(const Settings& settings, const NodeConfiguration& found, const Save
   if (!settings.output.empty()) text += " to " + settings.output;
   if (!found.process_data.empty()) text += fmt::format(", {} left out (process data)", found.process_data.size());
   if (!saved.missing.empty()) text += fmt::format(", {} not saved", saved.missing.size());
-  print_visibly(settings.output.empty() ? stderr : stdout, "{}\n", text);
+  if (settings.output.empty()) {
+    print_to_stderr("{}\n", text);
+  } else {
+    print_visibly(stdout, "{}\n", text);
+  }
 }
 
 NodeConfiguration read_node(SdoAccess& node, const Settings& settings, const Device& device) {

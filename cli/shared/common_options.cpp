@@ -22,8 +22,10 @@ bool ColorOption::on(std::FILE* stream) const {
   return is_terminal(stream) && std::getenv("NO_COLOR") == nullptr;
 }
 
-void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color) {
-  print_text(stream, diagnostics, {.colour = color.on(stream)});
+void print_findings(const Diagnostics& diagnostics, const ColorOption& color) {
+  std::string text;
+  print_text(text, diagnostics, {.colour = color.on(stderr)});
+  write_to_stderr(text);
 }
 
 void add_options_option(Command command, std::string& path) {

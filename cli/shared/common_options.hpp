@@ -35,8 +35,8 @@ struct ColorOption {
   [[nodiscard]] bool on(std::FILE* stream) const;
 };
 
-/// Prints findings as text to a stream.
-void print_findings(std::FILE* stream, const Diagnostics& diagnostics, const ColorOption& color);
+/// Prints findings as text to standard error.
+void print_findings(const Diagnostics& diagnostics, const ColorOption& color);
 
 /// `--options FILE` of a device.
 void add_options_option(Command command, std::string& path);

@@ -98,7 +98,7 @@ bool load_sheet(const ConformanceSettings& settings, ConformanceTest& test) {
   test.loaded = load_device(load, test.findings);
   test.run.dut.findings = conform::sheet_findings(test.findings);
   if (test.loaded->device) return true;
-  print_findings(stderr, test.findings, settings.color);
+  print_findings(test.findings, settings.color);
   return false;
 }
 
@@ -118,7 +118,7 @@ bool load_deviations(const ConformanceSettings& settings, DeclaredDeviations& de
   if (!declared.source) fail(problem);
   Diagnostics diagnostics;
   declared.all = conform::read_deviations(*declared.source, diagnostics);
-  print_findings(stderr, diagnostics, settings.color);
+  print_findings(diagnostics, settings.color);
   return diagnostics.errors() == 0;
 }
 

@@ -16,7 +16,7 @@ void report_default_scales(std::uint8_t node, const Device& device) {
     }
   }
   for (const std::string& source : sources) {
-    print_visibly(stderr, "edsc: node {}: units {} in the EDS\n", node, source);
+    print_to_stderr("edsc: node {}: units {} in the EDS\n", node, source);
   }
 }
 

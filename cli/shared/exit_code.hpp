@@ -20,7 +20,7 @@ struct Exit {
 
 /// Ends the command with a message on standard error.
 [[noreturn]] inline void fail(std::string_view message, int exit_code = exit_wrong_usage) {
-  print_visibly(stderr, "edsc: {}\n", message);
+  print_to_stderr("edsc: {}\n", message);
   throw Exit{exit_code};
 }
 

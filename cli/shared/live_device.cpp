@@ -46,12 +46,12 @@ std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uin
   auto loaded = load_device(settings, diagnostics);
   if (loaded->device) {
     if (diagnostics.errors() > 0) {
-      print_visibly(stderr, "edsc: {}: {}; what is wrong is left out (\"edsc check --keep-going\" lists it)\n",
+      print_to_stderr("edsc: {}: {}; what is wrong is left out (\"edsc check --keep-going\" lists it)\n",
                     printable(path), counted(diagnostics.errors(), "error"));
     }
     return loaded;
   }
-  print_findings(stderr, diagnostics, ColorOption{});
+  print_findings(diagnostics, ColorOption{});
   throw Exit{};
 }
 
@@ -96,21 +96,21 @@ void check_node(SdoAccess& node, const Device& device, const std::string& path, 
 
 void report_not_compared(const SdoAccess& node, const std::string& what) {
   if (what.empty()) return;
-  print_visibly(stderr, "edsc: node {}: not compared: {}\n", node.node().value(), what);
+  print_to_stderr("edsc: node {}: not compared: {}\n", node.node().value(), what);
 }
 
 void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome) {
   if (outcome.block_failure.empty()) return;
-  print_visibly(stderr, "edsc: {}: the block transfer failed: {}; trying a segmented transfer\n", title(entry),
+  print_to_stderr("edsc: {}: the block transfer failed: {}; trying a segmented transfer\n", title(entry),
                 outcome.block_failure);
 }
 
 bool report_live_scales(LiveScales& scales) {
   for (const std::string& one : scales.take_differences()) {
-    print_visibly(stderr, "edsc: {}; units are those of the device\n", one);
+    print_to_stderr("edsc: {}; units are those of the device\n", one);
   }
   const std::string failure = scales.take_failure();
-  if (!failure.empty()) print_visibly(stderr, "edsc: {}; values in its unit are raw numbers\n", failure);
+  if (!failure.empty()) print_to_stderr("edsc: {}; values in its unit are raw numbers\n", failure);
   return failure.empty();
 }
 

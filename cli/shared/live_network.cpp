@@ -22,7 +22,7 @@ void end_if_errors(const Diagnostics& diagnostics, const LoadedNetwork& loaded) 
   for (const Diagnostic& one : diagnostics.all()) {
     if (one.severity == Severity::error) errors.report(one);
   }
-  print_findings(stderr, errors, ColorOption{});
+  print_findings(errors, ColorOption{});
   throw Exit{loaded.unreadable ? exit_wrong_usage : exit_input_has_errors};
 }
 
@@ -76,9 +76,9 @@ decltype(NetworkHooks::progress) show_progress(ProgressLine& line, const std::ve
 void report_identities(const std::vector<LiveNode>& nodes) {
   for (const LiveNode& live : nodes) {
     const std::string revision = other_minor_revision(live);
-    if (!revision.empty()) print_visibly(stderr, "edsc: {}: {}\n", label(*live.node), revision);
+    if (!revision.empty()) print_to_stderr("edsc: {}: {}\n", label(*live.node), revision);
     const std::string numbers = identity_not_compared(live);
-    if (!numbers.empty()) print_visibly(stderr, "edsc: {}: not compared: {}\n", label(*live.node), numbers);
+    if (!numbers.empty()) print_to_stderr("edsc: {}: not compared: {}\n", label(*live.node), numbers);
   }
 }
 

@@ -39,7 +39,7 @@ void print_errors(const Diagnostics& diagnostics, const ColorOption& color) {
   for (const Diagnostic& one : diagnostics.all()) {
     if (one.severity == Severity::error && !is_mapping_rule(one.rule)) errors.report(one);
   }
-  print_findings(stderr, errors, color);
+  print_findings(errors, color);
 }
 
 /// The device of a node. Errors in its EDS are printed; the rest is used.

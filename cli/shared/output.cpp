@@ -26,7 +26,7 @@ bool flushed() {
 bool finish_output(int error_number) {
   errno = error_number;
   if (flushed()) return true;
-  fmt::print(stderr, "edsc: {}{}{}\n", problem, errno == 0 ? "" : ": ", errno == 0 ? "" : std::strerror(errno));
+  print_to_stderr("edsc: {}{}{}\n", problem, errno == 0 ? "" : ": ", errno == 0 ? "" : std::strerror(errno));
   return false;
 }
 

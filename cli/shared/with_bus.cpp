@@ -12,10 +12,10 @@ int with_bus(const std::string& address, const std::function<int(LiveBus&)>& com
     LiveBus bus{address};
     return command(bus);
   } catch (const BusLost& problem) {
-    print_visibly(stderr, "edsc: {}: the bus is lost: {}\n", address, problem.what());
+    print_to_stderr("edsc: {}: the bus is lost: {}\n", address, problem.what());
     return exit_device_failed;
   } catch (const Interrupted&) {
-    print_visibly(stderr, "edsc: interrupted\n");
+    print_to_stderr("edsc: interrupted\n");
     return exit_interrupted;
   }
 }

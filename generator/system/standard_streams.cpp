@@ -1,10 +1,12 @@
 #include "system/standard_streams.hpp"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <csignal>
+#include <ctime>
 
 #include "system/write_all.hpp"
 
@@ -21,6 +23,18 @@ void occupy_standard_descriptors() {
 bool is_terminal(std::FILE* stream) { return isatty(fileno(stream)) != 0; }
 
 void report_closed_pipes() { std::signal(SIGPIPE, SIG_IGN); }
+
+void write_to_stderr(std::string_view text) {
+  sigset_t of_pipe{}, before{}, pending{};
+  sigemptyset(&of_pipe);
+  sigaddset(&of_pipe, SIGPIPE);
+  sigpending(&pending);
+  pthread_sigmask(SIG_BLOCK, &of_pipe, &before);
+  const bool is_new = write_all(STDERR_FILENO, text) == EPIPE && sigismember(&pending, SIGPIPE) == 0;
+  constexpr timespec at_once{};
+  if (is_new) static_cast<void>(sigtimedwait(&of_pipe, nullptr, &at_once));
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
 
 int write_unbuffered(std::FILE* stream, std::string_view text) { return write_all(fileno(stream), text); }
 

@@ -15,6 +15,10 @@ void occupy_standard_descriptors();
 /// From now on, writing to a pipe that its reader has closed fails with EPIPE and does not end the program.
 void report_closed_pipes();
 
+/// Writes text to standard error, immediately. Nothing happens if that is closed, is full, or is a pipe that its reader
+/// has closed. All of edsc writes to standard error with this function.
+void write_to_stderr(std::string_view text);
+
 /// Writes text immediately, past the buffer of the stream, which must be empty. Returns 0, or the error number.
 [[nodiscard]] int write_unbuffered(std::FILE* stream, std::string_view text);
 

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <type_traits>
 
+#include "system/standard_streams.hpp"
+
 namespace edsc {
 
 /// Returns true for a code point that a terminal or editor interprets or hides instead of displaying it: C0 and C1
@@ -59,6 +61,13 @@ template <typename... Values>
 void print_visibly(std::FILE* stream, fmt::format_string<detail::Printed<std::decay_t<Values>>...> format,
                    const Values&... values) {
   fmt::print(stream, format, detail::printed<std::decay_t<Values>>(values)...);
+}
+
+/// The same to standard error. A message that cannot be written changes neither the work of a command nor its exit
+/// code.
+template <typename... Values>
+void print_to_stderr(fmt::format_string<detail::Printed<std::decay_t<Values>>...> format, const Values&... values) {
+  write_to_stderr(fmt::format(format, detail::printed<std::decay_t<Values>>(values)...));
 }
 
 }  // namespace edsc

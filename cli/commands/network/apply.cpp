@@ -35,15 +35,15 @@ void print_differences(const LiveNode& live) {
     print_visibly(stdout, "{}: {}\n", label(*live.node), change_text(change));
   }
   for (const ConfigurationChange& change : live.run.withheld) {
-    print_visibly(stderr, "edsc: {}: not written, the node's own node-ID or bit rate: {}\n", label(*live.node),
-                  withheld_text(live.run, change));
+    print_to_stderr("edsc: {}: not written, the node's own node-ID or bit rate: {}\n", label(*live.node),
+                    withheld_text(live.run, change));
   }
   std::fflush(stdout);
 }
 
 void print_result(const LiveNode& live, bool text) {
   for (const ConfigurationFailure& failure : live.run.result.failures) {
-    print_visibly(stderr, "{}\n", failure_text(failure, label(*live.node) + ": "));
+    print_to_stderr("{}\n", failure_text(failure, label(*live.node) + ": "));
   }
   if (text) print_visibly(stdout, "{}: {}\n", live.node->name, summary_text(live.run));
   std::fflush(stdout);
@@ -51,9 +51,9 @@ void print_result(const LiveNode& live, bool text) {
 
 void print_problems(const std::vector<LiveNode>& nodes) {
   for (const LiveNode& live : nodes) {
-    for (const NodeProblem& problem : live.problems) print_visibly(stderr, "{}\n", problem_text(problem));
+    for (const NodeProblem& problem : live.problems) print_to_stderr("{}\n", problem_text(problem));
     for (const std::string& problem : live.run.problems) {
-      print_visibly(stderr, "{}\n", problem_text({label(*live.node) + ": " + problem, live.node->position}));
+      print_to_stderr("{}\n", problem_text({label(*live.node) + ": " + problem, live.node->position}));
     }
   }
 }
@@ -67,7 +67,7 @@ void report(const Settings& settings, const LiveNetwork& network, bool writes) {
   } else if (writes) {
     print_visibly(stdout, "{}\n", apply_summary(network.nodes));
   } else {
-    print_visibly(stderr, "edsc: nothing written\n");
+    print_to_stderr("edsc: nothing written\n");
   }
   std::fflush(stdout);
 }

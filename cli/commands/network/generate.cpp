@@ -37,10 +37,10 @@ int generate(const Settings& settings) {
   check_network(loaded->network, diagnostics);
   GeneratedNetwork generated;
   if (diagnostics.errors() == 0) generated = generate_network(loaded->network, diagnostics);
-  print_findings(stderr, diagnostics, settings.color);
+  print_findings(diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
   if (diagnostics.errors() > 0) return exit_input_has_errors;
-  for (const std::string& note : generated.notes) print_visibly(stderr, "edsc: not in the DBC file: {}\n", note);
+  for (const std::string& note : generated.notes) print_to_stderr("edsc: not in the DBC file: {}\n", note);
   std::vector<OutputFile>& files = generated.files;
   std::ranges::move(network_drawings(loaded->network), std::back_inserter(files));
   for (OutputFile& file : files) file.path = join_path(settings.output, file.path);

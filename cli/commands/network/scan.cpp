@@ -40,9 +40,9 @@ int scan_network(LiveBus& bus, const Settings& settings, const SheetFolder& shee
   std::vector<std::string> inputs;
   for (const SheetFile& file : sheets.files) inputs.push_back(file.path);
   write_output(settings.output, network.text, inputs);
-  for (const std::string& note : network.notes) print_visibly(stderr, "edsc: {}\n", note);
-  if (!settings.bit_rate) print_visibly(stderr, "edsc: the bit rate is not known; --bit-rate states it\n");
-  for (const std::string& error : network.errors) print_visibly(stderr, "edsc: {}\n", error);
+  for (const std::string& note : network.notes) print_to_stderr("edsc: {}\n", note);
+  if (!settings.bit_rate) print_to_stderr("edsc: the bit rate is not known; --bit-rate states it\n");
+  for (const std::string& error : network.errors) print_to_stderr("edsc: {}\n", error);
   if (!settings.output.empty()) {
     print_visibly(stdout, "{}: {} of {}\n", settings.output, network.nodes, counted(found.size(), "node"));
   }
@@ -51,7 +51,7 @@ int scan_network(LiveBus& bus, const Settings& settings, const SheetFolder& shee
 
 int run_scan(const Settings& settings) {
   const SheetFolder sheets = read_sheet_folder(settings.folder);
-  for (const std::string& problem : sheets.problems) print_visibly(stderr, "edsc: {}\n", problem);
+  for (const std::string& problem : sheets.problems) print_to_stderr("edsc: {}\n", problem);
   if (sheets.files.empty()) fail(settings.folder + " does not contain an EDS, DCF or XDD file");
   return with_bus(settings.bus, [&](LiveBus& bus) { return scan_network(bus, settings, sheets); });
 }

@@ -96,7 +96,7 @@ int report(const Settings& settings, const SimulatedNetwork& simulated) {
   } else {
     for (const std::string& line : simulation_lines(simulated)) print_visibly(stdout, "{}\n", line);
   }
-  for (const std::string& problem : problems) print_visibly(stderr, "edsc: {}\n", problem);
+  for (const std::string& problem : problems) print_to_stderr("edsc: {}\n", problem);
   return problems.empty() ? exit_fine : exit_device_failed;
 }
 
@@ -116,7 +116,7 @@ int simulate(const Settings& settings) {
     timing = network_timing(network, cob_id_uses(network));
     source = simulation_source(network, timing, diagnostics);
   }
-  print_findings(stderr, diagnostics, settings.color);
+  print_findings(diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
   if (diagnostics.errors() > 0) return exit_input_has_errors;
   const Interruption interruption;
@@ -127,10 +127,10 @@ int simulate(const Settings& settings) {
     return report(settings, {network, timing, faults, result});
   } catch (const SimulationError& problem) {
     if (Interruption::noted()) {
-      print_visibly(stderr, "edsc: interrupted\n");
+      print_to_stderr("edsc: interrupted\n");
       return exit_interrupted;
     }
-    fmt::print(stderr, "edsc: {}\n", problem.what());
+    write_to_stderr(fmt::format("edsc: {}\n", problem.what()));
     return exit_wrong_usage;
   }
 }
