@@ -103,6 +103,8 @@ void BoundedServer::set_threads(std::size_t count) {
   new_task_queue = [count] { return new ConnectionThreads{count}; };
 }
 
+void BoundedServer::lengthen_queue() { ::listen(svr_sock_, SOMAXCONN); }
+
 void BoundedServer::end_connections() {
   const std::lock_guard lock{mutex_};
   has_ended_ = true;

@@ -14,6 +14,10 @@ class BoundedServer final : public httplib::Server {
  public:
   void set_threads(std::size_t count);
 
+  /// After binding: connections that the server has not accepted yet wait, as many as the system allows. httplib lets
+  /// five wait; the others would be delayed by seconds.
+  void lengthen_queue();
+
   /// Closes all connections, and each later one at once, so that stop() does not wait for a client.
   void end_connections();
 

@@ -106,6 +106,7 @@ class WebServer::Implementation {
                      : server_.bind_to_port(address.host, address.port) ? address.port
                                                                         : -1;
     if (port <= 0) throw CannotListen{"cannot listen at " + to_text(address)};
+    server_.lengthen_queue();
     address.port = static_cast<std::uint16_t>(port);
     return address;
   }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -21,6 +20,7 @@
 #include "shared/exit_code.hpp"
 #include "shared/git_device.hpp"
 #include "system/path.hpp"
+#include "system/read_file.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -140,12 +140,14 @@ void check_files(const Settings& settings) {
   if (settings.against.empty() && settings.allow_new) throw_requires("--allow-new", "--against");
 }
 
+/// Nothing if the file does not exist.
 std::optional<std::string> read_bytes(const std::filesystem::path& path) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  std::ifstream file{path, std::ios::binary};
-  std::string bytes{std::istreambuf_iterator<char>{file}, {}};
-  return file.bad() ? std::nullopt : std::optional{std::move(bytes)};
+  if (!std::filesystem::exists(path, error)) return std::nullopt;
+  std::string bytes;
+  const std::string problem = read_file(from_native(path), bytes);
+  if (!problem.empty()) fail(fmt::format("cannot read {}: {}", from_native(path), problem));
+  return bytes;
 }
 
 /// Reads a file that an EDS names, beside the EDS or in the git revision of the EDS.

@@ -2,16 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "lookup/find_entry.hpp"
 #include "online/identity.hpp"
 #include "shared/common_options.hpp"
 #include "shared/exit_code.hpp"
+#include "system/read_file.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
 
@@ -47,7 +44,7 @@ std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uin
   if (loaded->device) {
     if (diagnostics.errors() > 0) {
       print_to_stderr("edsc: {}: {}; what is wrong is left out (\"edsc check --keep-going\" lists it)\n",
-                    printable(path), counted(diagnostics.errors(), "error"));
+                      printable(path), counted(diagnostics.errors(), "error"));
     }
     return loaded;
   }
@@ -102,7 +99,7 @@ void report_not_compared(const SdoAccess& node, const std::string& what) {
 void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome) {
   if (outcome.block_failure.empty()) return;
   print_to_stderr("edsc: {}: the block transfer failed: {}; trying a segmented transfer\n", title(entry),
-                outcome.block_failure);
+                  outcome.block_failure);
 }
 
 bool report_live_scales(LiveScales& scales) {
@@ -115,15 +112,14 @@ bool report_live_scales(LiveScales& scales) {
 }
 
 bool read_bytes(const std::string& path, std::vector<std::uint8_t>& bytes, std::string& problem) {
-  errno = 0;
-  try {
-    std::ifstream file{path, std::ios::binary};
-    if (file) bytes.assign(std::istreambuf_iterator<char>{file}, {});
-    if (file && !file.bad()) return true;
-  } catch (const std::ios_base::failure&) {  // of a folder, which opens like a file
+  std::string content;
+  problem = read_file(path, content);
+  if (!problem.empty()) {
+    problem = fmt::format("{}: {}", path, problem);
+    return false;
   }
-  problem = fmt::format("{}: {}", path, errno != 0 ? std::strerror(errno) : "cannot be read");
-  return false;
+  bytes.assign(content.begin(), content.end());
+  return true;
 }
 
 }  // namespace edsc

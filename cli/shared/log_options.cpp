@@ -109,7 +109,7 @@ LogNodes load_log_nodes(const LogSettings& settings) {
 std::function<void()> read_log(const LogSettings& settings, const std::function<void(LogLine&)>& use,
                                const std::function<void()>& before_waiting) {
   const InputFile file{settings.log};
-  if (file.error() != 0) fail(fmt::format("{}: {}", settings.log, std::strerror(file.error())));
+  if (!file.error().empty()) fail(fmt::format("{}: {}", settings.log, file.error()));
   // An interrupt ends the log, so that the summary is printed; the second one ends the program.
   const WaitingSignals interrupts({SIGINT}, WaitingSignals::Second::ends_program);
   LogInput input{[&](char* to, std::size_t most) -> std::ptrdiff_t {

@@ -38,7 +38,7 @@ std::string options_path_of(const LoadSettings& settings, const LoadedDevice& lo
   for (const std::string& path : paths) {
     const fs::path beside = to_native(path).replace_extension(".options.json");
     std::error_code error;
-    if (fs::is_regular_file(beside, error)) return from_native(beside);
+    if (fs::exists(beside, error)) return from_native(beside);
   }
   return "";
 }
@@ -165,6 +165,7 @@ std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnost
   if (settings.keep_going) diagnostics.keep_going(loaded->source.get());
   if (settings.check && !settings.profile_path.empty()) {
     loaded->user_profile = std::make_unique<UserProfile>(read_user_profile(settings.profile_path, diagnostics));
+    loaded->unreadable = !loaded->user_profile->is_readable;
   }
   if (settings.static_mapping) loaded->options.static_mapping.all = true;
   resolve_and_check(*loaded, settings, diagnostics);
@@ -190,7 +191,7 @@ bool apply_overlays(LoadedDevice& loaded, const ComposeSettings& settings, Diagn
     composed = compose_overlay(file, settings, diagnostics);
   } else if (const auto overlay = find_overlay(folders, file, diagnostics)) {
     composed = compose_overlay(overlay, file, settings, diagnostics);
-    print_visibly(stderr, "edsc: {}: changed by {} of EDSC_OVERLAYS\n", file->name(), overlay->name());
+    print_to_stderr("edsc: {}: changed by {} of EDSC_OVERLAYS\n", file->name(), overlay->name());
   } else {
     return true;
   }

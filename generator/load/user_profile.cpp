@@ -56,6 +56,7 @@ UserProfile read_user_profile(const std::string& path, Diagnostics& diagnostics)
   if (!result.source) {
     result.source = std::make_unique<SourceFile>(path, std::string{});
     diagnostics.error("unreadable-file", Position{result.source.get()}, error);
+    result.is_readable = false;
     return result;
   }
   Diagnostics ignored;  // a database describes no device: it lacks what a device must have

@@ -12,6 +12,7 @@ namespace edsc {
 
 struct UserProfile {
   std::unique_ptr<SourceFile> source;
+  bool is_readable = true;
   MeaningProfile profile;  ///< its number is that of 1000h; 0: the rows apply to each device
 };
 

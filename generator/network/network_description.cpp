@@ -10,6 +10,8 @@
 
 #include "diagnostics/quote.hpp"
 #include "json/json_file.hpp"
+#include "text/ascii.hpp"
+#include "text/printable.hpp"
 #include "text/suggestion.hpp"
 
 namespace edsc {
@@ -28,7 +30,8 @@ std::optional<std::string> eds_text(const Json& value) {
 constexpr std::size_t max_name_length = 64;
 constexpr std::size_t max_nodes = 127;
 
-/// A name is also that of files and, without its blanks, of C++. Bytes above 7Fh are parts of letters in UTF-8.
+/// A name is also that of files and, without its blanks, of C++. Bytes above 7Fh are parts of letters in UTF-8;
+/// characters that an editor hides, such as those that change the text direction, are not letters.
 bool is_node_name(std::string_view name) {
   const auto is_valid = [](char one) {
     const auto byte = static_cast<unsigned char>(one);
@@ -36,7 +39,13 @@ bool is_node_name(std::string_view name) {
            (byte >= 'a' && byte <= 'z') || byte == '_' || byte == '-' || byte == ' ';
   };
   return !name.empty() && name.size() <= max_name_length && name.front() != ' ' && name.back() != ' ' &&
-         std::ranges::all_of(name, is_valid);
+         std::ranges::all_of(name, is_valid) && printable(name) == name;
+}
+
+std::string in_lower_case(std::string_view name) {
+  std::string out{name};
+  for (char& c : out) c = to_lower(c);
+  return out;
 }
 
 class NetworkReader {
@@ -177,11 +186,25 @@ class NetworkReader {
       }
       NodeDescription node;
       node.name = {name, file_.name_position(*json)};
+      check_case(*json, name, network);
       read_members(*json, node, node_members, {});
       check_node(*json, node);
       network.nodes.push_back(std::move(node));
     }
     if (nodes->empty()) error(*nodes, "the network does not have a node");
+  }
+
+  /// The files of a node have its name, and not all file systems tell upper from lower case.
+  void check_case(const Json& json, const std::string& name, const NetworkDescription& network) {
+    const auto is_same = [&, lower = in_lower_case(name)](const NodeDescription& other) {
+      return in_lower_case(other.name.value) == lower;
+    };
+    if (const auto other = std::ranges::find_if(network.nodes, is_same); other != network.nodes.end()) {
+      error(json,
+            fmt::format("the names {} and {} differ only in upper and lower case: their files would have one name "
+                        "on Windows",
+                        quote(other->name.value), quote(name)));
+    }
   }
 
   void check_node(const Json& json, const NodeDescription& node) {

@@ -2,18 +2,37 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
 #include <string_view>
 
 namespace edsc {
 namespace {
 
-/// A path in a make rule: blanks, dollars and hashes escaped.
+/// What neither make nor ninja can read, or only one of them: control characters, `;`, a backslash before `#` or `:`,
+/// and a backslash or colon as the last character.
+bool is_expressible(std::string_view path) {
+  if (path.ends_with('\\') || path.ends_with(':')) return false;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const auto c = static_cast<unsigned char>(path[i]);
+    if (c < 0x20 || c == 0x7F || c == ';') return false;
+    if (c == '\\' && (path[i + 1] == '#' || path[i + 1] == ':')) return false;
+  }
+  return true;
+}
+
+/// A path in a make rule. Backslashes are doubled before a blank only.
 std::string make_path(std::string_view path) {
+  if (!is_expressible(path)) {
+    throw std::runtime_error{fmt::format("a depfile cannot name the file \"{}\"", path)};
+  }
   std::string out;
+  std::size_t backslashes = 0;
   for (const char c : path) {
-    if (c == ' ' || c == '#') out += '\\';
+    if (c == ' ') out.append(backslashes, '\\');
+    if (c == ' ' || c == '#' || c == ':') out += '\\';
     if (c == '$') out += '$';
     out += c;
+    backslashes = c == '\\' ? backslashes + 1 : 0;
   }
   return out;
 }

@@ -1,10 +1,11 @@
 #include "system/input_file.hpp"
 
-#include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
+
+#include "system/read_file.hpp"
 
 namespace edsc {
 namespace {
@@ -21,12 +22,8 @@ bool wait_for(int descriptor, const WaitingSignals& interrupts) {
 }  // namespace
 
 InputFile::InputFile(const std::string& path)
-    : descriptor_{path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC)},
-      error_{descriptor_ < 0 ? errno : 0} {}
-
-InputFile::~InputFile() {
-  if (descriptor_ > STDIN_FILENO) ::close(descriptor_);
-}
+    : file_{path == "-" ? canopen::Descriptor{} : open_input(path, InputKind::stream, error_)},
+      descriptor_{path == "-" ? STDIN_FILENO : file_.number()} {}
 
 std::ptrdiff_t InputFile::read_some(char* to, std::size_t most, const WaitingSignals& interrupts) const {
   if (!wait_for(descriptor_, interrupts)) return 0;

@@ -3,16 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <filesystem>
 #include <iterator>
 #include <stdexcept>
-#include <system_error>
 #include <utility>
 
 #include "system/gzip.hpp"
 #include "system/path.hpp"
+#include "system/read_file.hpp"
 #include "text/code_page.hpp"
 #include "text/utf8.hpp"
 
@@ -23,6 +20,7 @@ constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
 constexpr std::string_view utf16_le_mark = "\xFF\xFE";
 constexpr std::string_view utf16_be_mark = "\xFE\xFF";
 
+static_assert(SourceFile::max_bytes == max_file_bytes);
 constexpr std::string_view too_large = "larger than 1 GiB";
 
 /// Detects UTF-16 without a byte order mark: at the start of the text, exactly every second byte is NUL.
@@ -37,46 +35,6 @@ bool has_nul_as_every_second_byte(std::string_view bytes, std::size_t first_nul)
     }
   }
   return true;
-}
-
-std::string reason(int error_number) { return std::generic_category().message(error_number); }
-
-constexpr std::size_t read_at_once = std::size_t{1} << 16;
-
-/// Reads all of `file` into `bytes`, whose size is an estimate. Returns the reason on failure, otherwise an empty
-/// string.
-std::string read_all(std::FILE* file, std::string& bytes) {
-  std::size_t size = 0;
-  std::size_t got = 0;
-  do {
-    bytes.resize(std::max(size + read_at_once, bytes.size()));
-    errno = 0;
-    got = std::fread(bytes.data() + size, 1, bytes.size() - size, file);
-    size += got;
-    if (size > SourceFile::max_bytes) {
-      return std::string(too_large);
-    }
-  } while (got > 0);
-  bytes.resize(size);
-  return std::ferror(file) != 0 ? reason(errno) : std::string();
-}
-
-std::string read_file(const std::string& path, std::string& bytes) {
-  std::error_code ignored;
-  if (const std::filesystem::path native = to_native(path); std::filesystem::is_regular_file(native, ignored)) {
-    const std::uintmax_t size = std::filesystem::file_size(native, ignored);
-    if (!ignored && size > SourceFile::max_bytes) {
-      return std::string(too_large);
-    }
-    bytes.resize(ignored ? 0 : static_cast<std::size_t>(size) + read_at_once);
-  }
-  std::FILE* const file = std::fopen(path.c_str(), "rb");
-  if (file == nullptr) {
-    return reason(errno);
-  }
-  std::string why = read_all(file, bytes);
-  std::fclose(file);
-  return why;
 }
 
 /// The name of a file in diagnostics.
@@ -240,7 +198,7 @@ LineOrigin SourceFile::origin(std::uint32_t line) const {
 
 FileBytes read_bytes(const std::string& path) {
   FileBytes file;
-  std::string why = path == "-" ? read_all(stdin, file.bytes) : read_file(path, file.bytes);
+  std::string why = read_file(path, file.bytes);
   file.packing = is_gzip(file.bytes) ? Packing::gzip : Packing::none;
   if (why.empty() && file.packing == Packing::gzip) {
     const std::string packed = std::move(file.bytes);

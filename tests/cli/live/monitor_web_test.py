@@ -176,6 +176,16 @@ class MonitorWeb(LiveTest):
             client.sendall(b"G")
         self.expect_alive()
 
+    def test_connections_wait_in_a_long_queue(self) -> None:
+        """While the server does not accept any, such as on a busy computer, the system keeps more than the five of httplib."""
+        self.monitor.send_signal(signal.SIGSTOP)
+        try:
+            clients = [self.connect() for _ in range(60)]
+        finally:
+            self.monitor.send_signal(signal.SIGCONT)
+        self.assertEqual(len(clients), 60)
+        self.expect_alive()
+
     def test_many_silent_clients(self) -> None:
         """The five seconds of all pass at the same time, and none delays the end. One after another they take 50 seconds."""
         clients = [self.connect() for _ in range(320)]

@@ -283,13 +283,13 @@ class Generate(unittest.TestCase):
             self.assertEqual((self.out / "node" / path.name).read_text(), path.read_text(), path.name)
 
     def test_names_in_cpp_differ(self) -> None:
-        """A node and a sheet with the name of the network, and two nodes whose names differ in case."""
+        """A node and a sheet with the name of the network, and two nodes whose names are one name in C++."""
         shutil.copy(self.folder / "node.eds", self.folder / "plant.eds")
-        self.generate(PLANT.replace('"a": {"node_id": 1, "eds": "node.eds"', '"B": {"node_id": 1, "eds": "plant.eds"')
-                      .replace('"a"', '"B"').replace('"a.', '"B.'))
+        self.generate(PLANT.replace('"a": {"node_id": 1, "eds": "node.eds"', '"b-1": {"node_id": 1, "eds": "plant.eds"')
+                      .replace('"a"', '"b-1"').replace('"a.', '"b-1.').replace('"b"', '"b_1"').replace('"b.', '"b_1.'))
         text = (self.out / "plant.hpp").read_text()
-        for line in ("namespace b {", "namespace b_2 {", "using ::plant_device::Device;", "using ::node::Device;",
-                     '{ "B", b::node_id, 0x81 },', '{ "b", b_2::node_id, 0x82 },'):
+        for line in ("namespace b_1 {", "namespace b_1_2 {", "using ::plant_device::Device;", "using ::node::Device;",
+                     '{ "b-1", b_1::node_id, 0x81 },', '{ "b_1", b_1_2::node_id, 0x82 },'):
             self.assertIn(line, text)
         self.compile("plant.hpp")
 

@@ -36,6 +36,14 @@ TEXTS = {  # name: (text, exit code, findings as (severity, rule, line, column))
                             [("error", "network-file", 2, 2)]),
     "name_with_line_end": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": true},\n "a/b": {"node_id": 2, '
                            '"master": true}}}', 1, [("error", "network-file", 2, 2)]),
+    "names_that_differ_in_case": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": true}, "Axis": {"node_id": 2, "eds": "node.eds"},\n'
+                                  ' "aXIS": {"node_id": 3, "eds": "node.eds"}}}', 1, [("error", "network-file", 2, 2)]),
+    "name_that_changes_the_text_direction": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": true},\n "a\\u202Eb": {"node_id": 2, '
+                                             '"eds": "node.eds"}}}', 1, [("error", "network-file", 2, 2)]),
+    "name_with_a_control_character": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": true},\n "a\\u0085b": {"node_id": 2, '
+                                      '"eds": "node.eds"}}}', 1, [("error", "network-file", 2, 2)]),
+    "name_with_letters_of_another_script": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": true}, "Ось": {"node_id": 2, '
+                                            '"eds": "node.eds"}}}', 0, []),
     "node_id_of_an_eds": ('{"bit_rate": 500, "nodes": {"m": {"node_id": 1, "master": true}, "a": {"node_id": 128, "eds": "node.eds"}}}',
                           1, [("error", "network-file", 1, 83)]),
     "reserved_overflow": ('{"bit_rate": 500, "sync": {"overflow": 1}, "nodes": {"m": {"node_id": 1, "master": true}}}', 1,
