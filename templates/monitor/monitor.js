@@ -319,8 +319,12 @@
   };
   pause.addEventListener('click', togglePause);
 
+  /* A text that a spreadsheet would evaluate as a formula gets an apostrophe; numbers such as -5 are none, also with a unit. */
+  const number = /^[+-]?\d+(\.\d+)?(e[+-]?\d+)?( [^=+\-@|!()&;"']*)?$/i;
+  const plain = (text) => (/^[=+\-@\t\r\n]/.test(text) && !number.test(text) ? `'${text}` : text);
+  const quoted = (text) => (/[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
   /* RFC 4180: records end with CR LF; a field with a comma, a quotation mark or a line end is in quotation marks. */
-  const field = (text) => (/[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+  const field = (text) => quoted(plain(text));
   const csv = () => {
     const chosen = plots.size ? [...plots.values()].map((plot) => plot.one) : [...series.values()];
     const lines = ['time,node,pdo,object,name,value,unit'];

@@ -1,5 +1,8 @@
 #include "decode/log/print_csv.hpp"
 
+#include <charconv>
+#include <system_error>
+
 #include "decode/log/value_number.hpp"
 #include "device/meaning/value_parts.hpp"
 #include "text/printable.hpp"
@@ -9,8 +12,24 @@
 namespace edsc {
 namespace {
 
-/// In quotation marks if it has a comma, a quotation mark or a line end (RFC 4180, 2).
+/// Whether a spreadsheet would evaluate the text as a formula. Numbers such as -5 are none, also with a unit: `-5 mm`.
+bool is_formula(std::string_view text) {
+  if (text.empty() || std::string_view{"=+-@\t\r\n"}.find(text.front()) == std::string_view::npos) return false;
+  const std::string_view digits = text.substr(text.front() == '+' ? 1 : 0);
+  double number = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (error != std::errc{}) return true;
+  const std::string_view unit = digits.substr(static_cast<std::size_t>(end - digits.data()));
+  return !unit.empty() && (unit.front() != ' ' || unit.find_first_of("=+-@|!()&;\"'") != std::string_view::npos);
+}
+
+/// A text of a file or device. In quotation marks if it has a comma, a quotation mark or a line end (RFC 4180, 2); with
+/// an apostrophe before a formula, so that it stays text.
 void append_field_text(std::string& out, std::string_view text) {
+  if (is_formula(text)) {
+    append_field_text(out, std::string{"'"}.append(text));
+    return;
+  }
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
     append_printable(out, text);
     return;

@@ -270,6 +270,29 @@ class Formats(unittest.TestCase):
                     self.assertEqual(float(row["value"]), float(value["value"]))
         self.assertIsNone(next(records, None))
 
+    def test_csv_has_no_formulas(self) -> None:
+        """A spreadsheet evaluates a text that begins with = + - @; a name of a file or a text of a device is none."""
+        sheet = self.folder / "names.eds"
+        names = ("=1+1", "+1+1", "-1+1", "@SUM(A1)", "plain", "-5", "=1,2")
+        sections = "".join(f"\n[{0x2000 + i:X}]\nParameterName={name}\nObjectType=7\nDataType=3\nAccessType=rw\nPDOMapping=0\n"
+                           for i, name in enumerate(names))
+        sections += "\n[2100]\nParameterName=text\nObjectType=7\nDataType=9\nAccessType=rw\nPDOMapping=0\n"
+        sheet.write_text(f"[ManufacturerObjects]\nSupportedObjects={len(names) + 1}\n"
+                         + "".join(f"{i + 1}=0x{0x2000 + i:X}\n" for i in range(len(names)))
+                         + f"{len(names) + 1}=0x2100\n{sections}", encoding="utf-8")
+        log = self.folder / "names.log"
+        log.write_text("".join(f"({i}.0) can0 609#2B{i:02X}2000FBFF0000\n" for i in range(len(names)))
+                       + "(8.0) can0 609#230021003D312B31\n", encoding="utf-8")
+        text = edsc("--node", f"9={sheet}", log, "--format", "csv").stdout.decode()
+        rows = list(csv.DictReader(io.StringIO(text, newline=""), strict=True))
+        self.assertEqual([row["name"] for row in rows],
+                         ["'=1+1", "'+1+1", "'-1+1", "'@SUM(A1)", "plain", "-5", "'=1,2", "text"])
+        self.assertEqual([row["value"] for row in rows[:-1]], ["-5"] * len(names))
+        self.assertEqual(rows[-1]["value"], '"=1+1"')
+        for row in rows:
+            for field in row.values():
+                self.assertFalse(field.startswith(("=", "+", "@", "\t")), field)
+
     def test_csv_of_an_empty_log(self) -> None:
         self.assertEqual(len(edsc("--format", "csv").stdout.splitlines()), 1)
         refused = edsc("--format", "csv", "--summary")

@@ -150,17 +150,17 @@ class MonitorPage(ReferenceDevices):
             return f"{time}.000000,5,TPDO 1,{object_},{number},\r\n"
 
         head = "time,node,pdo,object,name,value,unit\r\n"
-        real, count = "2000h:01,real", "2000h:02,count"
+        real, count = "2000h:01,'=real", "2000h:02,count"
         self.assertEqual(found["csv"]["sameFrame"], head + record(1, count, 7))
         self.assertEqual(found["csv"]["afterNan"], head + record(3, real, 1.5) + record(1, count, 7) + record(3, count, 8))
         absent = "not in the last frame"
-        self.assertEqual(found["short"], {"texts": ["2.5", absent], "plots": ["node 5 real2.5", "node 5 count" + absent]})
-        self.assertEqual(found["empty"], {"texts": [absent] * 2, "plots": ["node 5 real" + absent, "node 5 count" + absent]})
-        self.assertEqual(found["whole"], {"texts": ["3.5", "9"], "plots": ["node 5 real3.5", "node 5 count9"]})
+        self.assertEqual(found["short"], {"texts": ["2.5", absent], "plots": ["node 5 =real2.5", "node 5 count" + absent]})
+        self.assertEqual(found["empty"], {"texts": [absent] * 2, "plots": ["node 5 =real" + absent, "node 5 count" + absent]})
+        self.assertEqual(found["whole"], {"texts": ["3.5", "9"], "plots": ["node 5 =real3.5", "node 5 count9"]})
         self.assertEqual(found["csv"]["afterShort"],
                          head + record(3, real, 1.5) + record(4, real, 2.5) + record(6, real, 3.5)
                          + record(1, count, 7) + record(3, count, 8) + record(6, count, 9))
-        self.assertEqual(found["mappedAnew"], {"texts": ["3.5", str(-2**63)], "plots": ["node 5 real3.5"]})
+        self.assertEqual(found["mappedAnew"], {"texts": ["3.5", str(-2**63)], "plots": ["node 5 =real3.5"]})
         self.assertGreater(found["wide"], 150, "the numbers of the axis are not cut off")
         self.assertGreater(found["drawn"], 0, "a value of one point is drawn")
         for name in ("connected", "again", "reconnected"):
@@ -171,7 +171,7 @@ class MonitorPage(ReferenceDevices):
         self.assertEqual(found["isPressed"], "true", "a key that is held down acts once")
         self.assertEqual(found["hidden"], "9.0", "a tab in the background is not drawn")
         self.assertEqual(found["found"], "1 of 2 values")
-        self.assertEqual(found["pausedPlots"], ["node 5 real3.5", "node 5 other1"], "a new plot leaves those that are paused")
+        self.assertEqual(found["pausedPlots"], ["node 5 =real3.5", "node 5 other1"], "a new plot leaves those that are paused")
         self.assertEqual(found["header"], "static", "it does not cover what has the focus")
         self.assertEqual(found["ink"], "rgb(27, 31, 36)", "paper is not dark")
         self.assertTrue(found["printed"], "a plot is not wider than the paper")

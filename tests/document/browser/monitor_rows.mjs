@@ -51,22 +51,22 @@ async function use(page) {
   await page.goto(url, { waitUntil: 'load' });
 
   found.connected = await connectionAfter(bus(0));
-  await show(bus(1), pdo(1, 2, [value(1, 'real', 'nan', null), value(2, 'count', '7', 7)]));
-  await show(bus(2), pdo(1, 1, [value(1, 'real', 'nan', null), value(2, 'count', '7', 7)]));
+  await show(bus(1), pdo(1, 2, [value(1, '=real', 'nan', null), value(2, 'count', '7', 7)]));
+  await show(bus(2), pdo(1, 1, [value(1, '=real', 'nan', null), value(2, 'count', '7', 7)]));
   found.csv.sameFrame = await exported(page);
-  await show(bus(3), pdo(3, 1, [value(1, 'real', '1.5', 1.5), value(2, 'count', '8', 8)]));
+  await show(bus(3), pdo(3, 1, [value(1, '=real', '1.5', 1.5), value(2, 'count', '8', 8)]));
   found.csv.afterNan = await exported(page);
 
   for (const box of await page.$$('#value-rows input')) await box.click();
-  await show(bus(4), pdo(4, 1, [value(1, 'real', '2.5', 2.5)], 'too short: 4 of 5 bytes'));
+  await show(bus(4), pdo(4, 1, [value(1, '=real', '2.5', 2.5)], 'too short: 4 of 5 bytes'));
   found.short = { texts: await texts(), plots: await plots() };
   await show(bus(5), pdo(5, 1, [], 'too short: 0 of 5 bytes'));
   found.empty = { texts: await texts(), plots: await plots() };
-  await show(bus(6), pdo(6, 1, [value(1, 'real', '3.5', 3.5), value(2, 'count', '9', 9)]));
+  await show(bus(6), pdo(6, 1, [value(1, '=real', '3.5', 3.5), value(2, 'count', '9', 9)]));
   found.whole = { texts: await texts(), plots: await plots() };
   found.csv.afterShort = await exported(page);
 
-  await show(bus(7), pdo(7, 1, [value(1, 'real', '3.5', 3.5), value(3, 'other', '-9223372036854775808', -(2 ** 63))]));
+  await show(bus(7), pdo(7, 1, [value(1, '=real', '3.5', 3.5), value(3, 'other', '-9223372036854775808', -(2 ** 63))]));
   found.mappedAnew = { texts: await texts(), plots: await plots() };
   await page.click('#value-rows tr:last-child input');
   // The width beside the axis of the last plot, and whether its one point is drawn.
@@ -111,7 +111,7 @@ async function use(page) {
   }
   found.isPressed = await page.$eval('#pause', (one) => one.getAttribute('aria-pressed'));
   await page.click('#value-rows tr:last-child input');
-  await show(bus(21), pdo(21, 1, [value(1, 'real', '4.5', 4.5), value(3, 'other', '1', 1)]));
+  await show(bus(21), pdo(21, 1, [value(1, '=real', '4.5', 4.5), value(3, 'other', '1', 1)]));
   await page.click('#value-rows tr:last-child input');
   found.pausedPlots = await plots();
   await page.setViewport({ width: 320, height: 600 });
