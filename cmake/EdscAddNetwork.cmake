@@ -30,7 +30,7 @@ function(edsc_add_network target file)
     OUTPUT ${stamp}
     BYPRODUCTS ${output_dir}/network-devices.hpp
     COMMAND ${CMAKE_COMMAND} -E env --unset=EDSC_OVERLAYS $<TARGET_FILE:edsc::edsc> network generate ${network} -o
-            ${output_dir} --depfile ${depfile} --depfile-target ${stamp}
+            ${output_dir} --force --depfile ${depfile} --depfile-target ${stamp}
     COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
     DEPENDS ${network} edsc::edsc $<TARGET_FILE:edsc::edsc>
     DEPFILE ${depfile}

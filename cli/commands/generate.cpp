@@ -14,6 +14,7 @@
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
+#include "shared/generated_files.hpp"
 #include "shared/left_out_text.hpp"
 #include "shared/output.hpp"
 #include "system/depfile.hpp"
@@ -43,6 +44,7 @@ struct Settings {
   std::string target{targets().front().name};
   std::string templates;
   bool verbose = false;
+  ReplaceSettings replace;
   ColorOption color;
 };
 
@@ -188,6 +190,13 @@ int generate(const Settings& settings) {
     write_to_stderr(left_out_text(left_out));
   }
   print_removed_option(settings, *loaded);
+  // Headers of the user's own templates need not have the mark; a DBC file and a depfile are named by the user.
+  if (settings.templates.empty()) {
+    std::vector<OutputFile> headers = files;
+    std::erase_if(headers,
+                  [&](const OutputFile& one) { return one.path == settings.dbc || one.path == settings.depfile; });
+    check_marks(headers, settings.replace);
+  }
   write_all_files(files, inputs);
   if (settings.verbose) {
     for (const OutputFile& file : files) print_visibly(stdout, "{}\n", file.path);
@@ -219,6 +228,7 @@ void add_generate_options(Command command, int& exit_code) {
   command.add_option("--depfile-target", settings.depfile_target, "target of the dependencies (default: the headers)");
   command.add_flag("--keep-going", settings.load.keep_going, keep_going_help);
   command.add_flag("-v,--verbose", settings.verbose, "print the names of the files that are written");
+  add_replace_options(command, settings.replace, false);
   settings.color.add_to(command);
 }
 

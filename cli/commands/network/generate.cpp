@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include "commands/commands.hpp"
 #include "document/network_drawings.hpp"
@@ -12,7 +13,7 @@
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
-#include "shared/output.hpp"
+#include "shared/generated_files.hpp"
 #include "system/depfile.hpp"
 #include "system/path.hpp"
 #include "text/printable.hpp"
@@ -27,6 +28,7 @@ struct Settings {
   std::string depfile;
   std::string depfile_target;
   bool verbose = false;
+  ReplaceSettings replace;
   ColorOption color;
 };
 
@@ -43,15 +45,19 @@ int generate(const Settings& settings) {
   for (const std::string& note : generated.notes) print_to_stderr("edsc: not in the DBC file: {}\n", note);
   std::vector<OutputFile>& files = generated.files;
   std::ranges::move(network_drawings(loaded->network), std::back_inserter(files));
-  for (OutputFile& file : files) file.path = join_path(settings.output, file.path);
+  std::vector<OutputFile> placed = files;
+  for (OutputFile& file : placed) file.path = join_path(settings.output, file.path);
+  std::vector<OutputFile> others;
   if (!settings.depfile.empty()) {
-    files.push_back({settings.depfile, depfile_text(settings.depfile_target, files, generated.inputs)});
+    others.push_back({settings.depfile, depfile_text(settings.depfile_target, placed, generated.inputs)});
+    placed.push_back(others.back());
   }
-  write_all_files(files, generated.inputs);
-  if (settings.verbose) {
-    for (const OutputFile& file : files) print_visibly(stdout, "{}\n", file.path);
+  const int exit_code =
+      write_generated_files(settings.output, std::move(files), std::move(others), generated.inputs, settings.replace);
+  if (settings.verbose && !settings.replace.check) {
+    for (const OutputFile& file : placed) print_visibly(stdout, "{}\n", file.path);
   }
-  return exit_fine;
+  return exit_code;
 }
 
 }  // namespace
@@ -65,6 +71,7 @@ void add_network_generate_options(Command command, int& exit_code) {
   command.add_option("--depfile-target", settings.depfile_target, "target of the dependencies (default: the files)")
       .needs(depfile);
   command.add_flag("-v,--verbose", settings.verbose, "print the names of the files that are written");
+  add_replace_options(command, settings.replace, true);
   settings.color.add_to(command);
 }
 

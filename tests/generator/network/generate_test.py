@@ -90,11 +90,59 @@ class Generate(unittest.TestCase):
     def test_the_files(self) -> None:
         self.generate()
         self.assertEqual(sorted(path.name for path in self.out.iterdir()),
-                         ["a.cdcf", "a.dcf", "b.cdcf", "b.dcf", "master", "master.cdcf", "master.dcf", "master.eds",
+                         [".edsc-files", "a.cdcf", "a.dcf", "b.cdcf", "b.dcf", "master", "master.cdcf", "master.dcf", "master.eds",
                           "network-devices.hpp", "node", "plant.dbc", "plant.dot", "plant.hpp", "plant.svg", "plant_cycle.svg"])
         for device in ("master", "node"):
             self.assertEqual(sorted(path.name for path in (self.out / device).iterdir()),
                              ["description.hpp", "device.hpp", "dictionary.hpp", "meaning.hpp", "meaning_text.hpp", "pdo.hpp"])
+
+    def contents(self) -> dict[str, bytes]:
+        return {str(path.relative_to(self.out)): path.read_bytes() for path in self.out.rglob("*") if path.is_file()}
+
+    def test_a_file_of_others_is_not_replaced(self) -> None:
+        for name in ("master.eds", "a.dcf", "a.cdcf", "plant.dbc", "plant.dot", "plant.svg", "plant.hpp", "node/device.hpp"):
+            with self.subTest(name):
+                shutil.rmtree(self.out, ignore_errors=True)
+                path = self.out / name
+                path.parent.mkdir(parents=True)
+                path.write_text("written by hand\n")
+                self.assertIn(f"out/{name}: edsc has not written this file", self.generate(exit_code=2).stderr)
+                self.assertEqual(self.contents(), {name: b"written by hand\n"})
+                checked = self.generate(PLANT, "--check", exit_code=1).stdout
+                self.assertIn(f"out/{name}: would be replaced by --force", checked)
+                self.assertEqual(self.contents(), {name: b"written by hand\n"})
+                self.generate(PLANT, "--force")
+                self.assertNotEqual(path.read_text(), "written by hand\n")
+                self.generate(PLANT)
+
+    def test_a_file_that_was_changed_since_is_not_replaced(self) -> None:
+        self.generate()
+        changed = self.out / "a.dcf"
+        changed.write_text(changed.read_text() + "; a remark of mine\n")
+        before = self.contents()
+        self.assertIn("out/a.dcf: edsc has not written this file, or it was changed since", self.generate(exit_code=2).stderr)
+        self.assertEqual(self.contents(), before)
+        self.generate(PLANT, "--force")
+        self.assertNotIn("remark of mine", changed.read_text())
+        self.generate()
+
+    def test_check_writes_nothing(self) -> None:
+        self.assertIn("out/a.dcf: would be created", self.generate(PLANT, "--check", exit_code=1).stdout)
+        self.assertFalse(self.out.exists())
+        self.generate()
+        before = self.contents()
+        self.assertEqual(self.generate(PLANT, "--check").stdout, "")
+        (self.out / "b.dcf").unlink()
+        self.assertEqual(self.generate(PLANT, "--check", exit_code=1).stdout, "out/b.dcf: would be created\n")
+        (self.out / "b.dcf").write_bytes(before["b.dcf"])
+        other = PLANT.replace('"a": {"node_id": 1', '"a": {"node_id": 11')
+        self.assertNotEqual(other, PLANT)
+        shown = self.generate(other, "--check", exit_code=1).stdout
+        self.assertIn("out/a.dcf: would be replaced\n", shown)
+        self.assertNotIn("b.cdcf", shown)
+        self.assertEqual(self.contents(), before)
+        self.generate(other)
+        self.assertNotEqual(self.contents(), before)
 
     def test_a_dcf_has_the_values_of_the_network_file_and_a_mapping_as_a_whole(self) -> None:
         self.generate()
