@@ -151,15 +151,18 @@ class NetworkLoader {
 }  // namespace
 
 std::unique_ptr<LoadedNetwork> load_network(const std::string& path, Diagnostics& diagnostics) {
-  auto loaded = std::make_unique<LoadedNetwork>();
   std::string problem;
-  loaded->network.source = read_source_file(path, problem);
-  if (loaded->network.source == nullptr) {
-    loaded->network.source = std::make_unique<SourceFile>(path, std::string{});
-    diagnostics.error("unreadable-file", Position{loaded->network.source.get()}, problem);
-    loaded->unreadable = true;
-    return loaded;
-  }
+  if (auto source = read_source_file(path, problem)) return load_network(std::move(source), diagnostics);
+  auto loaded = std::make_unique<LoadedNetwork>();
+  loaded->network.source = std::make_unique<SourceFile>(path, std::string{});
+  diagnostics.error("unreadable-file", Position{loaded->network.source.get()}, problem);
+  loaded->unreadable = true;
+  return loaded;
+}
+
+std::unique_ptr<LoadedNetwork> load_network(std::unique_ptr<SourceFile> source, Diagnostics& diagnostics) {
+  auto loaded = std::make_unique<LoadedNetwork>();
+  loaded->network.source = std::move(source);
   loaded->network.description = read_network_file(*loaded->network.source, diagnostics);
   NetworkLoader{*loaded, diagnostics}.load();
   return loaded;

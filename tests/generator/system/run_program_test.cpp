@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -35,6 +36,15 @@ TEST(RunProgram, ReturnsNothingForAnUnknownProgram) { EXPECT_FALSE(run_program({
 TEST(RunCommandLine, HasTheVariable) {
   EXPECT_TRUE(run_command_line("test \"$EDSC_TEST_WORD\" = 'a b'", "EDSC_TEST_WORD", "a b"));
   EXPECT_FALSE(run_command_line("test \"$EDSC_TEST_WORD\" = 'a b'", "EDSC_TEST_WORD", "c"));
+}
+
+TEST(RunProgram, HasTheGivenVariablesOfTheEnvironment) {
+  ::setenv("EDSC_TEST_KEPT", "kept", 1);
+  ::setenv("EDSC_TEST_CHANGED", "old", 1);
+  const auto outcome = run_program({"sh", "-c", "echo $EDSC_TEST_KEPT $EDSC_TEST_CHANGED $EDSC_TEST_NEW"}, {},
+                                   {"EDSC_TEST_CHANGED=new", "EDSC_TEST_NEW=too"});
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->output, "kept new too\n");
 }
 
 }  // namespace
