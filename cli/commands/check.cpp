@@ -93,8 +93,9 @@ void print_example(std::string_view title, const std::vector<std::string>& block
 int explain(const Rule& rule, const std::string& format) {
   const std::vector<RuleExample>& of_rule = examples_of(RuleId{rule});
   if (format == "text") {
-    fmt::print("{}: {}\n{}\nSource: {}\n{}Documentation, with examples: {}\n", rule.id, to_string(rule.severity),
-               rule.title, rule.source, consequences_text(rule), url_of(rule));
+    fmt::print("{}: {}\n{}\nSource: {}\n{}", rule.id, to_string(rule.severity), rule.title, rule.source,
+               consequences_text(rule));
+    if (const std::string url = url_of(rule); !url.empty()) fmt::print("Documentation, with examples: {}\n", url);
     for (const RuleExample& example : of_rule) {
       print_example("Wrong", example.wrong);
       print_example("Right", example.right);

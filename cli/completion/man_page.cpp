@@ -3,6 +3,8 @@
 
 #include <cctype>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "completion/command_parts.hpp"
 
@@ -12,13 +14,16 @@ namespace {
 constexpr const char* tail = R"(.SH EXIT STATUS
 .TP
 .B 0
-fine; there may have been warnings
+success, possibly with warnings
 .TP
 .B 1
-the input has errors
+the input has errors, or a device failed or did not answer
 .TP
 .B 2
-wrong usage, or a file could not be read or written
+wrong usage, or a file or bus cannot be used
+.TP
+.B 130
+interrupted by Ctrl\-C or SIGTERM
 .SH ENVIRONMENT
 .TP
 .B NO_COLOR
@@ -61,14 +66,22 @@ std::string sentence(const std::string& text) {
 std::string name_of(const CommandParts& command) { return escaped("edsc " + command.path_with(" ")); }
 
 /// The commands without subcommands, which are those that a user calls.
-void append_synopsis(std::string& out, const CommandParts& command) {
-  for (const CommandParts& sub : command.subcommands) append_synopsis(out, sub);
+/// `parents` are the command's parents, whose arguments come before the name of the command: `edsc lss BUS assign`.
+void append_synopsis(std::string& out, const CommandParts& command, std::vector<const CommandParts*> parents = {}) {
+  parents.push_back(&command);
+  for (const CommandParts& sub : command.subcommands) append_synopsis(out, sub, parents);
   if (!command.subcommands.empty()) return;
   if (!out.ends_with(".ad l\n")) out += ".br\n";
-  out += fmt::format(".B {}\n[\\fIoptions\\fR]\n", name_of(command));
-  for (const OptionParts& argument : command.arguments) {
-    const std::string name = escaped(argument.names.front()) + (argument.repeats ? "..." : "");
-    out += fmt::format("{}\\fI{}\\fR{}\n", argument.is_required ? "" : "[", name, argument.is_required ? "" : "]");
+  std::string words = "edsc";
+  for (const CommandParts* const part : parents) {
+    if (!part->path.empty()) words += (words.empty() ? "" : " ") + part->path.back();
+    if (part != &command && part->arguments.empty()) continue;
+    out += fmt::format(".B {}\n", escaped(std::exchange(words, "")));
+    if (part == &command) out += "[\\fIoptions\\fR]\n";
+    for (const OptionParts& argument : part->arguments) {
+      const std::string name = escaped(argument.names.front()) + (argument.repeats ? "..." : "");
+      out += fmt::format("{}\\fI{}\\fR{}\n", argument.is_required ? "" : "[", name, argument.is_required ? "" : "]");
+    }
   }
 }
 

@@ -7,12 +7,13 @@
 #include "diagnostics/place.hpp"
 #include "diagnostics/print.hpp"
 #include "rules/check_rules.hpp"
+#include "shared/documents.hpp"
 #include "shared/left_out_text.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
 
-std::string url_of(const Rule& rule) { return fmt::format("{}rules.md#{}", EDSC_DOCS_URL, rule.id); }
+std::string url_of(const Rule& rule) { return url_of_document(fmt::format("rules.md#{}", rule.id)); }
 
 FindingsReport::FindingsReport(std::string format, const ColorOption& color, bool all)
     : format_{std::move(format)},

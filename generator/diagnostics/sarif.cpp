@@ -73,8 +73,8 @@ SarifLog::SarifLog(std::string_view version, std::span<const Rule> rules, std::s
     descriptors.push_back({{"id", rule.id},
                            {"shortDescription", {{"text", rule.title}}},
                            {"help", {{"text", rule.source}}},
-                           {"helpUri", url_of(rule)},
                            {"defaultConfiguration", {{"level", to_string(rule.severity)}}}});
+    if (const std::string url = url_of(rule); !url.empty()) descriptors.back()["helpUri"] = url;
   }
   driver_ = {{"name", "edsc"}, {"version", version}, {"rules", std::move(descriptors)}};
 }

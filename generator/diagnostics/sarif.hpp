@@ -16,7 +16,7 @@ namespace edsc {
 /// nlohmann::json::error_handler_t::replace.
 class SarifLog {
  public:
-  /// `url_of` returns where a rule is documented.
+  /// `url_of` returns where a rule is documented, or nothing.
   SarifLog(std::string_view version, std::span<const Rule> rules, std::string (*url_of)(const Rule&));
 
   /// Adds findings in the order of report_order(). The source files need not outlive this call.

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+import urllib.parse
 from pathlib import Path
 
 import jsonschema
@@ -303,6 +305,27 @@ class Documentation(CheckTest):
                                         f"Wrong:\n\n{example['wrong'][0]}\nRight:\n\n{example['right'][0]}")
         self.assertIn("[1A00sub1]", example["wrong"][0])
         self.assertIn(rule, json.loads(self.run_edsc("check", "--list-rules", "--format", "json").stdout))
+
+    def test_is_found_beside_the_program(self) -> None:
+        """An installed program names the installed document; without documents, there is no link."""
+        program, page = self.folder / "a prefix/bin/edsc", self.folder / "a prefix/share/doc/edsc/docs/rules.md"
+        program.parent.mkdir(parents=True)
+        shutil.copy(EDSC, program)
+
+        def explained() -> tuple[str, str]:
+            command = [program, "check", "--explain", "pdo-length"]
+            texts = [subprocess.run([*command, "--format", form], capture_output=True, text=True, check=True).stdout
+                     for form in ("text", "json")]
+            return texts[0], json.loads(texts[1])["url"]
+
+        text, url = explained()
+        self.assertEqual(("Documentation" in text, url), (False, ""))
+        page.parent.mkdir(parents=True)
+        shutil.copy(SOURCE_DIR / "docs/rules.md", page)
+        text, url = explained()
+        self.assertIn(f"Documentation, with examples: {url}\n", text)
+        target, anchor = url.removeprefix("file://").split("#")
+        self.assertEqual((Path(urllib.parse.unquote(target)), anchor), (page.resolve(), "pdo-length"))
 
     def test_of_an_unknown_rule(self) -> None:
         result = self.run_edsc("check", "--explain", "pdo-lenght")

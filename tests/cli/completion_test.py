@@ -18,6 +18,7 @@ EDSC = Path(sys.argv[2]).resolve()
 KINDS = ("bash", "zsh", "man")
 ROW = re.compile(r'^    \{"([^"]+)", "([\w-]+)",', re.MULTILINE)
 ROWS = ROW.findall((Path(sys.argv[1]) / "cli/commands/commands.hpp").read_text(encoding="utf-8"))
+EXIT_CODES = Path(sys.argv[1]) / "cli/shared/exit_code.hpp"
 GROUPS = {group: [name for other, name in ROWS if other == group] for group, _ in ROWS}
 
 
@@ -163,7 +164,18 @@ class ManPage(unittest.TestCase):
             section = re.search(rf"^\.SS {title}\n(.*?)(?=^\.S[SH] )", plain, re.MULTILINE | re.DOTALL)
             self.assertIsNotNone(section, title)
             self.assertEqual(set(re.findall(r"\\fB(-[\w-]+)\\fR", section[1])), options_of(help_text), title)
-            self.assertIn(f".B {title}\n", plain)
+            before = [word for length in range(1, len(path)) for word in arguments_before_commands(HELP[path[:length]])]
+            if not before:
+                self.assertIn(f".B {title}\n", plain)
+
+    def test_has_the_arguments_before_subcommands(self) -> None:
+        self.assertIn(".B edsc lss\n\\fIBUS\\fR\n.B assign\n[\\fIoptions\\fR]\n", self.page)
+
+    def test_has_all_exit_codes(self) -> None:
+        page = self.page.split(".SH EXIT STATUS\n")[1].split(".SH")[0]
+        codes = re.findall(r"^inline constexpr int exit_\w+ = (\d+);", EXIT_CODES.read_text(encoding="utf-8"), re.MULTILINE)
+        self.assertGreater(len(codes), 3)
+        self.assertEqual(re.findall(r"^\.B (\d+)$", page, re.MULTILINE), sorted(set(codes), key=int))
 
     @unittest.skipUnless(shutil.which("groff"), "SKIPPED: groff is not installed")
     def test_is_clean_for_groff(self) -> None:
