@@ -16,12 +16,13 @@ if(TARGET edsc)
     install(FILES ${shell_files}/edsc.man DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 RENAME edsc.1 COMPONENT program)
   endif()
   install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${document_dir}/edsc RENAME copyright COMPONENT program)
-  # The documents and the files that they refer to, in the layout of the sources; the schemas also in a folder for editors and
-  # scripts.
+  # The documents for users and the files that they refer to, in the layout of the sources; the schemas also in a folder for
+  # editors and scripts.
   install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${document_dir}/edsc
           COMPONENT program)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples ${PROJECT_SOURCE_DIR}/eds
-          DESTINATION ${document_dir}/edsc COMPONENT program)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples ${PROJECT_SOURCE_DIR}/eds DESTINATION ${document_dir}/edsc COMPONENT program)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${document_dir}/edsc COMPONENT program
+          PATTERN developers EXCLUDE PATTERN site EXCLUDE PATTERN make.py EXCLUDE PATTERN api.doxygen EXCLUDE)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/edsc COMPONENT program)
 endif()
 

@@ -8,11 +8,12 @@ In README.md, CONTRIBUTING.md, CHANGELOG.md and all *.md of docs
 - each line of a ```sh block is run in a copy of the repository, with edsc in the PATH. `./demo.sh` builds and runs there;
   `./test.sh` is not run, but must exist.
 - a block under `<!-- run by: path -->` is run by that test, which names the document.
-- a block under `<!-- path -->` is part of that file, character by character.
+- a block under `<!-- path -->` is part of that file, character by character; under `<!-- all of path -->` it is the whole file.
 - a block under `<!-- output: command -->` is the output of the command.
 - the syntax of a ```python block, which is for another library, is checked; so is that of a ```json block.
 - the commands, actions and options of `edsc` in an indented block, which needs a bus or a file of the reader, exist.
 - the heading that a link names exists.
+A page for users does not link to a file that is not in the package.
 """
 
 from __future__ import annotations
@@ -92,6 +93,9 @@ def check_block(document: Path, block: re.Match[str], source: Path, folder: Path
     if mark and mark.startswith("run by: "):
         named = document.name in (source / mark.removeprefix("run by: ")).read_text(encoding="utf-8")
         return [] if named else [f"{document}: {mark}: the test does not name the document"]
+    if mark and mark.startswith("all of "):
+        is_file = text == (source / mark.removeprefix("all of ")).read_text(encoding="utf-8")
+        return [] if is_file else [f"{document}: the block under {mark} differs from that file"]
     if mark:
         found = text in (source / mark).read_text(encoding="utf-8")
         return [] if found else [f"{document}: the block under {mark} is not in that file"]
@@ -110,11 +114,21 @@ def anchors_of(document: Path) -> set[str]:
     return {re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-") for heading in headings}
 
 
+def is_installed(path: Path) -> bool:
+    """Whether the package has this file of the repository, as cmake/EdscInstall.cmake states it."""
+    if path.parts[:2] in (("docs", "developers"), ("docs", "site")):
+        return False
+    return path.parts[0] in ("docs", "examples", "eds") or str(path) in ("README.md", "CHANGELOG.md")
+
+
 def check_links(document: Path, text: str, source: Path) -> list[str]:
     problems = []
     for name, anchor in LINK.findall(BLOCK.sub("", text)):
         target = (source / document).parent / name if name else source / document
-        if not target.exists():
+        is_for_users = document.parts[:2] != ("docs", "developers") and document.name != "CONTRIBUTING.md"
+        if is_for_users and not is_installed(target.resolve().relative_to(source)):
+            problems.append(f"{document}: {name} is not in the package: write its name without a link")
+        elif not target.exists():
             problems.append(f"{document}: the target of link {name} does not exist")
         elif anchor and target.suffix == ".md" and anchor not in anchors_of(target):
             problems.append(f"{document}: {target.name} does not have the heading of link #{anchor}")

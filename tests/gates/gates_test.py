@@ -110,7 +110,7 @@ class Scripts(Copy):
         self.expect_failure(self.run_gate(LAYOUT / "includes_test.py"), "generator/text/utf8.cpp includes device/device.hpp")
 
     def test_a_walkthrough_of_a_function_that_does_not_exist_is_reported(self) -> None:
-        document = self.folder / "docs/architecture.md"
+        document = self.folder / "docs/developers/architecture.md"
         document.write_text(document.read_text(encoding="utf-8").replace("`parse_ini`", "`planted_ini`"), encoding="utf-8")
         self.expect_failure(self.run_gate(LAYOUT / "walkthrough_test.py"), "ini.cpp does not contain planted_ini")
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The include graph is that of docs/architecture.md, and no module includes a higher one.
+"""The include graph is that of docs/developers/architecture.md, and no module includes a higher one.
 
     includes_test.py SOURCE_DIR [unittest arguments]
 
@@ -64,7 +64,7 @@ def found_includes() -> dict[str, dict[str, str]]:
 
 
 def documented_includes() -> dict[str, set[str]]:
-    page = (SOURCE_DIR / "docs/architecture.md").read_text(encoding="utf-8")
+    page = (SOURCE_DIR / "docs/developers/architecture.md").read_text(encoding="utf-8")
     return {module: set(re.findall(r"`([\w/.]+)`", cell)) for module, cell in ROW.findall(page)}
 
 
@@ -77,7 +77,7 @@ class Includes(unittest.TestCase):
 
     def test_each_include_between_modules_is_documented(self) -> None:
         documented, found = documented_includes(), found_includes()
-        self.assertEqual(sorted(documented), sorted(found), "modules of docs/architecture.md and of the tree")
+        self.assertEqual(sorted(documented), sorted(found), "modules of docs/developers/architecture.md and of the tree")
         undocumented = [text for module, others in found.items() for other, text in others.items()
                         if other not in documented[module]]
         self.assertEqual(undocumented, [])

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The section "One value and one frame" of docs/architecture.md names files and their functions as they are.
+"""The section "One value and one frame" of docs/developers/architecture.md names files and their functions as they are.
 
     walkthrough_test.py SOURCE_DIR
 
@@ -26,7 +26,7 @@ def problems_of(file: Path, names: list[str]) -> list[str]:
 
 
 def main() -> int:
-    document = Path(sys.argv[1]).resolve() / "docs/architecture.md"
+    document = Path(sys.argv[1]).resolve() / "docs/developers/architecture.md"
     section = SECTION.search(document.read_text(encoding="utf-8"))
     rows = list(ROW.finditer(section[1])) if section else []
     problems = [] if rows else [f"{document} does not have the tables"]

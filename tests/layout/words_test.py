@@ -38,7 +38,7 @@ PHRASES = {
     r"\bpatience\(\)": "timeout()",
 }
 FILES = ("*.hpp", "*.cpp", "*.md", "*.mustache", "*.cmake", "*CMakeLists.txt", "*.sh", "*.json")
-SKIPPED = re.compile(r"^(docs/manuals\.md|tests/manuals/\d+\.md|tests/layout/|tests/traces/|tests/golden/fixtures/|examples/master/package)")
+SKIPPED = re.compile(r"^(docs/developers/manuals\.md|tests/manuals/\d+\.md|tests/layout/|tests/traces/|tests/golden/fixtures/|examples/master/package)")
 
 
 def main() -> int:

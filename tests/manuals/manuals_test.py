@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Each behaviour that a manual describes has a test or a reason; docs/manuals.md lists all of them.
+"""Each behaviour that a manual describes has a test or a reason; docs/developers/manuals.md lists all of them.
 
-    manuals_test.py SOURCE_DIR [--write]      --write generates docs/manuals.md
+    manuals_test.py SOURCE_DIR [--write]      --write generates docs/developers/manuals.md
 
 NNN.md has the statements of manual NNN, in one `## HEADING` per section of the manual:
 - `- [NNN.k] text` is an item, one per line.
@@ -281,11 +281,11 @@ def main() -> int:
     check_units(source, problems)
     problems += [f"[{item.number}] has neither a test nor a reason: {item.text}" for item in items.values()
                  if item.state == "missing"]
-    page, text = source / "docs" / "manuals.md", document(source, manuals, items, problems)
+    page, text = source / "docs/developers/manuals.md", document(source, manuals, items, problems)
     if "--write" in sys.argv:
         page.write_text(text, encoding="utf-8")
     elif not page.exists() or page.read_text(encoding="utf-8") != text:
-        problems.append("docs/manuals.md is not up to date: run manuals_test.py with --write")
+        problems.append("docs/developers/manuals.md is not up to date: run manuals_test.py with --write")
     print("\n".join(problems))
     for manual in [*MANUALS, ""]:
         own = [item for item in items.values() if item.number.startswith(manual)]

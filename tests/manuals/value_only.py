@@ -77,7 +77,7 @@ def text_of(key: Key) -> str:
 
 
 def document(source: Path, device: str, problems: list[str]) -> list[str]:
-    """The rows of a device for docs/manuals.md."""
+    """The rows of a device for docs/developers/manuals.md."""
     names = names_in_eds(source, device)
     out = []
     for row in read_rows(source, device, problems):

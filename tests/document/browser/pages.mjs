@@ -18,6 +18,25 @@ async function audit(first, files, isExpanded) {
   return found;
 }
 
+// Pages of the site of the documents: violations, requests, and the links that its search finds.
+async function site(first, files) {
+  const found = {};
+  for (const file of files) {
+    for (const scheme of ['light', 'dark']) {
+      const page = await first.browser().newPage();
+      const seen = watch(page);
+      await inScheme(page, scheme);
+      await open(page, file);
+      await type(page, 'pdo-length');
+      const links = await page.$$eval('#results a', (all) => all.map((one) => one.getAttribute('href').replace(/^(\.\.?\/)+/, '')));
+      const { requests, errors } = structuredClone(seen); // axe itself reads the style sheets
+      found[`${file} ${scheme}`] = { requests, errors, results: links, violations: await violations(page) };
+      await page.close();
+    }
+  }
+  return found;
+}
+
 // Searches and filters, keyboard and links of a device page.
 async function use(page, [file]) {
   const seen = watch(page);
@@ -174,6 +193,6 @@ async function meaning(page, [file, id]) {
   }, id) };
 }
 
-const commands = { meaning, audit, 'audit-expanded': (page, files) => audit(page, files, true), use, drawings, speed, narrow, check, follow, texts };
+const commands = { meaning, audit, site, 'audit-expanded': (page, files) => audit(page, files, true), use, drawings, speed, narrow, check, follow, texts };
 const [chromium, command, ...rest] = process.argv.slice(2);
 console.log(JSON.stringify(await withPage(chromium, (page) => commands[command](page, rest))));
