@@ -2,8 +2,8 @@
 # libedsc-dev_VERSION_all.deb with the files to compile a device.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME edsc)
-# The maintainer of the packages, whom Debian requires with an address: `-DEDSC_MAINTAINER="Name <address>"`. No mail reaches
-# the default, whose domain is reserved for that (RFC 2606).
+# Debian requires name and address of a maintainer: `-DEDSC_MAINTAINER="Name <address>"`. The default address is a placeholder
+# (RFC 2606).
 set(EDSC_MAINTAINER "edsc maintainers <maintainers@edsc.invalid>" CACHE STRING "Maintainer of the Debian packages")
 set(CPACK_PACKAGE_CONTACT "${EDSC_MAINTAINER}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
@@ -21,10 +21,10 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON) # needs dpkg-shlibdeps (package d
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS libedsc-dev)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # CPack would prepend it to each description
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${PROJECT_DESCRIPTION}
-It makes checked C++20 of EDS, DCF and XDD files: a constexpr object dictionary,
-typed access to every object and PDO codecs. Its other commands check, format
-and compare data sheets, decode CAN logs, and scan, read, configure and watch
-the devices of a live bus.")
+It generates checked C++20 from EDS, DCF and XDD files: a constexpr object
+dictionary, typed access to every object and PDO codecs. Its other commands
+check, format and compare these files, decode CAN logs, and scan, read,
+configure and monitor the devices of a live bus.")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libedsc-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_ARCHITECTURE all)
@@ -33,7 +33,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "edsc (= ${PROJECT_VERSION})")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS "cmake (>= 3.25), python3 (>= 3.11)")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "gcc-arm-none-eabi, libstdc++-arm-none-eabi-newlib")
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "${PROJECT_DESCRIPTION}, development files
-What a device is compiled with: the headers of the CANopen runtime, which needs
+Files needed to compile a device: headers of the CANopen runtime, which needs
 no heap, no exceptions and no operating system, functions for CMake, and
 start-up code, linker scripts and drivers of boards with a Cortex-M.")
 

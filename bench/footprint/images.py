@@ -26,8 +26,8 @@ HEAD = """# Whole images
 Each image is all of a device's firmware: start-up, the board's drivers, the C library, SLCAN on a serial line, storage in flash
 where the device stores, LSS where its node-ID comes by it, and the node, as `edsc_add_firmware` builds it (`-Os`, `-flto`,
 arm-none-eabi-g++ 12). RAM is `.data` and `.bss`.
-The stack is what was painted at power-on and was not any more after the device had booted, served a master's walk over all of
-its entries and PDOs, and stored its parameters. Bytes:
+Stack use was measured by filling the stack with a pattern and counting the bytes overwritten during boot, access to all entries
+and PDOs, and a store. Bytes:
 
 """
 

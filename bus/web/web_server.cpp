@@ -31,7 +31,7 @@ constexpr std::pair<const char*, const char*> headers[] = {
 /// What a person reads who opens an incomplete URL. It has no information of the bus.
 constexpr std::pair<int, const char*> refusals[] = {
     {403, "This URL does not have the token. Open the URL that edsc monitor prints.\n"},
-    {421, "edsc monitor does not have this name. Open the URL that it prints, or one with its address.\n"},
+    {421, "Unknown host name. Open the URL printed by edsc monitor.\n"},
 };
 
 std::string policy(const std::string& nonce) {

@@ -9,7 +9,7 @@
 
 namespace edsc {
 
-/// Returns `NAME.svg`, who sends what to whom, and `NAME_cycle.svg`, the frames of a SYNC cycle with their worst-case
+/// Returns `NAME.svg`, the message flow, and `NAME_cycle.svg`, the frames of a SYNC cycle with their worst-case
 /// response times, if SYNC has a period and the network a bit rate. They are the drawings of its page (document_of),
 /// with a title and a description, for a light and a dark background. NAME is that of the network file.
 [[nodiscard]] std::vector<OutputFile> network_drawings(const Network& network);

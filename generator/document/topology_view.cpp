@@ -123,7 +123,7 @@ class Topology {
                        {"node_role", fmt::format("{} {}", node.is_master ? "master" : "node", node.node_id)}});
     }
     Json rows = Json::array();
-    std::string label = "Who sends what to whom.";
+    std::string label = "Message flow: sender, PDO, receivers.";
     for (std::size_t row = 0; row < drawn_.size(); ++row) {
       rows.push_back(row_view(drawn_[row], row));
       label += fmt::format(" {} to {}.", named(*drawn_[row].sender), receivers_text(drawn_[row]));

@@ -127,7 +127,7 @@ class NetworkLoader {
     diagnostics_.error("network-file", producer->position, network_.unknown_node(producer->value));
   }
 
-  /// 1016h of a master with a file is that of the file and of `set`.
+  /// If the master has an EDS, its 1016h comes from the EDS and from `set`.
   void check_heartbeat_timeouts() {
     const NetworkNode* const master = network_.master();
     if (master != nullptr && !master->has_file()) return;
