@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Builds the site of the documents with MkDocs and Doxygen, the packages of Debian.
 
-    build.py OUTPUT
+    build.py OUTPUT [--edsc EDSC]
 
 Writes OUTPUT/VERSION, and OUTPUT/index.html with all versions that are in OUTPUT. The site does not load anything from other
 servers. Links to files outside of docs/ lead to copies of them, as text.
@@ -87,6 +87,13 @@ class Site:
         file.write_text("".join(parts), encoding="utf-8")
 
 
+def write_examples(folder: Path, edsc: str) -> None:
+    """Writes the pages of a device and of a network as `edsc document` makes them."""
+    folder.mkdir()
+    for file, page in (("eds/cpc-tc1.eds", "device.html"), ("examples/networks/twelve_axes.json", "network.html")):
+        subprocess.run([edsc, "document", SOURCE_DIR / file, "-o", folder / page], stdout=subprocess.DEVNULL, check=True)
+
+
 def write_api(folder: Path) -> None:
     """Writes the reference of the runtime to `folder`/api."""
     settings = (SOURCE_DIR / "docs/api.doxygen").read_text(encoding="utf-8")
@@ -115,12 +122,15 @@ def write_versions(output: Path) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description="Builds the site of the documents.")
     parser.add_argument("output", type=Path)
-    output = parser.parse_args().output.resolve()
+    parser.add_argument("--edsc", default="edsc", help="program that writes the example pages (default: in the PATH)")
+    arguments = parser.parse_args()
+    output = arguments.output.resolve()
     output.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="edsc-site-") as temporary:
         pages = Path(temporary) / "pages"
         Site(pages).write()
         write_api(pages)
+        write_examples(pages / "pages", arguments.edsc)
         settings = (SITE_DIR / "mkdocs.yml").read_text(encoding="utf-8").replace("site_name: edsc\n", f"site_name: edsc {version()}\n")
         settings = settings.replace("custom_dir: theme\n", f"custom_dir: {SITE_DIR}/theme\n")
         (Path(temporary) / "mkdocs.yml").write_text(f"{settings}docs_dir: pages\n", encoding="utf-8")
