@@ -19,7 +19,7 @@ PAGE = ROOT / "docs/images.md"
 BOARDS = {"microbit": "Cortex-M0+", "mps2-an385": "Cortex-M3", "mps2-an386": "Cortex-M4"}
 TOLERANCE, OF_THE_STACK = 0.03, 0.15
 REPORT = re.compile(r"(.+)\.elf: (\d+) bytes of flash.*?, (\d+) bytes of RAM")
-HEAD = """# Whole images
+HEAD = """# Images of the reference devices
 
 `bench/footprint/images.py build/firmware/tests/firmware` prints this page, after `cmake --workflow --preset firmware`.
 
