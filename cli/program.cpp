@@ -1,9 +1,9 @@
 #include "program.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
@@ -12,13 +12,14 @@
 #include <system_error>
 #include <vector>
 
+#include "completion/command_parts.hpp"
 #include "diagnostics/quote.hpp"
+#include "shared/arguments.hpp"
 #include "shared/command_line.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/output.hpp"
 #include "system/standard_streams.hpp"
 #include "text/printable.hpp"
-#include "text/suggestion.hpp"
 
 namespace {
 
@@ -44,54 +45,57 @@ void take_marks_off(CLI::App& app) {
 }
 
 /// Parses the arguments, each unchanged.
-void parse(CLI::App& app, int argc, char** argv) {
+void parse(CLI::App& app, const std::vector<std::string>& words) {
   take_marks_off(app);
   std::vector<std::string> arguments;
-  arguments.reserve(static_cast<std::size_t>(argc));
-  for (int i = 0; i < argc; ++i) arguments.push_back(marked(argv[i]));
-  std::vector<const char*> pointers;
-  pointers.reserve(arguments.size());
-  for (const std::string& argument : arguments) pointers.push_back(argument.c_str());
-  app.parse(argc, pointers.data());
+  arguments.reserve(words.size());
+  for (auto word = words.rbegin(); word != words.rend(); ++word) arguments.push_back(marked(*word));
+  app.parse(std::move(arguments));  // in reverse order
 }
 
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-  return app.get_subcommands([](const CLI::App* one) { return !one->get_name().empty(); });
+/// Arguments that no option and no argument of the command takes.
+std::string extra_arguments(const CLI::App& app) {
+  std::vector<std::string> words = app.remaining(true);
+  std::erase(words, "--");
+  return words.empty() ? std::string{} : "unexpected argument " + edsc::quote(without_mark(words.front()));
 }
 
-/// Reports the first word in the place of a command that is not a command; false if there is none.
-bool report_unknown_command(const CLI::App& app) {
-  for (const CLI::App* const chosen : app.get_subcommands()) {
-    if (report_unknown_command(*chosen)) return true;
-  }
-  std::vector<std::string> names;
-  for (const CLI::App* const command : commands_of(app)) names.push_back(command->get_name());
-  const auto words = app.remaining(false);
-  if (names.empty() || words.empty() || words.front().starts_with('-')) return false;
-  const std::string word = without_mark(words.front());
-  edsc::print_to_stderr("{}: unknown command {}{}\n", app.get_parent() == nullptr ? "edsc" : "edsc " + app.get_name(),
-                        edsc::quote(word), edsc::did_you_mean(word, names));
-  return true;
-}
-
-/// Prints the message of CLI11 about arguments, which may contain any characters.
-std::string failure_message(const CLI::App* app, const CLI::Error& problem) {
-  std::string message = CLI::FailureMessage::simple(app, problem);
+/// The message of CLI11, which may contain marks.
+std::string message_of(const CLI::App& app, const CLI::ParseError& problem) {
+  if (dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr) return extra_arguments(app);
+  std::string message = problem.what();
   for (std::size_t at = 0; (at = message.find("\x01[", at)) != std::string::npos;) message.erase(at, 1);
-  std::string shown;
-  for (std::size_t begin = 0; begin < message.size();) {
-    const std::size_t end = std::min(message.find('\n', begin), message.size());
-    edsc::append_printable(shown, std::string_view{message}.substr(begin, end - begin));
-    shown += '\n';
-    begin = end + 1;
-  }
-  return shown;
+  return message;
+}
+
+int report_wrong_usage(const std::string& message, const std::vector<std::string>& command) {
+  edsc::print_to_stderr("edsc: {}\n", message);
+  edsc::print_to_stderr("\"edsc help{}{}\" shows the usage\n", command.empty() ? "" : " ",
+                        fmt::format("{}", fmt::join(command, " ")));
+  return edsc::exit_wrong_usage;
 }
 
 /// Write errors of standard output are reported at the end.
 int report(const std::exception& problem) {
   if (std::ferror(stdout) == 0) edsc::print_to_stderr("edsc: {}\n", problem.what());
   return edsc::exit_wrong_usage;
+}
+
+/// Runs the command. Throws what it throws, and CLI::ParseError.
+int run(CLI::App& app, const edsc::ReadArguments& read, const int& exit_code) {
+  if (read.wants_version) {
+    edsc::write_output(app.version() + "\n");
+  } else if (read.wants_help) {
+    const edsc::CommandParts program = edsc::parts_of(edsc::Command{app});
+    edsc::write_output(edsc::help_text(*edsc::find_command(program, read.command)));
+  } else if (read.command.empty()) {
+    edsc::print_to_stderr("edsc: a command is missing\n");
+    edsc::write_to_stderr(edsc::short_help(edsc::parts_of(edsc::Command{app})));
+    return edsc::exit_wrong_usage;
+  } else {
+    parse(app, read.arguments);
+  }
+  return exit_code;
 }
 
 }  // namespace
@@ -102,10 +106,9 @@ int run_program(std::span<const CommandRow> rows, const std::string& version, in
   occupy_standard_descriptors();
   CLI::App app{"edsc compiles CANopen Electronic Data Sheets (EDS, DCF) to checked C++20."};
   app.name("edsc");
-  app.set_version_flag("--version", "edsc " + version);
-  app.failure_message(failure_message);
+  app.set_help_flag("-h,--help", std::string{find_command_option("--help")->meaning});
+  app.set_version_flag("-V,--version", "edsc " + version, std::string{find_command_option("--version")->meaning});
   app.require_subcommand(1);
-  app.footer("'edsc COMMAND --help' shows a command's options and examples.");
   int exit_code = exit_fine;
   for (const CommandRow& row : rows) {
     CLI::App* const command = app.add_subcommand(row.name, row.description);
@@ -113,13 +116,14 @@ int run_program(std::span<const CommandRow> rows, const std::string& version, in
     command->group(row.group);  // later, because subcommands inherit it
   }
   int output_error = 0;
+  ReadArguments read;
   try {
-    parse(app, argc, argv);
+    read = read_arguments(app, {argv + 1, argv + argc});
+    exit_code = run(app, read, exit_code);
+  } catch (const WrongUsage& problem) {
+    exit_code = report_wrong_usage(problem.what(), problem.command);
   } catch (const CLI::ParseError& problem) {
-    if (report_unknown_command(app)) return exit_wrong_usage;
-    errno = 0;
-    exit_code = app.exit(problem) == 0 ? exit_fine : exit_wrong_usage;
-    output_error = errno;
+    exit_code = report_wrong_usage(message_of(app, problem), read.command);
   } catch (const Exit& exit) {
     exit_code = exit.code;
   } catch (const std::system_error& problem) {

@@ -82,7 +82,7 @@ inline constexpr Rule audit[] = {
     row("sdo-size", error, "an SDO transfer of another length than announced", "CiA 301, 7.2.4.3.3", ""),
     row("sdo-crc", error, "wrong CRC of an SDO block transfer", "CiA 301, 7.2.4.3.16", ""),
     row("sdo-timeout", error, "an SDO server does not answer in time", "CiA 301, 7.2.4.1",
-        "--sdo-timeout; CiA 301 does not define it"),
+        "--timeout; CiA 301 does not define it"),
     row("sdo-abort", note, "an aborted SDO transfer", "CiA 301, 7.2.4.3.17",
         "each abort code of an object is a finding"),
     row("lss-response", error, "an LSS response that does not fit the last request", "CiA 305, 3", ""),

@@ -14,7 +14,8 @@ constexpr std::chrono::milliseconds between{100};
 
 }  // namespace
 
-ProgressLine::ProgressLine() : terminal_{is_terminal(stderr)}, next_{Clock::now() + before_the_first} {}
+ProgressLine::ProgressLine()
+    : terminal_{is_terminal(stderr) && !is_dumb_terminal()}, next_{Clock::now() + before_the_first} {}
 
 ProgressLine::~ProgressLine() { hide(); }
 

@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "system/standard_streams.hpp"
+
 namespace edsc {
 namespace {
 
@@ -58,6 +60,6 @@ char Terminal::key() const {
   return keys_ && read(STDIN_FILENO, &key, 1) == 1 ? key : '\0';
 }
 
-bool Terminal::is_there() { return isatty(STDOUT_FILENO) != 0; }
+bool Terminal::is_there() { return isatty(STDOUT_FILENO) != 0 && !is_dumb_terminal(); }
 
 }  // namespace edsc

@@ -4,28 +4,21 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <iterator>
 #include <system_error>
 
 #include "diagnostics/quote.hpp"
+#include "text/duration.hpp"
 
 namespace edsc {
 namespace {
 
-struct UnitRow {
-  std::string_view name;
-  double microseconds;
-};
-constexpr UnitRow time_units[] = {{"us", 1}, {"ms", 1e3}, {"s", 1e6}, {"min", 60e6}, {"h", 3600e6}};
-constexpr double max_time = 1000 * 3600e6;
 /// Bounds are computed for whole milliseconds.
 constexpr std::uint64_t min_error_interval = 1000;
 
-constexpr std::string_view time_form = "a time, such as 10s, 500ms or 1h";
-
 std::string wrong_form(std::string_view text, const FaultRow& row) {
-  return fmt::format("{} is not a fault; expected {}:{}, where TIME is {}", quote(text), row.name, row.form, time_form);
+  return fmt::format("{} is not a fault; expected {}:{}, where TIME is {}", quote(text), row.name, row.form,
+                     duration_form);
 }
 
 /// The text before and after the last separator; nothing without one.
@@ -61,15 +54,8 @@ std::string parse_errors(std::string_view rest, const FaultRow& row, SimulationF
 }  // namespace
 
 std::optional<std::uint64_t> parse_simulated_time(std::string_view text) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{} || !std::isfinite(number)) return std::nullopt;
-  const std::string_view unit = text.substr(static_cast<std::size_t>(end - text.data()));
-  const auto* const row = std::ranges::find(time_units, unit, &UnitRow::name);
-  if (row == std::end(time_units)) return std::nullopt;
-  const double time = number * row->microseconds;
-  if (!(time >= 1 && time <= max_time)) return std::nullopt;
-  return static_cast<std::uint64_t>(std::llround(time));
+  const auto time = parse_duration(text);
+  return time && *time >= 1 && *time <= max_simulated_us ? time : std::nullopt;
 }
 
 std::string parse_fault(std::string_view text, const Network& network, SimulationFault& fault) {

@@ -34,8 +34,10 @@ inline constexpr FaultRow fault_rows[] = {
     {FaultKind::errors, "errors", "COUNT/TIME", "error frames at equal intervals destroy what is on the bus"},
 };
 
-/// Returns the microseconds of `10s`, `1.5h`, `500ms`, `20us`, `5min`; nothing if the text is not a time from 1 us to
-/// 1000 h.
+/// The longest simulated time, 1000 hours.
+inline constexpr std::uint64_t max_simulated_us = 1000 * 3'600'000'000ULL;
+
+/// Returns the microseconds of a duration; nothing if the text is not a duration from 1 us to 1000 h.
 [[nodiscard]] std::optional<std::uint64_t> parse_simulated_time(std::string_view text);
 
 /// Reads a fault. Returns an error message; empty on success.

@@ -21,9 +21,9 @@ namespace edsc {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  edsc accept socketcan:can0 5 drive.eds -o report.html                        reads only
-  edsc accept socketcan:can0 5 drive.eds -o report.html --level communication  also writes 1000h to 1FFFh, then restores
-  edsc accept socketcan:can0 5 drive.eds -o report.html --title "Line 3, axis 2" --operator "A. Bauer" --place Hall
+  edsc accept socketcan:can0 5 drive.eds --html report.html                        reads only
+  edsc accept socketcan:can0 5 drive.eds --html report.html --level communication  also writes 1000h to 1FFFh, then restores
+  edsc accept socketcan:can0 5 drive.eds --html report.html --title "Line 3, axis 2" --operator "A. Bauer" --place Hall
   edsc accept socketcan:can0 5 drive.eds --json report.json --junit report.xml --deviations drive.deviations.json)";
 
 struct Settings : ConformanceSettings {
@@ -69,10 +69,9 @@ int run_accept(const Settings& settings) {
 void add_accept_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_accept, exit_code);
   add_conformance_arguments(command, settings);
-  command.add_option("-o", settings.html, "write the report as one HTML file, which a browser prints as PDF")
-      .type_name("FILE");
-  command.add_option("--junit", settings.junit, "write it as JUnit XML").type_name("FILE");
-  command.add_option("--json", settings.json, "write it as JSON, with corrections of the EDS").type_name("FILE");
+  command.add_option("--html", settings.html);
+  command.add_option("--junit", settings.junit);
+  command.add_option("--json", settings.json, "with corrections of the EDS");
   add_conformance_options(command, settings);
   add_report_options(command, settings);
 }

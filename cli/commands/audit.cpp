@@ -30,7 +30,7 @@ constexpr const char* examples = R"(Examples:
 
 struct Settings : LogSettings {
   audit::Limits limits;
-  std::int64_t sdo_timeout_ms = 1000;
+  unsigned timeout_ms = 1000;
   std::uint32_t bit_rate_kbit = 0;
   std::uint8_t nmt_master = 0;
   std::vector<std::string> silence;
@@ -77,7 +77,7 @@ int audit_log(const Settings& given) {
   if (given.list_rules) return list_rules(given);
   Settings settings = given;
   if (settings.nodes.empty()) fail("--node ID=FILE is missing; the EDS states how the node must behave");
-  settings.limits.sdo_timeout_us = settings.sdo_timeout_ms * 1000;
+  settings.limits.sdo_timeout_us = std::int64_t{settings.timeout_ms} * 1000;
   settings.limits.bit_rate = settings.bit_rate_kbit * 1000;
   const LogNodes nodes = load_log_nodes(settings);
   LogDecoder decoder{
@@ -130,34 +130,20 @@ std::string check_audit_rule(const std::string& id) {
 void add_audit_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, audit_log, exit_code);
   add_log_options(command, settings);
-  command
-      .add_option("--tolerance", settings.limits.tolerance,
-                  "how much a time may differ from the nominal one, in percent; at least 1 ms or half of a short time")
-      .range(0, 1000)
-      .show_default();
-  command.add_option("--sdo-timeout", settings.sdo_timeout_ms, "time that an SDO server has to respond, in ms")
-      .range(1, 3'600'000)
-      .show_default();
-  command
-      .add_option("--master", settings.nmt_master,
-                  "node-ID of the NMT master, which need not obey its own commands (default: bit 0 of 1F80h)")
-      .range(1, 127);
-  command.add_option("--bit-rate", settings.bit_rate_kbit, "of the bus, in kbit/s, to compute its load").range(1, 1000);
-  command.add_option("--max-load", settings.limits.max_load, "limit of the load over 100 ms, in percent")
-      .range(1, 100)
-      .show_default();
-  command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
+  command.add_option("--tolerance", settings.limits.tolerance).range(0, 1000).show_default();
+  command.add_milliseconds("--timeout", settings.timeout_ms, 1, 3'600'000, "to an SDO request");
+  command.add_option("--master", settings.nmt_master).range(1, 127);
+  command.add_option("--bit-rate", settings.bit_rate_kbit, "to compute the bus load").range(1, 1000);
+  command.add_option("--max-load", settings.limits.max_load).range(1, 100).show_default();
+  command.add_option("--silence", settings.silence)
       .one_value_each()
-      .check(check_audit_rule);
-  command
-      .add_option("--conform", settings.conform,
-                  "JSON report of the conformance test that wrote the log: what its cases provoke is listed apart")
-      .type_name("FILE");
-  add_choice(command, "--format", settings.format, {"text", "json", "html"}, "text, json or html");
-  command.add_option("-o,--output", settings.output, "file to write (default: standard output)").type_name("FILE");
-  command.add_flag("--cycles", settings.cycles,
-                   "also print cycle times and jitter of PDOs, SYNC and heartbeats; JSON and HTML always have them");
-  command.add_flag("--list-rules", settings.list_rules, "list the rules and end");
+      .check(check_audit_rule)
+      .suggest(rule_names(audit::audit_rules));
+  command.add_option("--conform", settings.conform);
+  add_choice(command, "--format", settings.format, {"text", "json", "html"});
+  command.add_option("--output", settings.output, "default: standard output");
+  command.add_flag("--cycles", settings.cycles, "JSON and HTML always have them");
+  command.add_flag("--list-rules", settings.list_rules);
 }
 
 }  // namespace edsc

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <memory>
 
 #include "commands/commands.hpp"
 #include "server/bus_server.hpp"
@@ -16,15 +19,15 @@ namespace {
 
 constexpr const char* examples = R"(Examples:
   edsc bus                                  a bus at socketcand:127.0.0.1:29536/vcan0, until Ctrl-C
-  edsc bus --bus vcan0 --bus vcan1          two of them
-  edsc bus --log > bus.log                  and all frames as a log for edsc decode; the address is on standard error
+  edsc bus vcan0 vcan1                      two of them
+  edsc bus --log bus.log                    and all frames as a log for edsc decode
   edsc bus --listen 127.0.0.1:0             at any free port; the first line names it)";
 
 struct Settings {
   std::string listen = to_text(ListenAddress{});
   std::vector<std::string> buses{"vcan0"};
   BusLimits limits;
-  bool log = false;
+  std::string log;  ///< empty: none
 };
 
 /// A bus name is a word of up to 15 characters that is valid in an address and in a line of candump.
@@ -35,18 +38,32 @@ std::string bad_bus_name(const std::string& name) {
   return good ? "" : fmt::format("\"{}\" is not a bus name: up to 15 characters without blanks, <, > and /", name);
 }
 
+struct CloseLog {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+/// Null for no file.
+std::FILE* open_log(const std::string& path) {
+  if (path.empty() || path == "-") return nullptr;
+  std::FILE* const file = std::fopen(path.c_str(), "we");
+  if (file == nullptr) fail(fmt::format("{}: {}", path, std::strerror(errno)));
+  return file;
+}
+
 int serve(const Settings& settings) {
   const ListenAddress address = parse_listen_address(settings.listen);
   const WaitingSignals signals({SIGINT, SIGTERM}, WaitingSignals::Second::is_recorded);
   BusEvents events;
-  events.on_frame = [&settings](const canopen::Frame& frame, const std::string& bus, socketcand::TimeStamp time) {
-    if (settings.log) print_visibly(stdout, "{}\n", candump_line(frame, bus, time));
+  const std::unique_ptr<std::FILE, CloseLog> file{open_log(settings.log)};
+  std::FILE* const log = settings.log == "-" ? stdout : file.get();
+  events.on_frame = [log](const canopen::Frame& frame, const std::string& bus, socketcand::TimeStamp time) {
+    if (log != nullptr) print_visibly(log, "{}\n", candump_line(frame, bus, time));
   };
-  events.on_trouble = [](const std::string& message) { print_to_stderr("edsc bus: {}\n", message); };
+  events.on_trouble = [](const std::string& message) { print_to_stderr("edsc: {}\n", message); };
   BusServer server{address, settings.buses, settings.limits, std::move(events)};
   for (const std::string& bus : settings.buses) {
     const std::string place = fmt::format("socketcand:{}/{}\n", to_text(server.address()), bus);
-    if (settings.log) {
+    if (log == stdout) {
       write_to_stderr(place);
     } else {
       write_output(place);
@@ -54,6 +71,7 @@ int serve(const Settings& settings) {
   }
   while (!WaitingSignals::noted()) {
     flush_output();
+    if (file && std::fflush(file.get()) != 0) fail(fmt::format("{}: {}", settings.log, std::strerror(errno)));
     server.poll_once(std::chrono::minutes{1}, signals.while_waiting());
   }
   return exit_fine;
@@ -63,15 +81,10 @@ int serve(const Settings& settings) {
 
 void add_bus_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, serve, exit_code);
-  command.add_option("--listen", settings.listen, "HOST:PORT; port 0: any free port").show_default();
-  command.add_option("--bus", settings.buses, "name of a bus; may be given several times")
-      .check(bad_bus_name)
-      .show_default();
-  command.add_option("--clients", settings.limits.clients, "maximum number of connected clients")
-      .range(1, 1000)
-      .show_default();
-  command.add_flag("--log", settings.log,
-                   "print all frames as lines of candump -L, and the addresses on standard error");
+  command.add_option("--listen", settings.listen).show_default();
+  command.add_option("NAME", settings.buses, "names of the buses").check(bad_bus_name).show_default();
+  command.add_option("--clients", settings.limits.clients).range(1, 1000).show_default();
+  command.add_option("--log", settings.log, "or - for standard output; the addresses are then on standard error");
 }
 
 }  // namespace edsc

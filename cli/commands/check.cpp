@@ -16,6 +16,7 @@
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
+#include "shared/file_arguments.hpp"
 #include "shared/findings_report.hpp"
 #include "shared/left_out_text.hpp"
 #include "text/printable.hpp"
@@ -28,7 +29,7 @@ constexpr const char* examples = R"(Examples:
   edsc check drive.eds --format json      the same for a program
   edsc check eds/*.eds --format sarif     the same for a code review (SARIF 2.1.0)
   edsc check drive.eds --strict           warnings count as errors
-  edsc check drive.eds --all              findings that follow from others too
+  edsc check drive.eds --all-findings     findings that follow from others too
   edsc check bad.eds --repair -o bad.overlay   corrections of what is certain, each with its reason
   edsc check --list-rules                 every rule with its meaning
   edsc check --explain pdo-length         one rule, and where it is documented)";
@@ -149,7 +150,8 @@ int check_and_repair(const Settings& settings) {
   if (settings.format != "text")
     fail("--repair writes text; edsc check --format " + settings.format + " FILE.overlay checks the result");
   if (settings.strict || settings.keep_going || settings.all || !settings.profile.empty()) {
-    fail("--strict, --keep-going, --all and --profile are for a check; check the overlay that --repair writes");
+    fail(
+        "--strict, --keep-going, --all-findings and --profile are for a check; check the overlay that --repair writes");
   }
   return repair({settings.paths.front(), settings.options_path, settings.output, settings.node_id, settings.silence,
                  settings.color});
@@ -160,14 +162,11 @@ int check(const Settings& settings) {
   if (settings.list_options) return list(options_table, settings.format);
   if (!settings.explained_rule.empty())
     return explain(find_rule(check_rules, settings.explained_rule)->row(), settings.format);
-  if (settings.paths.empty()) {
-    print_to_stderr("edsc check: FILE is required\n");
-    return exit_wrong_usage;
-  }
+  if (settings.paths.empty()) throw_required("FILE");
   if (settings.repair) return check_and_repair(settings);
   int exit_code = exit_fine;
   FindingsReport report{settings.format, settings.color, settings.all};
-  for (const std::string& path : settings.paths) {
+  for (const std::string& path : expand_folders(settings.paths)) {
     Diagnostics diagnostics;
     if (settings.strict) diagnostics.treat_warnings_as_errors();
     diagnostics.silence_errors();
@@ -197,27 +196,20 @@ std::string check_rule(const std::string& id) {
 
 void add_check_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, check, exit_code);
-  command.add_option("FILE", settings.paths, "EDS, DCF, XDD, XDC or overlay files");
-  add_choice(command, "--format", settings.format, {"text", "json", "sarif"}, "text, json or sarif");
+  command.add_option("FILE", settings.paths, "EDS, DCF, XDD, XDC or overlay files, or folders with such files");
+  add_choice(command, "--format", settings.format, {"text", "json", "sarif"});
   add_options_option(command, settings.options_path);
   add_node_id_option(command, settings.node_id);
-  command.add_option(
-      "--profile", settings.profile,
-      "profile database in the syntax of an EDS: object codes, data types and access types of its objects");
-  command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
-      .one_value_each()
-      .check(check_rule);
-  command.add_flag("--keep-going", settings.keep_going, keep_going_help);
-  command.add_flag("--all", settings.all, all_findings_help);
-  command.add_flag("--strict", settings.strict,
-                   "warnings count as errors; notes do not; a section of an overlay needs a reason");
-  command.add_flag(
-      "--repair", settings.repair,
-      "write an overlay for the findings that have a certain remedy, and try the device in simulated time");
-  command.add_option("-o,--output", settings.output, "overlay that --repair writes");
-  command.add_flag("--list-rules", settings.list_rules, "list the rules and end");
-  command.add_flag("--list-options", settings.list_options, "list the members of an options file and end");
-  command.add_option("--explain", settings.explained_rule, "describe a rule and end").check(check_rule);
+  command.add_option("--profile", settings.profile);
+  command.add_option("--silence", settings.silence).one_value_each().check(check_rule).suggest(rule_names(check_rules));
+  command.add_flag("--keep-going", settings.keep_going);
+  command.add_flag("--all-findings", settings.all);
+  command.add_flag("--strict", settings.strict, "a section of an overlay needs a reason");
+  command.add_flag("--repair", settings.repair);
+  command.add_option("--output", settings.output, "of --repair: the overlay");
+  command.add_flag("--list-rules", settings.list_rules);
+  command.add_flag("--list-options", settings.list_options);
+  command.add_option("--explain", settings.explained_rule).check(check_rule).suggest(rule_names(check_rules));
   settings.color.add_to(command);
 }
 

@@ -34,6 +34,8 @@ AddOptions add_decode_options;
 AddOptions add_plot_options;
 AddOptions add_audit_options;
 AddOptions add_completion_options;
+AddOptions add_help_options;
+AddOptions add_version_options;
 
 // Subcommands of `network`.
 AddOptions add_network_apply_options;
@@ -81,6 +83,8 @@ inline constexpr CommandRow commands[] = {
     {"Logs", "audit", "judge a log by the EDS files of its nodes", add_audit_options},
     {"Logs", "plot", "plot values of a log over time, as SVG", add_plot_options},
     {"Shell", "completion", "print the completion for a shell, or the manual page", add_completion_options},
+    {"Shell", "help", "show the options and examples of a command", add_help_options},
+    {"Shell", "version", "print the version", add_version_options},
 };
 
 }  // namespace edsc

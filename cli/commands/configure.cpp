@@ -205,21 +205,15 @@ void add_configure_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_configure, exit_code);
   add_node_arguments(command, settings);
   command.add_option("FILE", settings.path, "DCF, XDC or, with --concise, concise DCF").required();
-  const Option concise =
-      command.add_flag("--concise", settings.concise, "FILE is a concise DCF, as object 1F22h holds it");
-  command.add_option("--eds", settings.sheet, "EDS for a concise DCF: names, and the identity to check")
-      .type_name("FILE")
-      .needs(concise);
-  command.add_flag("--store", settings.store,
-                   "store the parameters of the node (1010h) after a successful configuration");
-  command.add_flag("--start", settings.start, "start the node after a successful configuration");
-  command.add_flag("--keep-state", settings.keep_state, "do not set the node to Pre-operational first");
-  command.add_flag("--all", settings.all, "write all values, not only those that differ from the node's");
-  command.add_flag("--node-id-and-bit-rate", settings.node_id_and_bit_rate,
-                   "also write the node's own node-ID and bit rate");
-  command.add_flag("--force", settings.force, "write even if the device does not match");
-  command.add_flag("--dry-run", settings.dry_run,
-                   "print the differences and the steps without writing; with --all all steps, without the bus");
+  const Option concise = command.add_flag("--concise", settings.concise);
+  command.add_option("--eds", settings.sheet, "for a concise DCF: names, and the identity to check").needs(concise);
+  command.add_flag("--store", settings.store, "after success (1010h)");
+  command.add_flag("--start", settings.start);
+  command.add_flag("--keep-state", settings.keep_state);
+  command.add_flag("--all", settings.all);
+  command.add_flag("--node-id-and-bit-rate", settings.node_id_and_bit_rate);
+  command.add_flag("--force", settings.force, "the device does not match");
+  command.add_flag("--dry-run", settings.dry_run, "with --all: all steps, without the bus");
   add_format_option(command, settings.format);
   add_timeout_option(command, settings.sdo.timeout_ms);
 }

@@ -108,13 +108,12 @@ void add_conform_options(Command command, int& exit_code) {
   settings.required = add_conformance_arguments(command, settings);
   for (const Option& argument : settings.required) argument.required(false);
   add_conformance_options(command, settings);
-  command.add_option("--html", settings.html, "write the report as one HTML file").type_name("FILE");
-  command.add_option("--junit", settings.junit, "write it as JUnit XML").type_name("FILE");
-  command.add_option("--json", settings.json, "write it as JSON").type_name("FILE");
+  command.add_option("--html", settings.html);
+  command.add_option("--junit", settings.junit);
+  command.add_option("--json", settings.json);
   add_report_options(command, settings);
-  command.add_flag("--list", settings.list, "list the cases and what they need, and end");
-  command.add_flag("--requirements", settings.requirements,
-                   "list what the standards require of a device, with the cases that test it, and end");
+  command.add_flag("--list", settings.list);
+  command.add_flag("--requirements", settings.requirements);
 }
 
 }  // namespace edsc

@@ -88,14 +88,10 @@ void add_decode_options(Command command, int& exit_code) {
   add_log_options(command, settings).show_default();
   std::vector<std::string> names;
   for (const FormatRow& row : formats) names.emplace_back(row.name);
-  add_choice(command, "--format", settings.format, names,
-             "text; json, an object on each line; or csv, a record for each value");
-  command
-      .add_option("--filter", settings.filters,
-                  "show only matching frames: node=5,service=sdo,id=185h,problem=yes; all frames are evaluated")
+  add_choice(command, "--format", settings.format, names, "json: an object on each line; csv: a record for each value");
+  command.add_option("--filter", settings.filters, "node=5,service=sdo,id=185h,problem=yes; all frames are evaluated")
       .one_value_each();
-  command.add_flag("--summary", settings.summary,
-                   "print a summary at the end: frames by service and node, aborts, EMCY messages and times");
+  command.add_flag("--summary", settings.summary);
 }
 
 }  // namespace edsc

@@ -18,6 +18,7 @@
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
+#include "shared/file_arguments.hpp"
 #include "shared/git_device.hpp"
 #include "system/path.hpp"
 #include "system/read_file.hpp"
@@ -103,7 +104,7 @@ std::optional<std::vector<Pair>> load_pairs(const Settings& settings) {
   }
   const std::string revision = settings.against.substr(git_prefix.size());
   bool failed = false;
-  for (const std::string& path : settings.files) {
+  for (const std::string& path : expand_folders(settings.files)) {
     Pair pair;
     pair.path = path;
     pair.revision = revision;
@@ -219,22 +220,21 @@ int diff(const Settings& settings) {
 
 void add_diff_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, diff, exit_code);
-  command.add_option("FILE", settings.files, "OLD and NEW, each an EDS, DCF, XDD or XDC; with --against NEW files")
+  command
+      .add_option("FILE", settings.files,
+                  "OLD and NEW, each an EDS, DCF, XDD or XDC; with --against NEW files or folders")
       .required();
-  command.add_option("--against", settings.against, "git:REF: compare each FILE with the one of this git revision")
+  command.add_option("--against", settings.against, "git:REF compares each FILE with the one of this git revision")
       .check([](const std::string& value) {
         return names_git_revision(value) ? std::string{} : fmt::format("expected git:REF, got {}", value);
       });
-  command.add_flag("--allow-new", settings.allow_new, "with --against: a FILE that REF does not have is new");
-  add_choice(command, "--format", settings.format, {"text", "json", "markdown"}, "text, json or markdown");
-  add_choice(command, "--audience", settings.audience, {"all", "wire", "source"},
-             "whose breaking changes to report: all, wire (masters, PDO partners) or source (C++ code)");
-  add_choice(command, "--fail-on", settings.fail_on, {"breaking", "any", "never"}, "changes that cause exit code 1");
-  command.add_flag(
-      "--storage", settings.storage,
-      "list which stored parameters a device keeps that gets the new version, and which are converted or dropped");
+  command.add_flag("--allow-new", settings.allow_new);
+  add_choice(command, "--format", settings.format, {"text", "json", "markdown"});
+  add_choice(command, "--audience", settings.audience, {"all", "wire", "source"});
+  add_choice(command, "--fail-on", settings.fail_on, {"breaking", "any", "never"});
+  command.add_flag("--storage", settings.storage);
   add_node_id_option(command, settings.node_id);
-  command.add_flag("--keep-going", settings.keep_going, "compare despite errors; what is wrong is left out");
+  command.add_flag("--keep-going", settings.keep_going);
   settings.color.add_to(command);
 }
 

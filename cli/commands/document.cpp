@@ -25,7 +25,7 @@ constexpr const char* examples = R"(Examples:
   edsc document drive.eds --against git:HEAD~1 -o drive.html  against the version of a git revision
   edsc document axis1.dcf -o axis1.html                       with the values that differ from the default
   edsc document plant.json -o plant.html                      a network: topology, SYNC cycle, load, response times
-  edsc document plant.json --nodes -o plant.html              with a page for each node: plant-NODE.html)";
+  edsc document plant.json --node-pages -o plant.html         with a page for each node: plant-NODE.html)";
 
 struct Settings {
   LoadSettings load;
@@ -124,16 +124,14 @@ int document(const Settings& settings) {
 void add_document_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, document, exit_code);
   command.add_option("FILE", settings.load.path, "EDS, DCF, XDD, XDC, or network file (*.json)").required();
-  const Option output = command.add_option("-o,--output", settings.output, "file to write (default: standard output)");
-  command.add_option("--format", settings.format, "html or markdown (default: by the name of the output; html)")
+  const Option output = command.add_option("--output", settings.output, "default: standard output");
+  command.add_option("--format", settings.format, "default: by the name of the output, else html")
       .one_of({"html", "markdown"});
-  command.add_option("--against", settings.against, "older version of the device: a file, or git:REF");
-  command
-      .add_flag("--nodes", settings.nodes, "of a network: also write a page for each node, beside that of the network")
-      .needs(output);
+  command.add_option("--against", settings.against);
+  command.add_flag("--node-pages", settings.nodes).needs(output);
   add_node_id_option(command, settings.load.node_id);
   add_options_option(command, settings.load.options_path);
-  command.add_flag("--keep-going", settings.load.keep_going, keep_going_help);
+  command.add_flag("--keep-going", settings.load.keep_going);
   settings.color.add_to(command);
 }
 

@@ -59,8 +59,8 @@ void add_dump_options(Command command, int& exit_code) {
   command.add_option("FILE", settings.load.path, "EDS, DCF, XDD, XDC or overlay").required();
   add_node_id_option(command, settings.load.node_id);
   add_options_option(command, settings.load.options_path);
-  command.add_flag("--cpp", settings.cpp, "add the view of the C++ templates");
-  command.add_flag("--keep-going", settings.load.keep_going, keep_going_help);
+  command.add_flag("--cpp", settings.cpp);
+  command.add_flag("--keep-going", settings.load.keep_going);
   settings.color.add_to(command);
 }
 

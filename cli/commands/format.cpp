@@ -22,6 +22,7 @@
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
+#include "shared/file_arguments.hpp"
 #include "shared/output.hpp"
 #include "system/path.hpp"
 #include "text/printable.hpp"
@@ -264,7 +265,9 @@ void check_usage(const Settings& settings) {
 int format(const Settings& settings) {
   check_usage(settings);
   int worst = exit_fine;
-  for (const std::string& path : settings.paths) {
+  const bool takes_folders = settings.check || settings.in_place;
+  for (const std::string& path :
+       takes_folders ? expand_folders(settings.paths, canonical_extensions) : settings.paths) {
     try {
       worst = std::max(worst, format_file(settings, path));
     } catch (const Exit& exit) {  // of this file
@@ -278,24 +281,21 @@ int format(const Settings& settings) {
 
 void add_format_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, format, exit_code);
-  command.add_option("FILE", settings.paths, "EDS, DCF, XDD, XDC or overlay; - is standard input").required();
+  command
+      .add_option("FILE", settings.paths,
+                  "EDS, DCF, XDD, XDC or overlay; - is standard input; with --check or --in-place also folders")
+      .required();
   const Option output =
-      command.add_option("-o,--output", settings.output, "file to write; may be FILE (default: standard output)")
-          .check(xdd_name_problem);
-  const Option in_place = command.add_flag("-i,--in-place", settings.in_place, "write each FILE itself");
-  const Option check = command.add_flag(
-      "--check", settings.check, "write nothing; list each FILE that is not canonical; exit code 1 if there is one");
-  const Option dcf = command.add_flag(
-      "--dcf", settings.dcf, "make a DCF: [DeviceComissioning], and the ParameterValues that differ from defaults");
-  const Option all = command.add_flag("--all", settings.all, "with --dcf: a ParameterValue for each writable entry");
-  const Option concise = command.add_flag(
-      "--concise", settings.concise, "write the concise DCF: what differs from the defaults, as object 1F22h holds it");
-  const Option options =
-      command.add_option("--write-options", settings.options,
-                         "write no EDS, but the options file with the storage groups of its comments "
-                         ";StorageLocation= (CANopenNode)");
+      command.add_option("--output", settings.output, "may be FILE (default: standard output)").check(xdd_name_problem);
+  const Option in_place = command.add_flag("--in-place", settings.in_place);
+  const Option check = command.add_flag("--check", settings.check, "lists each FILE that is not canonical");
+  const Option dcf = command.add_flag("--dcf", settings.dcf);
+  const Option all = command.add_flag("--all", settings.all, "with --dcf");
+  const Option concise =
+      command.add_flag("--concise", settings.concise, "write it: what differs from the default values");
+  const Option options = command.add_option("--write-options", settings.options);
   add_node_id_option(command, settings.node_id);
-  command.add_flag("--keep-going", settings.keep_going, keep_going_help);
+  command.add_flag("--keep-going", settings.keep_going);
   for (const ReadingChoiceRow& row : reading_choice_rows()) {
     std::string name = "--" + std::string{row.option};
     std::ranges::replace(name, '_', '-');

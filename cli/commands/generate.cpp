@@ -66,8 +66,8 @@ struct ChosenTemplate {
 
 /// What `--target` can be, with its meaning.
 std::string target_help() {
-  std::string text = "language of the files";
-  const char* separator = ": ";
+  std::string text;
+  const char* separator = "";
   for (const Target& target : targets()) {
     text += fmt::format("{}{} ({})", std::exchange(separator, ", "), target.name, target.summary);
   }
@@ -209,25 +209,21 @@ int generate(const Settings& settings) {
 void add_generate_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, generate, exit_code);
   command.add_option("FILE", settings.load.path, "EDS, DCF, XDD, XDC or overlay").required();
-  command.add_option("-o,--output", settings.output, "folder; the headers are written to its subfolder NAME");
-  command.add_option("--dbc", settings.dbc, "write the PDOs of the device as a DBC file; needs the node-ID");
-  command.add_option("--name", settings.load.name, "C++ namespace (default: the file's name)")
-      .check([](const std::string& name) {
-        if (!name.empty() && to_namespace(name) == name) return std::string{};
-        return fmt::format("expected a namespace in snake_case, such as \"{1}\", not \"{0}\"", name,
-                           to_namespace(name));
-      });
+  command.add_option("--output", settings.output, "the headers are written to its subfolder NAME");
+  command.add_option("--dbc", settings.dbc, "needs --node-id");
+  command.add_option("--name", settings.load.name).check([](const std::string& name) {
+    if (!name.empty() && to_namespace(name) == name) return std::string{};
+    return fmt::format("expected a namespace in snake_case, such as \"{1}\", not \"{0}\"", name, to_namespace(name));
+  });
   add_node_id_option(command, settings.load.node_id);
   add_options_option(command, settings.load.options_path);
-  command.add_flag("--static-mapping", settings.load.static_mapping,
-                   "no PDO can be mapped over the bus, for smaller firmware");
-  add_choice(command, "--target", settings.target, target_names(), target_help().c_str()).show_default();
-  command.add_option("--templates", settings.templates, "folder with templates that replace the built-in ones")
-      .existing_folder();
-  command.add_option("--depfile", settings.depfile, "write what the headers depend on, for make and ninja");
-  command.add_option("--depfile-target", settings.depfile_target, "target of the dependencies (default: the headers)");
-  command.add_flag("--keep-going", settings.load.keep_going, keep_going_help);
-  command.add_flag("-v,--verbose", settings.verbose, "print the names of the files that are written");
+  command.add_flag("--static-mapping", settings.load.static_mapping);
+  add_choice(command, "--target", settings.target, target_names(), target_help()).show_default();
+  command.add_option("--templates", settings.templates).existing_folder();
+  command.add_option("--depfile", settings.depfile);
+  command.add_option("--depfile-target", settings.depfile_target);
+  command.add_flag("--keep-going", settings.load.keep_going);
+  command.add_flag("--verbose", settings.verbose);
   add_replace_options(command, settings.replace, false);
   settings.color.add_to(command);
 }

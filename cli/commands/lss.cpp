@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -32,7 +33,7 @@ constexpr const char* examples = R"(Examples:
   edsc lss socketcan:can0 node-id 5
   edsc lss socketcan:can0 bit-rate 250
   edsc lss socketcan:can0 store
-  edsc lss socketcan:can0 activate --delay 500
+  edsc lss socketcan:can0 activate --delay 500ms
   edsc lss socketcan:can0 state waiting)";
 
 constexpr unsigned automatic = 0;
@@ -46,7 +47,7 @@ struct Settings {
   std::uint8_t node_id = 0;
   std::optional<unsigned> kbit;
   bool store = false;
-  std::uint16_t delay_ms = 500;
+  unsigned delay_ms = 500;
   LssState state = LssState::waiting;
   std::string (*service)(LssSession&, const Settings&) = nullptr;  ///< the subcommand; see ServiceRow
 };
@@ -118,7 +119,7 @@ std::string configure_bit_rate(LssSession& session, const Settings& settings) {
 }
 
 std::string activate(LssSession& session, const Settings& settings) {
-  return problem_of("activate", session.activate(settings.delay_ms));
+  return problem_of("activate", session.activate(static_cast<std::uint16_t>(settings.delay_ms)));
 }
 
 std::string store(LssSession& session, const Settings& /*settings*/) { return problem_of("store", session.store()); }
@@ -227,13 +228,10 @@ int run_lss(const Settings& settings) {
 }
 
 void add_address_options(Command command, Settings& settings, bool required) {
-  const Option vendor = add_count_option(command, "--vendor", settings.vendor, "vendor-ID, 1018h:01");
-  const Option product =
-      add_count_option(command, "--product", settings.product, "product code, 1018h:02").needs(vendor);
-  const Option revision =
-      add_count_option(command, "--revision", settings.revision, "revision number, 1018h:03").needs(product);
-  const Option serial =
-      add_count_option(command, "--serial", settings.serial, "serial number, 1018h:04").needs(revision);
+  const Option vendor = add_count_option(command, "--vendor", settings.vendor);
+  const Option product = add_count_option(command, "--product", settings.product).needs(vendor);
+  const Option revision = add_count_option(command, "--revision", settings.revision).needs(product);
+  const Option serial = add_count_option(command, "--serial", settings.serial).needs(revision);
   for (const Option& option : {vendor, product, revision, serial}) option.required(required);
 }
 
@@ -247,7 +245,7 @@ std::vector<std::string> bit_rate_words() {
 void add_bit_rate(Command command, const std::string& name, Settings& settings, bool required) {
   std::vector<std::string> words = bit_rate_words();
   const std::string description =
-      fmt::format("{} or {} kbit/s, or auto", fmt::join(std::span{words}.first(words.size() - 1), ", "), words.back());
+      fmt::format("{}, {} or auto", fmt::join(std::span{words}.first(words.size() - 1), ", "), words.back());
   words.emplace_back("auto");
   command
       .add_text_option(
@@ -255,7 +253,7 @@ void add_bit_rate(Command command, const std::string& name, Settings& settings, 
           [&settings](const std::string& text) {
             settings.kbit = text == "auto" ? automatic : parse_count(text).value_or(automatic);
           },
-          description)
+          name.starts_with("--") ? "" : description)
       .one_of(words)
       .required(required);
 }
@@ -265,7 +263,7 @@ void add_new_node_id(Command command, const std::string& name, Settings& setting
     return parse_count(text) == 255 ? std::optional<std::uint8_t>{255} : parse_node(text);
   };
   add_parsed(command, name, settings.node_id, parse, "a node-ID from 1 to 127 or 255",
-             "the new node-ID: 1..127, or 255 to remove it")
+             name.starts_with("--") ? "255 removes it" : "the new node-ID: 1..127, or 255 to remove it")
       .required();
 }
 
@@ -273,7 +271,7 @@ void add_assign_options(Command command, Settings& settings) {
   add_address_options(command, settings, false);
   add_new_node_id(command, "--node-id", settings);
   add_bit_rate(command, "--bit-rate", settings, false);
-  command.add_flag("--store", settings.store, "store the node-ID in the device");
+  command.add_flag("--store", settings.store);
   add_format_option(command, settings.format);
 }
 
@@ -290,7 +288,7 @@ void add_state_argument(Command command, Settings& settings) {
 }
 
 void add_delay_option(Command command, Settings& settings) {
-  command.add_option("--delay", settings.delay_ms, "switch delay in ms, before and after the switch").show_default();
+  command.add_milliseconds("--delay", settings.delay_ms, 0, std::numeric_limits<std::uint16_t>::max());
 }
 
 /// A subcommand.

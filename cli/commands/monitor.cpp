@@ -31,14 +31,14 @@ constexpr const char* examples = R"(Examples:
   edsc monitor socketcan:can0                                     a table of the nodes; q ends
   edsc monitor socketcan:can0 --node 5=drive.eds --node 3=io.eds  PDO values by name
   edsc monitor socketcan:can0 --node 5=drive.eds | tee log        a line for each change
-  edsc monitor socketcan:can0 --once 10 --bit-rate 500            ten seconds, then one table with the bus load
-  edsc monitor socketcan:can0 --once 10 --format json             for a program
+  edsc monitor socketcan:can0 --once 10s --bit-rate 500           ten seconds, then one table with the bus load
+  edsc monitor socketcan:can0 --once 10s --format json            for a program
   edsc monitor socketcan:can0 --node 5=drive.eds --web            values and plots in the browser)";
 
 struct Settings {
   std::string bus;
   std::vector<std::string> nodes;
-  std::optional<double> once_seconds;
+  std::optional<std::uint64_t> once_us;
   std::optional<unsigned> bit_rate;
   std::optional<ListenAddress> web;
   std::string format = "text";
@@ -104,9 +104,9 @@ class Monitor {
     return exit_fine;
   }
 
-  /// The state after this number of seconds, or at Ctrl-C.
-  int print_once(double seconds, const std::string& format) {
-    const auto end_us = static_cast<std::int64_t>(seconds * 1e6);
+  /// The state after this time, or at Ctrl-C.
+  int print_once(std::uint64_t span_us, const std::string& format) {
+    const auto end_us = static_cast<std::int64_t>(span_us);
     while (!Interruption::noted() && now_us_ < end_us) {
       const std::int64_t left = end_us - now_us_;
       take_frames(std::min(between_pictures, canopen::Duration{static_cast<std::uint32_t>(left)}),
@@ -176,7 +176,7 @@ int serve(Monitor& monitor, const ListenAddress& address) {
 }
 
 int run_monitor(const Settings& settings) {
-  if (settings.format == "json" && !settings.once_seconds) throw_requires("--format json", "--once");
+  if (settings.format == "json" && !settings.once_us) throw_requires("--format json", "--once");
   std::vector<std::unique_ptr<LoadedDevice>> devices;
   std::vector<KnownNode> known;
   for (const std::string& text : settings.nodes) {
@@ -191,7 +191,7 @@ int run_monitor(const Settings& settings) {
   return with_bus(settings.bus, [&](LiveBus& bus) {
     Monitor monitor{bus, settings, known};
     if (settings.web) return serve(monitor, *settings.web);
-    if (settings.once_seconds) return monitor.print_once(*settings.once_seconds, settings.format);
+    if (settings.once_us) return monitor.print_once(*settings.once_us, settings.format);
     return Terminal::is_there() ? monitor.show_table(settings.color.on(stdout)) : monitor.print_changes();
   });
 }
@@ -201,20 +201,12 @@ int run_monitor(const Settings& settings) {
 void add_monitor_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_monitor, exit_code);
   add_bus_argument(command, settings.bus);
-  command.add_option("--node", settings.nodes, "node-ID and its EDS; may be given more than once")
-      .type_name("ID=FILE")
-      .one_value_each()
-      .check([](const std::string& text) {
-        return parse_node_file(text) ? std::string{} : "\"" + text + "\" is not of the form NODE-ID=FILE";
-      });
-  command.add_option("--once", settings.once_seconds, "print one table after this many seconds").range(0.01, 86'400.0);
-  command.add_option("--bit-rate", settings.bit_rate, "kbit/s of the bus, for its load (without stuff bits)")
-      .range(5, 1000);
-  command
-      .add_text_option(
-          "--web", [&settings](const std::string& text) { settings.web = parse_listen_address(text); },
-          "serve a page with live values and plots, at this address (default: 127.0.0.1:8080; port 0: any)")
-      .type_name("HOST:PORT")
+  command.add_option("--node", settings.nodes).one_value_each().check([](const std::string& text) {
+    return parse_node_file(text) ? std::string{} : "\"" + text + "\" is not of the form NODE-ID=FILE";
+  });
+  command.add_duration("--once", 10'000, 86'400'000'000, [&settings](std::uint64_t us) { settings.once_us = us; });
+  command.add_option("--bit-rate", settings.bit_rate, "to compute the bus load, without stuff bits").range(5, 1000);
+  command.add_text_option("--web", [&settings](const std::string& text) { settings.web = parse_listen_address(text); })
       .optional_value()
       .show_default("127.0.0.1:8080")
       .excludes("--once")

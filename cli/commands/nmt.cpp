@@ -10,6 +10,7 @@
 #include "shared/exit_code.hpp"
 #include "shared/live_options.hpp"
 #include "shared/with_bus.hpp"
+#include "text/duration.hpp"
 #include "values/nmt_text.hpp"
 
 namespace edsc {
@@ -18,13 +19,13 @@ namespace {
 constexpr const char* examples = R"(Examples:
   edsc nmt socketcan:can0 start all                     all nodes Operational
   edsc nmt socketcan:can0 pre-operational 5             one node
-  edsc nmt socketcan:can0 reset-node 5 --wait 3000      and wait for its boot-up message, for three seconds at most)";
+  edsc nmt socketcan:can0 reset-node 5 --wait 3s        and wait for its boot-up message, for three seconds at most)";
 
 struct Settings {
   std::string bus;
   const NmtCommandText* command = nullptr;
   std::uint8_t node = 0;  ///< 0: all
-  unsigned wait_ms = 0;
+  std::uint32_t wait_us = 0;
 };
 
 /// What the node has reported since the command.
@@ -44,16 +45,16 @@ std::string reason(const Settings& settings, const Reports& reports) {
 void wait_for_state(LiveBus& bus, const Settings& settings, const Reports& reports) {
   constexpr canopen::Duration look_again = canopen::from_milliseconds(10);
   const canopen::TimePoint begin = bus.now();
-  const canopen::Duration span{settings.wait_ms * 1000U};
+  const canopen::Duration span{settings.wait_us};
   while (!reports.confirmed && bus.now() - begin < span) bus.listen(look_again);
   if (reports.confirmed) return;
-  fail(fmt::format("node {} did not report {} within {} ms: {}", settings.node,
-                   nmt_state_text(settings.command->leads_to), settings.wait_ms, reason(settings, reports)),
+  fail(fmt::format("node {} did not report {} within {}: {}", settings.node, nmt_state_text(settings.command->leads_to),
+                   duration_text(settings.wait_us), reason(settings, reports)),
        exit_device_failed);
 }
 
 int run_nmt(const Settings& settings) {
-  if (settings.wait_ms != 0 && settings.node == 0) {
+  if (settings.wait_us != 0 && settings.node == 0) {
     throw_invalid("--wait", "waits for one node, not for all");
   }
   return with_bus(settings.bus, [&](LiveBus& bus) {
@@ -64,7 +65,7 @@ int run_nmt(const Settings& settings) {
                                   }};
     bus.send_all(canopen::nmt_frame(settings.command->command, canopen::NodeId{settings.node}));
     bus.listen(canopen::from_milliseconds(10));  // the port may still hold the frame
-    if (settings.wait_ms != 0) wait_for_state(bus, settings, reports);
+    if (settings.wait_us != 0) wait_for_state(bus, settings, reports);
     return exit_fine;
   });
 }
@@ -90,7 +91,8 @@ void add_nmt_options(Command command, int& exit_code) {
   };
   add_parsed(command, "NODE", settings.node, parse, "a node-ID from 1 to 127 or \"all\"", "node-ID, 1..127, or all")
       .required();
-  command.add_option("--wait", settings.wait_ms, "ms to wait until the node reports its new state").range(1, 600'000);
+  command.add_duration("--wait", 1000, 600'000'000,
+                       [&settings](std::uint64_t us) { settings.wait_us = static_cast<std::uint32_t>(us); });
 }
 
 }  // namespace edsc

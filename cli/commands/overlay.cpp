@@ -88,9 +88,8 @@ int apply(const ApplySettings& settings) {
 void add_apply_options(Command command, int& exit_code) {
   ApplySettings& settings = define_command(command, "", apply, exit_code);
   command.add_option("FILE", settings.path, "overlay").required();
-  command.add_option("-o,--output", settings.output, "EDS or DCF to write (default: standard output)")
-      .check(xdd_name_problem);
-  command.add_flag("--utf8", settings.utf8, "write UTF-8 if a change of an ASCII file is not ASCII");
+  command.add_option("--output", settings.output, "EDS or DCF (default: standard output)").check(xdd_name_problem);
+  command.add_flag("--utf8", settings.utf8);
   settings.color.add_to(command);
 }
 
@@ -129,7 +128,7 @@ void add_from_options(Command command, int& exit_code) {
   FromSettings& settings = define_command(command, "", from, exit_code);
   command.add_option("BASE", settings.base, "EDS, DCF, XDD, XDC or overlay to correct").required();
   command.add_option("FILE", settings.edited, "edited copy of it").required();
-  command.add_option("-o,--output", settings.output, "overlay to write (default: standard output)");
+  command.add_option("--output", settings.output, "the overlay (default: standard output)");
 }
 
 struct RebaseSettings {
@@ -171,8 +170,8 @@ void add_rebase_options(Command command, int& exit_code) {
   RebaseSettings& settings = define_command(command, "", rebase, exit_code);
   command.add_option("FILE", settings.path, "overlay").required();
   command.add_option("BASE", settings.base, "new version of the file that the overlay corrects").required();
-  command.add_option("-o,--output", settings.output,
-                     "overlay to write, without the obsolete lines; may be FILE (default: only list the lines)");
+  command.add_option("--output", settings.output,
+                     "the overlay, without the obsolete lines; may be FILE (default: only list the lines)");
 }
 
 struct OverlayAction {

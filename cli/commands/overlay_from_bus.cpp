@@ -66,7 +66,7 @@ void add_overlay_from_bus_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, overlay_from_bus, exit_code);
   static_cast<void>(add_conformance_arguments(command, settings));
   add_options_option(command, settings.options);
-  command.add_option("-o,--output", settings.output, "overlay to write").required();
+  command.add_option("--output", settings.output, "the overlay").required();
   add_timeout_option(command, settings.sdo.timeout_ms);
   settings.color.add_to(command);
 }

@@ -251,8 +251,8 @@ void add_plot_options(Command command, int& exit_code) {
       .add_option("OBJECT", settings.objects,
                   "index or name of an object, of all nodes that have it; NODE/OBJECT: of one node")
       .required();
-  command.add_option("-o,--output", settings.output, "SVG file to write (default: standard output)").type_name("FILE");
-  command.add_option("--title", settings.title, "title of the picture (default: the name of the log)");
+  command.add_option("--output", settings.output, "SVG (default: standard output)");
+  command.add_option("--title", settings.title, "default: the name of the log");
 }
 
 }  // namespace edsc

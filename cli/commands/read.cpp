@@ -27,7 +27,7 @@ constexpr const char* examples = R"(Examples:
   edsc read socketcan:can0 5 1018h --eds drive.eds                    all entries of an object
   edsc read socketcan:can0 5 --all --eds drive.eds --format json      all that can be read
   edsc read socketcan:can0 5 1018h:02 --type u32                      without an EDS
-  edsc read socketcan:can0 5 1021h --eds drive.eds --file stored.eds  a DOMAIN to a file)";
+  edsc read socketcan:can0 5 1021h --eds drive.eds -o stored.eds      a DOMAIN to a file)";
 
 struct Settings : NodeSettings {
   std::vector<std::string> objects;
@@ -211,7 +211,7 @@ int run_read(const Settings& settings) {
   const auto loaded = settings.sheet.empty() ? nullptr : load_live_device(settings.sheet, settings.node);
   const std::vector<Chosen> entries = choose_entries(settings, loaded.get());
   if (!settings.file.empty() && entries.size() != 1) {
-    fail(fmt::format("--file takes the value of one entry, not of {}", entries.size()));
+    fail(fmt::format("--output takes the value of one entry, not of {}", entries.size()));
   }
   return with_bus(settings.bus, [&](LiveBus& bus) { return read_entries(bus, settings, entries); });
 }
@@ -222,21 +222,17 @@ void add_read_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_read, exit_code);
   add_node_arguments(command, settings);
   const Option objects = command.add_option("OBJECT", settings.objects, "6064h, 1018h:02, or a name from the EDS");
-  const Option sheet =
-      command.add_option("--eds", settings.sheet, "description of the node: EDS, DCF, XDD or XDC").type_name("FILE");
-  const Option all = command.add_flag("--all", settings.all, "all readable entries of the EDS except DOMAINs");
+  const Option sheet = command.add_option("--eds", settings.sheet);
+  const Option all = command.add_flag("--all", settings.all, "except DOMAINs; needs --eds");
   all.needs(sheet).excludes(objects);
   add_type_option(command, settings.type);
   add_format_option(command, settings.format);
-  const Option raw = command.add_flag("--raw", settings.raw, "values as bytes");
-  const Option file =
-      command.add_option("--file", settings.file, "write the bytes of one entry to this file").type_name("FILE");
+  const Option raw = command.add_flag("--raw", settings.raw, "print values like this");
+  const Option file = command.add_option("--output", settings.file, "the bytes of one entry");
   file.excludes(all).excludes(raw);
-  const Option block = command.add_flag("--block", settings.block, "block transfer for all data types");
-  command.add_flag("--segmented", settings.segmented, "no block transfer").excludes(block);
-  command.add_option("--max-bytes", settings.sdo.max_bytes, "maximum bytes of a variable-length value")
-      .range(std::size_t{1}, std::size_t{1} << 30)
-      .show_default();
+  const Option block = command.add_flag("--block", settings.block);
+  command.add_flag("--segmented", settings.segmented).excludes(block);
+  command.add_option("--max-bytes", settings.sdo.max_bytes).range(1, std::uint64_t{1} << 30).show_default();
   add_timeout_option(command, settings.sdo.timeout_ms);
 }
 

@@ -15,6 +15,7 @@
 #include "shared/exit_code.hpp"
 #include "shared/live_options.hpp"
 #include "shared/with_bus.hpp"
+#include "text/duration.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -22,7 +23,7 @@ namespace {
 
 constexpr const char* examples = R"(Examples:
   edsc record socketcan:can0 -o bus.log                      until Ctrl-C; decode, canplayer and log2asc read it
-  edsc record slcan:/dev/ttyACM0@500000 -o bus.log --seconds 60
+  edsc record slcan:/dev/ttyACM0@500000 -o bus.log --for 1m
   edsc record socketcand:127.0.0.1:29536/vcan0 --count 1000  on standard output
   edsc record socketcan:can0 | edsc decode --node 5=drive.eds -)";
 
@@ -30,7 +31,7 @@ struct Settings {
   std::string bus;
   std::string output;
   std::string interface;
-  std::optional<double> seconds;
+  std::uint64_t span_us = max_duration_us;
   std::optional<std::uint64_t> count;
 };
 
@@ -71,8 +72,7 @@ class Recorder {
   /// Returns false if the file cannot be written.
   bool run() {
     using namespace std::chrono;
-    const auto end = steady_clock::now() +
-                     duration_cast<steady_clock::duration>(duration<double>{settings_.seconds.value_or(max_seconds)});
+    const auto end = steady_clock::now() + microseconds{settings_.span_us};
     while (!Interruption::noted() && frames_ != settings_.count) {
       const auto left = duration_cast<milliseconds>(end - steady_clock::now());
       if (left <= milliseconds{0}) break;
@@ -89,7 +89,6 @@ class Recorder {
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
 
  private:
-  static constexpr double max_seconds = 1e9;
   static constexpr std::chrono::milliseconds look_again{100};
 
   bool write(const canopen::Frame& frame) {
@@ -142,13 +141,10 @@ int run_record(const Settings& settings) {
 void add_record_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_record, exit_code);
   add_bus_argument(command, settings.bus);
-  command.add_option("-o,--output", settings.output, "file to write; emptied at the start (default: standard output)")
-      .type_name("FILE");
-  command.add_option("--seconds", settings.seconds, "end after this time").range(0.01, 1e9);
-  command.add_option("--count", settings.count, "end after this number of frames")
-      .range(std::uint64_t{1}, std::uint64_t{1} << 62);
-  command.add_option("--interface", settings.interface, "name of the interface in the log (default: that of BUS)")
-      .check(bad_interface);
+  command.add_option("--output", settings.output, "emptied at the start (default: standard output)");
+  command.add_duration("--for", 10'000, max_duration_us, [&settings](std::uint64_t us) { settings.span_us = us; });
+  command.add_option("--count", settings.count).range(1, std::uint64_t{1} << 62);
+  command.add_option("--log-interface", settings.interface).check(bad_interface);
 }
 
 }  // namespace edsc

@@ -121,12 +121,10 @@ void add_save_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_save, exit_code);
   add_node_arguments(command, settings);
   command.add_option("FILE", settings.path, "EDS of the node, or a DCF").required();
-  command.add_option("-o,--output", settings.output, "DCF to write (default: standard output)")
-      .type_name("FILE")
-      .check(xdd_name_problem);
-  command.add_flag("--all", settings.all, "all values, not only those that differ from the EDS");
-  command.add_option("--bit-rate", settings.bit_rate, "kbit/s of the bus, for [DeviceComissioning]").range(5, 1000);
-  command.add_flag("--force", settings.force, "save even if the device does not match FILE");
+  command.add_option("--output", settings.output, "the DCF (default: standard output)").check(xdd_name_problem);
+  command.add_flag("--all", settings.all);
+  command.add_option("--bit-rate", settings.bit_rate, "for [DeviceComissioning]").range(5, 1000);
+  command.add_flag("--force", settings.force, "the device does not match FILE");
   add_format_option(command, settings.format);
   add_timeout_option(command, settings.sdo.timeout_ms);
 }

@@ -12,6 +12,7 @@
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
+#include "shared/file_arguments.hpp"
 #include "shared/live_device.hpp"
 #include "shared/live_options.hpp"
 #include "shared/with_bus.hpp"
@@ -24,7 +25,7 @@ namespace {
 
 constexpr const char* examples = R"(Examples:
   edsc scan socketcan:can0                                   all nodes that answer or send heartbeats
-  edsc scan socketcan:can0 --nodes 1..10 --listen 3000       some of them; three seconds for slow heartbeats
+  edsc scan socketcan:can0 --nodes 1..10 --for 3s            some of them; three seconds for slow heartbeats
   edsc scan socketcan:can0 --eds drive.eds --eds io.eds      and which EDS matches each
   edsc scan slcan:/dev/ttyACM0 --lss                         and the devices without node-ID, by LSS Fastscan
   edsc scan socketcand:127.0.0.1:29536/vcan0 --format json   for a program)";
@@ -185,7 +186,7 @@ constexpr std::uint8_t any_node = 1;  ///< the identity of a device does not dep
 
 std::vector<Candidate> load_candidates(const Settings& settings) {
   std::vector<Candidate> candidates;
-  for (const std::string& path : settings.sheets) {
+  for (const std::string& path : expand_folders(settings.sheets)) {
     candidates.push_back({path, identity_of(*load_live_device(path, any_node)->device)});
   }
   return candidates;
@@ -233,10 +234,8 @@ void add_scan_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_scan, exit_code);
   add_bus_argument(command, settings.bus);
   add_scanned_nodes(command, settings.scan);
-  command.add_option("--eds", settings.sheets, "EDS to compare with; may be given more than once")
-      .one_value_each()
-      .type_name("FILE");
-  const Option lss = command.add_flag("--lss", settings.lss, "also find devices without node-ID, by LSS Fastscan");
+  command.add_option("--eds", settings.sheets, "of nodes to find; or a folder with such files").one_value_each();
+  const Option lss = command.add_flag("--lss", settings.lss);
   add_step_option(command, settings.lss_step_ms).needs(lss);
   add_format_option(command, settings.format);
   settings.color.add_to(command);

@@ -15,6 +15,7 @@
 #include "shared/live_device.hpp"
 #include "shared/live_options.hpp"
 #include "shared/with_bus.hpp"
+#include "text/printable.hpp"
 #include "values/little_endian.hpp"
 #include "values/parse_value.hpp"
 #include "values/value_text.hpp"
@@ -23,21 +24,22 @@ namespace edsc {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  edsc send socketcan:can0 sync --every 10                      SYNC every 10 ms, until Ctrl-C
-  edsc send socketcan:can0 sync --overflow 240 --every 10 --count 500
+  edsc send socketcan:can0 sync --every 10ms                    SYNC every 10 ms, until Ctrl-C
+  edsc send socketcan:can0 sync --overflow 240 --every 10ms --count 500
   edsc send socketcan:can0 time                                 the time of day of this computer, UTC
-  edsc send socketcan:can0 pdo 5=drive.eds 1 controlword=0x0F "target_velocity=1500 rpm"
-  edsc send socketcan:can0 pdo 5=drive.eds 2 statusword=0x27 position_actual_value=0 --tpdo
+  edsc send socketcan:can0 pdo 5 1 controlword=0x0F "target_velocity=1500 rpm" --eds drive.eds
+  edsc send socketcan:can0 pdo 5 2 statusword=0x27 position_actual_value=0 --tpdo --eds drive.eds
   edsc send socketcan:can0 frame 181#0102)";
 
 struct Settings {
   std::string bus;
-  std::uint32_t every_ms = 0;  ///< 0: one frame, or `count` of them at once
+  std::uint32_t every_us = 0;  ///< 0: one frame, or `count` of them at once
   std::optional<std::uint32_t> count;
   std::optional<std::uint32_t> can_id;
   std::optional<std::uint32_t> overflow;
   std::optional<std::vector<std::uint8_t>> time;
   NodeFile node;
+  std::string sheet;
   std::uint32_t number = 0;
   std::vector<std::string> values;
   bool transmit = false;
@@ -84,14 +86,19 @@ PdoValue pdo_value(const LoadedDevice& loaded, const std::string& text) {
 }
 
 canopen::Frame compose_pdo_of_file(const Settings& settings, std::uint32_t /*sent*/) {
-  const auto loaded = load_live_device(settings.node.path, settings.node.node_id);
+  if (!settings.node.path.empty()) {
+    print_to_stderr("edsc: note: \"{0}={1}\" is written \"{0} --eds {1}\" now\n", settings.node.node_id,
+                    settings.node.path);
+  }
+  const std::string& path = settings.sheet.empty() ? settings.node.path : settings.sheet;
+  if (path.empty()) throw_required("--eds");
+  const auto loaded = load_live_device(path, settings.node.node_id);
   const NodeModel model{settings.node.node_id, *loaded->device};
   const PdoDirection direction = settings.transmit ? PdoDirection::transmit : PdoDirection::receive;
   const auto pdo = std::ranges::find_if(
       model.pdos(), [&](const PdoLayout& one) { return one.direction == direction && one.number == settings.number; });
   if (pdo == model.pdos().end()) {
-    fail(fmt::format("{} does not have {} {}", settings.node.path, settings.transmit ? "TPDO" : "RPDO",
-                     settings.number));
+    fail(fmt::format("{} does not have {} {}", path, settings.transmit ? "TPDO" : "RPDO", settings.number));
   }
   std::vector<PdoValue> values;
   for (const std::string& text : settings.values) values.push_back(pdo_value(*loaded, text));
@@ -110,8 +117,8 @@ canopen::Frame given_frame(const Settings& settings, std::uint32_t /*sent*/) { r
 
 /// Sends the frames in their period, without drift; SYNC and TIME differ from frame to frame.
 int send_frames(LiveBus& bus, const Settings& settings, canopen::Frame frame) {
-  const canopen::Duration period = canopen::Duration{settings.every_ms * 1000U};
-  const bool endless = settings.every_ms != 0 && !settings.count;
+  const canopen::Duration period = canopen::Duration{settings.every_us};
+  const bool endless = settings.every_us != 0 && !settings.count;
   const std::uint32_t count = settings.count.value_or(1);
   const bool changes = settings.compose == compose_sync || settings.compose == compose_time;
   canopen::TimePoint due = bus.now();
@@ -139,7 +146,7 @@ void add_can_id_option(Command command, Settings& settings) {
     return can_id && !canopen::is_restricted(*can_id) ? can_id : std::nullopt;
   };
   add_parsed(command, "--id", settings.can_id, parse, "a CAN-ID up to 1FFFFFFFh, or is reserved by CiA 301",
-             "another CAN-ID, such as 81h; above 7FFh an extended one");
+             "default: that of CiA 301");
 }
 
 void add_sync_options(Command command, Settings& settings) {
@@ -147,8 +154,7 @@ void add_sync_options(Command command, Settings& settings) {
     const auto number = parse_count(text, 240);
     return number && *number >= 2 ? number : std::nullopt;
   };
-  add_parsed(command, "--overflow", settings.overflow, parse, "a number from 2 to 240",
-             "send a counter from 1 to this number, as in 1019h");
+  add_parsed(command, "--overflow", settings.overflow, parse, "a number from 2 to 240");
   add_can_id_option(command, settings);
 }
 
@@ -163,15 +169,19 @@ void add_time_options(Command command, Settings& settings) {
 }
 
 void add_pdo_options(Command command, Settings& settings) {
-  add_parsed(command, "NODE=FILE", settings.node, parse_node_file, "of the form NODE-ID=FILE",
-             "node-ID of the PDO, and its EDS, DCF, XDD or XDC")
-      .required();
+  // The form `5=drive.eds` is that of previous versions.
+  const auto parse = [](const std::string& text) -> std::optional<NodeFile> {
+    if (const auto node = parse_node(text)) return NodeFile{*node, {}};
+    return parse_node_file(text);
+  };
+  add_parsed(command, "NODE", settings.node, parse, "a node-ID from 1 to 127", "node-ID, 1..127").required();
+  command.add_option("--eds", settings.sheet);
   add_parsed(
       command, "NUMBER", settings.number, [](const std::string& text) { return parse_count(text, classical_can.pdos); },
       fmt::format("a number from 1 to {}", classical_can.pdos), "number of the RPDO: 1 is 1400h")
       .required();
   command.add_option("OBJECT=VALUE", settings.values, "a value for each mapped object, by name or address");
-  command.add_flag("--tpdo", settings.transmit, "send a TPDO of the node in its place");
+  command.add_flag("--tpdo", settings.transmit);
 }
 
 void add_frame_options(Command command, Settings& settings) {
@@ -200,29 +210,18 @@ constexpr KindRow kinds[] = {
     {"frame", "send a frame", given_frame, add_frame_options},
 };
 
-/// `10`, `10ms`, `2s`
-std::optional<std::uint32_t> parse_period(const std::string& text) {
-  constexpr std::uint32_t max_ms = 600'000;
-  const std::size_t unit_at = std::min(text.find_first_not_of("0123456789"), text.size());
-  const std::string unit = text.substr(unit_at);
-  if (!unit.empty() && unit != "ms" && unit != "s") return std::nullopt;
-  const auto number = parse_count(text.substr(0, unit_at), unit == "s" ? max_ms / 1000 : max_ms);
-  if (!number || *number == 0) return std::nullopt;
-  return unit == "s" ? *number * 1000 : *number;
-}
-
 }  // namespace
 
 void add_send_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_send, exit_code);
   add_bus_argument(command, settings.bus);
-  add_parsed(command, "--every", settings.every_ms, parse_period, "a time from 1 ms to 600 s",
-             "ms between two frames; without --count until Ctrl-C");
+  command.add_duration("--every", 1000, 600'000'000,
+                       [&settings](std::uint64_t us) { settings.every_us = static_cast<std::uint32_t>(us); });
   const auto parse_positive = [](const std::string& text) {
     const auto number = parse_count(text);
     return number && *number != 0 ? number : std::nullopt;
   };
-  add_parsed(command, "--count", settings.count, parse_positive, "a number from 1", "number of frames (default: 1)");
+  add_parsed(command, "--count", settings.count, parse_positive, "a number from 1", "default: 1");
   for (const KindRow& row : kinds) {
     const Command kind = command.add_subcommand(row.name, row.description);
     kind.take_options_of_parent();

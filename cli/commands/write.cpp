@@ -142,17 +142,14 @@ void add_write_options(Command command, int& exit_code) {
   add_node_arguments(command, settings);
   command.add_option("OBJECT", settings.object, "6064h, 1018h:02, or a name from the EDS").required();
   const Option value = command.add_option("VALUE", settings.value, "1500, 5DCh, \"500 ms\", text; with --raw bytes");
-  command.add_option("--eds", settings.sheet, "description of the node: EDS, DCF, XDD or XDC").type_name("FILE");
+  command.add_option("--eds", settings.sheet);
   add_type_option(command, settings.type);
-  const Option raw = command.add_flag("--raw", settings.raw, "VALUE is bytes, as hexadecimal digits");
-  command.add_option("--file", settings.file, "write the bytes of this file")
-      .type_name("FILE")
-      .excludes(value)
-      .excludes(raw);
-  command.add_flag("--force", settings.force, "write regardless of access type and limits");
-  command.add_flag("--verify", settings.verify, "read the value back and compare it");
-  const Option block = command.add_flag("--block", settings.block, "block transfer also for short values");
-  command.add_flag("--segmented", settings.segmented, "no block transfer").excludes(block);
+  const Option raw = command.add_flag("--raw", settings.raw);
+  command.add_option("--file", settings.file).excludes(value).excludes(raw);
+  command.add_flag("--force", settings.force, "access type or limits do not allow the value");
+  command.add_flag("--verify", settings.verify);
+  const Option block = command.add_flag("--block", settings.block);
+  command.add_flag("--segmented", settings.segmented).excludes(block);
   add_timeout_option(command, settings.sdo.timeout_ms);
 }
 

@@ -25,34 +25,36 @@ std::vector<std::string> names_of(const CLI::Option& option) {
 }
 
 OptionValue value_of(const CLI::Option& option) {
+  const OptionFacts& facts = facts_of(option);
   if (option.get_items_expected_max() == 0) return {};
-  const OptionValueKind kind = value_kind_of(option);
-  if (!kind.words.empty()) {
-    const std::string list = fmt::format("{}", fmt::join(kind.words, " "));
-    return {fmt::format("{}", fmt::join(kind.words, "|")), "_edsc_words \"" + list + "\"", "(" + list + ")", true};
-  }
-  switch (kind.type) {
-    case OptionValueKind::Type::folder: return {"DIR", "_edsc_files -d", "_files -/"};
-    case OptionValueKind::Type::number: return {"NUMBER", ":", " "};
-    case OptionValueKind::Type::text: break;
-  }
-  return {"TEXT", "_edsc_files -f", "_edsc_file"};
+  if (facts.words.empty()) return {facts.value, facts.kind, {}, facts.suggestions};
+  return {fmt::format("{}", fmt::join(facts.words, "|")), ValueKind::word, facts.words, {}};
 }
 
-CommandParts parts_below(const CLI::App& command, std::vector<std::string> path) {
+/// `before`: the usage of the parent, with its arguments.
+CommandParts parts_below(const CLI::App& command, std::vector<std::string> path, const std::string& before) {
   CommandParts parts;
   parts.name = path.empty() ? std::string{} : path.back();
+  parts.usage = before.empty() ? parts.name : before + " " + parts.name;
   parts.group = command.get_group();
   parts.description = command.get_description();
   parts.example_lines = examples_of(command);
+  parts.takes_options_of_parent = command.get_fallthrough();
+  std::string usage = parts.usage;
   for (const CLI::Option* option : command.get_options()) {
-    OptionParts one{names_of(*option),        option->get_description(), value_of(*option),
-                    option->get_positional(), option->get_required(),    option->get_items_expected_max() > 1};
+    OptionParts one{names_of(*option),
+                    option->get_description(),
+                    value_of(*option),
+                    facts_of(*option).default_text,
+                    option->get_positional(),
+                    option->get_required(),
+                    facts_of(*option).repeats || option->get_items_expected_max() > 1};
+    if (one.is_argument) usage += " " + one.as_usage();
     (one.is_argument ? parts.arguments : parts.options).push_back(std::move(one));
   }
   for (const CLI::App* sub : command.get_subcommands([](const CLI::App* one) { return !one->get_name().empty(); })) {
     path.push_back(sub->get_name());
-    parts.subcommands.push_back(parts_below(*sub, path));
+    parts.subcommands.push_back(parts_below(*sub, path, usage));
     path.pop_back();
   }
   parts.path = std::move(path);
@@ -60,6 +62,11 @@ CommandParts parts_below(const CLI::App& command, std::vector<std::string> path)
 }
 
 }  // namespace
+
+std::string OptionParts::as_usage() const {
+  const std::string text = names.front() + (repeats ? "..." : "");
+  return is_required ? text : "[" + text + "]";
+}
 
 std::string CommandParts::path_with(const char* separator) const {
   return fmt::format("{}", fmt::join(path, separator));
@@ -75,6 +82,6 @@ std::vector<std::pair<std::string, std::vector<const CommandParts*>>> CommandPar
   return found;
 }
 
-CommandParts parts_of(Command program) { return parts_below(program.cli11(), {}); }
+CommandParts parts_of(Command program) { return parts_below(program.cli11(), {}, ""); }
 
 }  // namespace edsc

@@ -26,10 +26,19 @@ wrong usage, or a file or bus cannot be used
 interrupted by Ctrl\-C or SIGTERM
 .SH ENVIRONMENT
 .TP
+.B EDSC_BUS
+the bus of commands that are called without BUS, such as socketcan:can0
+.TP
+.B EDSC_NETWORK
+a network file, which names the nodes and their files
+.TP
 .B NO_COLOR
 if set, output is not coloured unless
 .B \-\-color
 says so
+.TP
+.B TERM
+if it is dumb, output is not coloured either
 .SH SEE ALSO
 .BR candump (1)
 )";
@@ -65,6 +74,9 @@ std::string sentence(const std::string& text) {
 
 std::string name_of(const CommandParts& command) { return escaped("edsc " + command.path_with(" ")); }
 
+/// With the arguments that are before a subcommand: `edsc lss BUS inquire`.
+std::string usage_of(const CommandParts& command) { return escaped("edsc " + command.usage); }
+
 /// The commands without subcommands, which are those that a user calls.
 /// `parents` are the command's parents, whose arguments come before the name of the command: `edsc lss BUS assign`.
 void append_synopsis(std::string& out, const CommandParts& command, std::vector<const CommandParts*> parents = {}) {
@@ -72,16 +84,9 @@ void append_synopsis(std::string& out, const CommandParts& command, std::vector<
   for (const CommandParts& sub : command.subcommands) append_synopsis(out, sub, parents);
   if (!command.subcommands.empty()) return;
   if (!out.ends_with(".ad l\n")) out += ".br\n";
-  std::string words = "edsc";
-  for (const CommandParts* const part : parents) {
-    if (!part->path.empty()) words += (words.empty() ? "" : " ") + part->path.back();
-    if (part != &command && part->arguments.empty()) continue;
-    out += fmt::format(".B {}\n", escaped(std::exchange(words, "")));
-    if (part == &command) out += "[\\fIoptions\\fR]\n";
-    for (const OptionParts& argument : part->arguments) {
-      const std::string name = escaped(argument.names.front()) + (argument.repeats ? "..." : "");
-      out += fmt::format("{}\\fI{}\\fR{}\n", argument.is_required ? "" : "[", name, argument.is_required ? "" : "]");
-    }
+  out += fmt::format(".B {}\n[\\fIoptions\\fR]\n", usage_of(command));
+  for (const OptionParts& argument : command.arguments) {
+    out += fmt::format("\\fI{}\\fR\n", escaped(argument.as_usage()));
   }
 }
 
@@ -92,7 +97,7 @@ void append_option(std::string& out, const OptionParts& option) {
   }
   std::string text = option.description;
   std::string type;
-  if (option.is_argument && option.value.is_choice) text += ": " + option.value.name;
+  if (option.is_argument && !option.value.words.empty()) text += ": " + option.value.name;
   if (!option.is_argument && !option.value.name.empty()) type = fmt::format(" \\fI{}\\fR", escaped(option.value.name));
   out += fmt::format(".TP\n{}{}\n{}\n", fmt::join(names, ", "), type, escaped(text));
 }

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <iterator>
 
@@ -7,7 +8,7 @@
 namespace edsc {
 namespace {
 
-constexpr const char* head = R"(#compdef edsc
+constexpr const char* head = R"sh(#compdef edsc
 # Completion of edsc for zsh: printed by `edsc completion zsh`.
 
 # A file, also after ID=
@@ -16,7 +17,26 @@ _edsc_file() {
   _files
 }
 
-)";
+# Words that edsc prints: buses, nodes, or the objects of the EDS files on the command line.
+_edsc_call() {
+  local -a found
+  found=(${(f)"$(edsc completion "$@" 2>/dev/null)"})
+  compadd -a found
+}
+
+_edsc_objects() {
+  local -a sheets
+  local i
+  for ((i = 2; i < CURRENT; i++)); do
+    case $words[i] in
+      --eds=*|--node=*) sheets+=(${words[i]##*=}) ;;
+      --eds|--node) sheets+=(${words[i + 1]##*=}) ;;
+    esac
+  done
+  _edsc_call objects $sheets
+}
+
+)sh";
 
 /// In single quotes; special characters of _arguments are escaped.
 std::string quoted(const std::string& text) {
@@ -32,13 +52,29 @@ std::string quoted(const std::string& text) {
   return out;
 }
 
+/// What completes a value: an action of _arguments.
+std::string action_of(const OptionValue& value) {
+  const std::vector<std::string>& words = value.words.empty() ? value.suggestions : value.words;
+  if (!words.empty()) return fmt::format("({})", quoted(fmt::format("{}", fmt::join(words, " "))));
+  switch (value.kind) {
+    case ValueKind::file:
+    case ValueKind::path:
+    case ValueKind::node_file: return "_edsc_file";
+    case ValueKind::folder: return "_files -/";
+    case ValueKind::bus: return "_edsc_call buses";
+    case ValueKind::node: return "_edsc_call nodes";
+    case ValueKind::object: return "_edsc_objects";
+    default: return " ";
+  }
+}
+
 /// `'*--filter[show only ...]:TEXT:_edsc_file'`, one for each of its names.
 void append_option(std::string& out, const OptionParts& option) {
   for (const std::string& name : option.names) {
     fmt::format_to(std::back_inserter(out), " \\\n    '{}{}[{}]", option.repeats ? "*" : "", name,
                    quoted(option.description));
     if (!option.value.name.empty()) {
-      fmt::format_to(std::back_inserter(out), ":{}:{}", quoted(option.value.name), option.value.zsh);
+      fmt::format_to(std::back_inserter(out), ":{}:{}", quoted(option.value.name), action_of(option.value));
     }
     out += '\'';
   }
@@ -47,7 +83,7 @@ void append_option(std::string& out, const OptionParts& option) {
 void append_argument(std::string& out, const OptionParts& argument) {
   const char* count = argument.repeats ? "*" : argument.is_required ? "" : ":";
   fmt::format_to(std::back_inserter(out), " \\\n    '{}:{}:{}'", count, quoted(argument.names.front()),
-                 argument.value.zsh);
+                 action_of(argument.value));
 }
 
 /// `_edsc_lss_inquire`

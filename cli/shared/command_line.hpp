@@ -4,8 +4,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "shared/vocabulary.hpp"
 
 namespace CLI {
 class App;
@@ -14,15 +17,19 @@ class Option;
 
 namespace edsc {
 
-/// What the value of an option or argument is, for completions and the manual page.
-struct OptionValueKind {
-  enum class Type : std::uint8_t { text, number, folder };
-
-  Type type = Type::text;
-  std::vector<std::string> words;  ///< the only values; empty: any
+/// What the help, completions and the manual page state of an option or argument.
+struct OptionFacts {
+  ValueKind kind = ValueKind::text;
+  std::string value;                     ///< what its value is called; empty for a flag
+  std::vector<std::string> words;        ///< the only values; empty: any
+  std::vector<std::string> suggestions;  ///< values for completions, where there are others too
+  std::string default_text;              ///< its value if it is not given; empty: not shown
+  bool repeats = false;                  ///< it may be given more than once
+  std::uint64_t min = 0;                 ///< of a number
+  std::uint64_t max = 0;
 };
 
-[[nodiscard]] OptionValueKind value_kind_of(const CLI::Option& option);
+[[nodiscard]] const OptionFacts& facts_of(const CLI::Option& option);
 
 /// An option, a flag or an argument of a command; a handle.
 class Option {
@@ -41,13 +48,12 @@ class Option {
   Option excludes(const std::string& other) const;
   /// `problem` returns what is wrong with a text, or nothing.
   Option check(std::function<std::string(const std::string& text)> problem) const;
-  /// A number from `min` to `max`: an int, a double, or one of the unsigned types of add_option.
-  template <class Number>
-  Option range(Number min, Number max) const;
+  /// A number from `min` to `max`.
+  Option range(std::uint64_t min, std::uint64_t max) const;
   Option one_of(const std::vector<std::string>& words) const;
   Option existing_folder() const;
-  /// What its value is called in the help.
-  Option type_name(const std::string& name) const;
+  /// Values that completions offer.
+  Option suggest(std::vector<std::string> values) const;
   /// Shows its present value in the help.
   Option show_default() const;
   Option show_default(const std::string& text) const;
@@ -67,23 +73,35 @@ class Command {
 
   [[nodiscard]] CLI::App& cli11() const { return *app_; }
 
-  /// `Value`: a string, a number, an optional number or a list of strings; see the instantiations in
+  // The name, `--output`, is that of a row of the vocabulary, which states the meaning of the option; `detail` is what
+  // it means in this command in addition. A name without dashes is an argument, and `detail` its description.
+
+  /// `Value`: a string, an unsigned number, an optional one or a list of strings; see the instantiations in
   /// command_line.cpp.
   template <class Value>
-  Option add_option(const std::string& name, Value& value, const std::string& description) const;
+  Option add_option(const std::string& name, Value& value, const std::string& detail = "") const;
   /// An option whose text `take` gets.
   Option add_text_option(const std::string& name, const std::function<void(const std::string& text)>& take,
-                         const std::string& description) const;
+                         const std::string& detail = "") const;
   /// The same for a number.
   Option add_number_option(const std::string& name, const std::function<void(unsigned number)>& take,
-                           const std::string& description) const;
-  Option add_flag(const std::string& name, bool& value, const std::string& description) const;
+                           const std::string& detail = "") const;
+  /// A duration from `min_us` to `max_us`, which `take_us` gets in microseconds.
+  Option add_duration(const std::string& name, std::uint64_t min_us, std::uint64_t max_us,
+                      const std::function<void(std::uint64_t microseconds)>& take_us,
+                      const std::string& detail = "") const;
+  /// A duration of whole milliseconds; the help shows its present value.
+  Option add_milliseconds(const std::string& name, unsigned& milliseconds, unsigned min, unsigned max,
+                          const std::string& detail = "") const;
+  Option add_flag(const std::string& name, bool& value, const std::string& detail = "") const;
 
   /// A subcommand; one of them must be given.
   [[nodiscard]] Command add_subcommand(const std::string& name, const std::string& description) const;
   /// Options of the command around it may follow its own.
   void take_options_of_parent() const;
   [[nodiscard]] Command parent() const;
+  /// Of the program: `edsc 1.0`.
+  [[nodiscard]] std::string version() const;
   /// The lines below the options in the help.
   void footer(const std::string& text) const;
   /// What is called when the command is chosen, after its options have been read.

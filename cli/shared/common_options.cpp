@@ -8,18 +8,15 @@
 namespace edsc {
 
 Option add_choice(Command command, const char* name, std::string& value, const std::vector<std::string>& words,
-                  const char* description) {
-  return command.add_option(name, value, description).one_of(words).show_default();
+                  const std::string& detail) {
+  return command.add_option(name, value, detail).one_of(words).show_default();
 }
 
-void ColorOption::add_to(Command command) {
-  add_choice(command, "--color", when, {"auto", "always", "never"},
-             "colour the findings: auto (on a terminal, NO_COLOR unset), always, never");
-}
+void ColorOption::add_to(Command command) { add_choice(command, "--color", when, {"auto", "always", "never"}); }
 
 bool ColorOption::on(std::FILE* stream) const {
   if (when != "auto") return when == "always";
-  return is_terminal(stream) && std::getenv("NO_COLOR") == nullptr;
+  return is_terminal(stream) && std::getenv("NO_COLOR") == nullptr && !is_dumb_terminal();
 }
 
 void print_findings(const Diagnostics& diagnostics, const ColorOption& color) {
@@ -28,15 +25,18 @@ void print_findings(const Diagnostics& diagnostics, const ColorOption& color) {
   write_to_stderr(text);
 }
 
-void add_options_option(Command command, std::string& path) {
-  command.add_option("--options", path, "options file (default: FILE's name with .options.json, if there)");
+std::vector<std::string> rule_names(std::span<const Rule> rules) {
+  std::vector<std::string> names;
+  for (const Rule& rule : rules) names.emplace_back(rule.id);
+  return names;
 }
+
+void add_options_option(Command command, std::string& path) { command.add_option("--options", path); }
 
 void add_node_id_option(Command command, std::optional<std::uint8_t>& node_id) {
   command
       .add_number_option(
-          "--node-id", [&node_id](unsigned value) { node_id = static_cast<std::uint8_t>(value); },
-          "evaluate $NODEID formulas for this node-ID (1..127)")
+          "--node-id", [&node_id](unsigned value) { node_id = static_cast<std::uint8_t>(value); }, "for $NODEID")
       .range(1, 127);
 }
 

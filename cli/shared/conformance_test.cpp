@@ -81,6 +81,13 @@ class SimulatedStimuli final : public conform::Stimuli {
   SimulatedPort& port_;
 };
 
+/// The cases, for completions.
+std::vector<std::string> case_ids(std::string_view suffix = {}) {
+  std::vector<std::string> ids;
+  for (const CaseRow* const row : conform::all_cases()) ids.push_back(fmt::format("{}{}", row->id, suffix));
+  return ids;
+}
+
 Permission permissions_of(const ConformanceSettings& settings, Level level) {
   Permission all = Permission::none;
   if (settings.store || level >= Level::all) all = all | Permission::store;
@@ -194,40 +201,35 @@ void add_conformance_options(Command command, ConformanceSettings& settings) {
   add_options_option(command, settings.options);
   std::vector<std::string> names;
   for (const conform::LevelRow& row : conform::levels) names.emplace_back(row.name);
-  add_choice(command, "--level", settings.level, names,
-             fmt::format("what the test may do to the node: {}", fmt::join(names, ", ")).c_str());
-  command.add_flag("--store", settings.store,
-                   "store and restore parameters (1010h, 1011h), then restore the original values");
-  command.add_flag("--application", settings.application, "write objects from 2000h, then restore the original values");
-  command.add_flag("--outputs", settings.outputs, "send RPDOs and SYNC: outputs may move");
-  command.add_option("--only", settings.only, "cases to run: 2.5 or 3.*; may be given more than once")
-      .type_name("CASE")
+  add_choice(command, "--level", settings.level, names);
+  command.add_flag("--store", settings.store, "1010h and 1011h, then restore the original values");
+  command.add_flag("--application", settings.application);
+  command.add_flag("--outputs", settings.outputs);
+  command.add_option("--only", settings.only)
       .one_value_each()
       .check([](const std::string& pattern) {
         const auto rows = conform::all_cases();
         const bool names_one =
             std::ranges::any_of(rows, [&](const CaseRow* row) { return conform::matches(pattern, row->id); });
         return names_one ? std::string{} : "unknown case \"" + pattern + "\"; edsc conform --list prints the cases";
-      });
-  command.add_option("--stimulus", settings.stimuli, "command that acts on the node in a case: 5.4=COMMAND")
-      .type_name("CASE=COMMAND")
+      })
+      .suggest(case_ids());
+  command.add_option("--stimulus", settings.stimuli)
       .one_value_each()
       .check([](const std::string& text) {
         return text.find('=') != std::string::npos ? std::string{} : "\"" + text + "\" is not CASE=COMMAND";
-      });
-  command
-      .add_option("--deviations", settings.deviations,
-                  "declared deviations of the node, with their reasons: a JSON file")
-      .type_name("FILE");
+      })
+      .suggest(case_ids("="));
+  command.add_option("--deviations", settings.deviations);
 }
 
 void add_report_options(Command command, ConformanceSettings& settings) {
-  command.add_option("--log", settings.log, "write the frames as a candump log").type_name("FILE");
-  command.add_option("--title", settings.title, "title of the report").type_name("TEXT");
-  command.add_option("--operator", settings.operator_name, "who tests, for the report").type_name("NAME");
-  command.add_option("--place", settings.place, "where the test is done, for the report").type_name("TEXT");
-  command.add_option("--seed", settings.seed, "seed of the randomly chosen accesses").show_default();
-  command.add_flag("--quiet", settings.quiet, "print only failures and the result");
+  command.add_option("--log", settings.log);
+  command.add_option("--title", settings.title);
+  command.add_option("--operator", settings.operator_name);
+  command.add_option("--place", settings.place);
+  command.add_option("--seed", settings.seed).show_default();
+  command.add_flag("--quiet", settings.quiet);
   add_timeout_option(command, settings.sdo.timeout_ms);
   settings.color.add_to(command);
 }

@@ -93,12 +93,8 @@ std::string_view text_of(Fate fate) {
 }  // namespace
 
 void add_replace_options(Command command, ReplaceSettings& settings, bool has_check) {
-  command.add_flag("--force", settings.force,
-                   "replace files too that edsc has not written, or that were changed since");
-  if (has_check) {
-    command.add_flag("--check", settings.check,
-                     "print what would be written without writing; exit code 1 if a file would change");
-  }
+  command.add_flag("--force", settings.force, "replaces files that edsc has not written, or that were changed since");
+  if (has_check) command.add_flag("--check", settings.check);
 }
 
 bool has_mark_of_edsc(std::string_view text) {

@@ -35,9 +35,7 @@ bool is_skipped(const LiveNetworkSettings& settings, const NetworkNode& node) {
 void add_live_network_options(Command command, LiveNetworkSettings& settings) {
   add_bus_argument(command, settings.bus);
   command.add_option("FILE", settings.path, "network file (JSON)").required();
-  command.add_option("--skip", settings.skip, "node to ignore; may be given more than once")
-      .one_value_each()
-      .type_name("NAME");
+  command.add_option("--skip", settings.skip).one_value_each();
   add_format_option(command, settings.format);
   add_timeout_option(command, settings.sdo.timeout_ms);
 }

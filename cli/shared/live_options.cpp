@@ -1,11 +1,11 @@
 #include "shared/live_options.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 
 #include "online/live_entry.hpp"
 #include "shared/common_options.hpp"
+#include "shared/parse_number.hpp"
 
 namespace edsc {
 
@@ -27,19 +27,15 @@ void add_node_arguments(Command command, NodeSettings& settings) {
 }
 
 Option add_timeout_option(Command command, unsigned& milliseconds) {
-  return command.add_option("--timeout", milliseconds, "ms to wait for a response of a device")
-      .range(1, 600'000)
-      .show_default();
+  return command.add_milliseconds("--timeout", milliseconds, 1, 600'000);
 }
 
 Option add_step_option(Command command, unsigned& milliseconds) {
-  return command.add_option("--step", milliseconds, "ms to wait in each step of Fastscan; more on a slow bus")
-      .range(1, 10'000)
-      .show_default();
+  return command.add_milliseconds("--step", milliseconds, 1, 10'000);
 }
 
 Option add_format_option(Command command, std::string& format) {
-  return add_choice(command, "--format", format, {"text", "json"}, "text or json");
+  return add_choice(command, "--format", format, {"text", "json"});
 }
 
 Option add_type_option(Command command, const canopen::DataTypeRow*& type) {
@@ -47,25 +43,12 @@ Option add_type_option(Command command, const canopen::DataTypeRow*& type) {
     const canopen::DataTypeRow* const found = find_type(text);
     return found != nullptr ? std::optional{found} : std::nullopt;
   };
-  return add_parsed(command, "--type", type, parse, "a data type",
-                    "data type instead of that of the EDS: bool, u8..u64, i8..i64, f32, f64, string, unicode, octets, "
-                    "time, span, domain");
+  return add_parsed(command, "--type", type, parse, "a data type");
 }
 
 std::optional<std::uint32_t> parse_count(const std::string& text, std::uint32_t most) {
-  std::string_view digits{text};
-  int base = 10;
-  if (digits.starts_with("0x") || digits.starts_with("0X")) {
-    digits.remove_prefix(2);
-    base = 16;
-  } else if (digits.ends_with('h') || digits.ends_with('H')) {
-    digits.remove_suffix(1);
-    base = 16;
-  }
-  std::uint32_t number = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number, base);
-  if (error != std::errc{} || end != digits.data() + digits.size() || number > most) return std::nullopt;
-  return number;
+  const auto number = parse_number(text, most);
+  return number ? std::optional{static_cast<std::uint32_t>(*number)} : std::nullopt;
 }
 
 std::optional<std::uint8_t> parse_node(const std::string& text) {
@@ -104,21 +87,19 @@ ScanSettings ScanOptions::parsed() const {
 }
 
 void add_scanned_nodes(Command command, ScanOptions& options) {
-  command.add_option("--nodes", options.nodes, "node-IDs to scan: 1..127, or a list such as 1,3,8..20")
+  command.add_option("--nodes", options.nodes)
       .check([](const std::string& text) {
         return parse_node_list(text).empty() ? "\"" + text + "\" is not a list of node-IDs" : std::string{};
       })
       .show_default();
   add_timeout_option(command, options.times.timeout_ms);
-  command.add_option("--listen", options.times.listen_ms, "minimum ms to listen for heartbeats")
-      .range(0, 600'000)
-      .show_default();
+  command.add_milliseconds("--for", options.times.listen_ms, 0, 600'000, "at least, for heartbeats");
 }
 
 Option add_count_option(Command command, const std::string& name, std::optional<std::uint32_t>& number,
-                        const std::string& description) {
+                        const std::string& detail) {
   const auto parse = [](const std::string& text) { return parse_count(text); };
-  return add_parsed(command, name, number, parse, "a number; expected 31, 0x1F or 1Fh", description);
+  return add_parsed(command, name, number, parse, "a number; expected 31, 0x1F or 1Fh", detail);
 }
 
 }  // namespace edsc

@@ -73,6 +73,6 @@ void add_scanned_nodes(Command command, ScanOptions& options);
 
 /// Adds an option or argument with such a number.
 Option add_count_option(Command command, const std::string& name, std::optional<std::uint32_t>& number,
-                        const std::string& description);
+                        const std::string& detail = "");
 
 }  // namespace edsc

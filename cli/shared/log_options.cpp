@@ -66,17 +66,14 @@ Option add_log_options(Command command, LogSettings& settings) {
       "LOG", settings.log,
       "log of candump, CANoe (asc), PCAN-View (trc), tcpdump or Wireshark; \"-\" for standard input");
   std::vector<std::string> formats{automatic};
-  std::string help = "format of LOG; auto: by its content";
+  std::string help = "auto: by its content";
   for (const LogFormat* const row : log_formats) {
     formats.emplace_back(row->name);
     help += fmt::format("; {}: {}", row->name, row->description);
   }
-  add_choice(command, "--log-format", settings.log_format, formats, help.c_str());
-  command
-      .add_option("--node", settings.nodes,
-                  "ID=FILE: EDS of a node, or FILE: a DCF with its node-ID; may be given more than once")
-      .one_value_each();
-  command.add_option("--interface", settings.interface, "frames of this interface or channel only, such as can0");
+  add_choice(command, "--log-format", settings.log_format, formats, help);
+  command.add_option("--node", settings.nodes).one_value_each();
+  command.add_option("--interface", settings.interface);
   settings.color.add_to(command);
   return log;
 }

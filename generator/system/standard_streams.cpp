@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <ctime>
 
 #include "system/write_all.hpp"
@@ -21,6 +22,11 @@ void occupy_standard_descriptors() {
 }
 
 bool is_terminal(std::FILE* stream) { return isatty(fileno(stream)) != 0; }
+
+bool is_dumb_terminal() {
+  const char* const kind = std::getenv("TERM");
+  return kind != nullptr && std::string_view{kind} == "dumb";
+}
 
 void report_closed_pipes() { std::signal(SIGPIPE, SIG_IGN); }
 

@@ -12,6 +12,9 @@ void occupy_standard_descriptors();
 
 [[nodiscard]] bool is_terminal(std::FILE* stream);
 
+/// Whether TERM states that the terminal understands no escape sequences.
+[[nodiscard]] bool is_dumb_terminal();
+
 /// From now on, writing to a pipe that its reader has closed fails with EPIPE and does not end the program.
 void report_closed_pipes();
 

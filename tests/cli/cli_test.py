@@ -146,7 +146,8 @@ class BadInput(CommandLine):
         self.refuse("missing.eds", WRONG_USAGE, "missing.eds", "No such file", "[unreadable-file]")
 
     def test_a_folder(self) -> None:
-        self.refuse(self.folder, WRONG_USAGE, "Is a directory", "[unreadable-file]")
+        self.expect(WRONG_USAGE, self.edsc("generate", self.folder, "-o", self.output), "Is a directory", "[unreadable-file]")
+        self.expect(WRONG_USAGE, self.edsc("check", self.folder), "have no EDS, DCF or XDD file")
 
     def test_a_file_without_permission(self) -> None:
         secret = self.write("secret.eds", SMALL)
@@ -290,12 +291,12 @@ class WrongUsage(CommandLine):
 
     def test_unknown_command(self) -> None:
         for arguments, message in (
-                (("chek", "x"), 'edsc: unknown command "chek"; did you mean "check"?\n'),
-                (("chek", "--help"), 'edsc: unknown command "chek"; did you mean "check"?\n'),
-                (("nosuch", "--help"), 'edsc: unknown command "nosuch"\n'),
-                (("nosuch", "--version"), 'edsc: unknown command "nosuch"\n'),
-                (("lss", "can0", "fastcan"), 'edsc lss: unknown command "fastcan"; did you mean "fastscan"?\n'),
-                (("lss", "can0", "fastcan", "--help"), 'edsc lss: unknown command "fastcan"; did you mean "fastscan"?\n')):
+                (("chek", "x"), 'edsc: unknown command "chek"; did you mean "check"?\n"edsc help" shows the usage\n'),
+                (("chek", "--help"), 'edsc: unknown command "chek"; did you mean "check"?\n"edsc help" shows the usage\n'),
+                (("nosuch", "--help"), 'edsc: unknown command "nosuch"\n"edsc help" shows the usage\n'),
+                (("nosuch", "--version"), 'edsc: unknown command "nosuch"\n"edsc help" shows the usage\n'),
+                (("lss", "socketcan:can0", "fastcan"), 'edsc: unknown command "fastcan" of edsc lss; did you mean "fastscan"?\n"edsc help lss" shows the usage\n'),
+                (("lss", "socketcan:can0", "fastcan", "--help"), 'edsc: unknown command "fastcan" of edsc lss; did you mean "fastscan"?\n"edsc help lss" shows the usage\n')):
             with self.subTest(arguments=arguments):
                 result = self.edsc(*arguments)
                 self.assertEqual((result.returncode, result.stdout, result.stderr), (WRONG_USAGE, "", message))

@@ -354,7 +354,7 @@ class Hooks(CommandLine):
         self.assertEqual(entry[0], "edsc")
         for file in files:
             self.assertRegex(file, self.hooks[name]["files"])
-        return self.edsc(*entry[1:], *files)
+        return self.edsc(*entry[1:], *json.loads(self.hooks[name]["args"].split(" #")[0]), *files)
 
     def test_all_are_complete(self) -> None:
         self.assertEqual(set(self.hooks), {"edsc-check", "edsc-format", "edsc-format-check", "edsc-diff"})
@@ -367,6 +367,10 @@ class Hooks(CommandLine):
         for name in self.hooks:
             with self.subTest(hook=name):
                 self.expect(FINE, self.hook(name, "a.eds", "b.eds"))
+
+    def test_read_a_file_that_is_named_like_an_option(self) -> None:
+        self.write("-h.eds", "not an EDS")
+        self.expect(INPUT_HAS_ERRORS, self.hook("edsc-check", "a.eds", "-h.eds"), "-h.eds:1:1: error:")
 
     def test_find_what_is_wrong(self) -> None:
         rough = self.write("a.eds", "; a comment\n" + SMALL.replace("DataType=6\nAccessType=rw", "DataType=6\nAccessType=xy"))

@@ -93,7 +93,7 @@ class NetworkPage(DocumentCase):
     def test_a_page_for_each_node(self) -> None:
         self.write("plant #1.json", PLANT.replace('"a"', '"\u00e4xis 1"').replace('"a.', '"\u00e4xis 1.'))
         self.plant()
-        network = self.document(self.folder / "plant #1.json", "--nodes")
+        network = self.document(self.folder / "plant #1.json", "--node-pages")
         pages = [self.folder / f"plant #1-{name}.html" for name in ("master", "\u00e4xis 1", "b")]
         self.assert_clean(self.browse("audit-expanded", network, *pages))
         reached = self.browse("follow", network, "#nodes tbody a")
@@ -104,14 +104,14 @@ class NetworkPage(DocumentCase):
 
     def test_markdown_of_each_node(self) -> None:
         self.plant()
-        self.edsc("document", "plant.json", "--nodes", "-o", "plant.md")
+        self.edsc("document", "plant.json", "--node-pages", "-o", "plant.md")
         self.assertIn("(plant-a.md)", (self.folder / "plant.md").read_text().replace("\\", ""))
         self.assertIn("[plant.json](plant.md)", (self.folder / "plant-a.md").read_text().replace("\\", ""))
 
     def test_pages_of_nodes_are_for_networks_in_files(self) -> None:
         self.plant()
-        self.assertIn("is for networks", self.edsc("document", "node.eds", "--nodes", "-o", "a.html", exit_code=2).stderr)
-        self.assertIn("--output", self.edsc("document", "plant.json", "--nodes", exit_code=2).stderr)
+        self.assertIn("is for networks", self.edsc("document", "node.eds", "--node-pages", "-o", "a.html", exit_code=2).stderr)
+        self.assertIn("--output", self.edsc("document", "plant.json", "--node-pages", exit_code=2).stderr)
 
     def test_options_for_devices_are_errors(self) -> None:
         self.plant()

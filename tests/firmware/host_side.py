@@ -60,7 +60,7 @@ class HostSide:
                               text=True, timeout=LONGEST)
 
     def node_command(self, command: str, *arguments: object) -> subprocess.CompletedProcess[str]:
-        return self.edsc(command, self.node, *arguments, "--timeout", PATIENCE)
+        return self.edsc(command, self.node, *arguments, "--timeout", f"{PATIENCE}ms")
 
     def done(self, result: subprocess.CompletedProcess[str]) -> bool:
         """Whether a command succeeded; reports its output if not."""
@@ -73,8 +73,8 @@ class HostSide:
     def lss(self) -> None:
         """Configures one device step by step; it boots with its node-ID in the waiting state."""
         for step in (["state", "configuration"], ["node-id", self.node], ["store"]):
-            self.done(self.edsc("lss", *step, "--timeout", PATIENCE))
-        inquired = self.edsc("lss", "inquire", "--format", "json", "--timeout", PATIENCE)
+            self.done(self.edsc("lss", *step, "--timeout", f"{PATIENCE}ms"))
+        inquired = self.edsc("lss", "inquire", "--format", "json", "--timeout", f"{PATIENCE}ms")
         if self.done(inquired):
             address = json.loads(inquired.stdout)["address"]
             for sub, number in ((1, "vendor_id"), (2, "product_code"), (3, "revision_number")):
@@ -82,8 +82,8 @@ class HostSide:
         self.done(self.edsc("lss", "state", "waiting"))
 
     def scan(self) -> None:
-        result = self.edsc("scan", "--nodes", self.node, "--eds", self.path, "--format", "json", "--listen", 100,
-                           "--timeout", PATIENCE)
+        result = self.edsc("scan", "--nodes", self.node, "--eds", self.path, "--format", "json", "--for", "100ms",
+                           "--timeout", f"{PATIENCE}ms")
         if not self.done(result):
             return
         nodes = json.loads(result.stdout)["nodes"]
@@ -181,7 +181,7 @@ class HostSide:
 
     def nmt(self) -> None:
         for command in ("stop", "pre-operational", "start", "reset-communication", "reset-node"):
-            self.done(self.edsc("nmt", command, self.node, "--wait", PATIENCE))
+            self.done(self.edsc("nmt", command, self.node, "--wait", f"{PATIENCE}ms"))
 
     def stored(self) -> None:
         self.machine.power_off()

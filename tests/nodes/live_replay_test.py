@@ -179,7 +179,7 @@ def play(name: str, port: int, bus_name: str) -> None:
 def main() -> int:
     command = [EDSC, "bus", "--listen", "127.0.0.1:0"]
     for i in range(len(TRACES)):
-        command += ["--bus", f"vcan{i}"]
+        command.append(f"vcan{i}")
     with subprocess.Popen(command, text=True, stdout=subprocess.PIPE) as server:
         try:
             addresses = [ADDRESS.fullmatch(server.stdout.readline()) for _ in TRACES]

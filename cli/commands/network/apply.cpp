@@ -114,13 +114,10 @@ int run_apply(const Settings& settings) {
 void add_network_apply_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_apply, exit_code);
   add_live_network_options(command, settings);
-  command.add_flag("--store", settings.apply.store, "store the parameters of the nodes (1010h) after success");
-  command.add_flag("--start", settings.apply.start, "start all nodes, if all were configured");
-  add_choice(command, "--on-error", settings.on_error, {"abort", "continue", "retry"},
-             "after a node that cannot be configured: abort, continue with the others, or retry");
-  command.add_option("--retries", settings.apply.retries, "of --on-error retry, for each node")
-      .range(1, 100)
-      .show_default();
+  command.add_flag("--store", settings.apply.store, "after success (1010h)");
+  command.add_flag("--start", settings.apply.start, "all nodes, if all were configured");
+  add_choice(command, "--on-error", settings.on_error, {"abort", "continue", "retry"});
+  command.add_option("--retries", settings.apply.retries, "with --on-error retry").range(1, 100).show_default();
 }
 
 }  // namespace edsc

@@ -65,12 +65,10 @@ int generate(const Settings& settings) {
 void add_network_generate_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, "", generate, exit_code);
   command.add_option("FILE", settings.path, "network file (JSON)").required();
-  command.add_option("-o,--output", settings.output, "folder for the files").required();
-  const Option depfile =
-      command.add_option("--depfile", settings.depfile, "write what the files depend on, for make and ninja");
-  command.add_option("--depfile-target", settings.depfile_target, "target of the dependencies (default: the files)")
-      .needs(depfile);
-  command.add_flag("-v,--verbose", settings.verbose, "print the names of the files that are written");
+  command.add_option("--output", settings.output, "folder").required();
+  const Option depfile = command.add_option("--depfile", settings.depfile);
+  command.add_option("--depfile-target", settings.depfile_target).needs(depfile);
+  command.add_flag("--verbose", settings.verbose);
   add_replace_options(command, settings.replace, true);
   settings.color.add_to(command);
 }

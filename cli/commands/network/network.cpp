@@ -87,13 +87,11 @@ std::string check_rule(const std::string& id) {
 void add_network_check_options(Command command, int& exit_code) {
   CheckSettings& settings = define_command(command, "", check, exit_code);
   command.add_option("FILE", settings.paths, "network files (JSON)").required();
-  add_choice(command, "--format", settings.format, {"text", "json", "sarif"}, "text, json or sarif");
-  command.add_option("--silence", settings.silence, "rule not to report; may be given more than once")
-      .one_value_each()
-      .check(check_rule);
-  command.add_flag("--all", settings.all, all_findings_help);
-  command.add_flag("--strict", settings.strict, "warnings count as errors; notes do not");
-  command.add_flag("--times", settings.times, "print period, worst-case response time and deadline of each message");
+  add_choice(command, "--format", settings.format, {"text", "json", "sarif"});
+  command.add_option("--silence", settings.silence).one_value_each().check(check_rule).suggest(rule_names(check_rules));
+  command.add_flag("--all-findings", settings.all);
+  command.add_flag("--strict", settings.strict);
+  command.add_flag("--times", settings.times);
   settings.color.add_to(command);
 }
 
@@ -135,7 +133,7 @@ int members(const MembersSettings& settings) {
 
 void add_members_options(Command command, int& exit_code) {
   MembersSettings& settings = define_command(command, "", members, exit_code);
-  add_choice(command, "--format", settings.format, {"text", "json"}, "text or json");
+  add_choice(command, "--format", settings.format, {"text", "json"});
 }
 
 struct ActionRow {

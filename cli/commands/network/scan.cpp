@@ -18,8 +18,8 @@ namespace edsc {
 namespace {
 
 constexpr const char* examples = R"(Examples:
-  edsc network scan socketcan:can0 --sheets eds --bit-rate 500 -o plant.json
-  edsc network scan socketcan:can0 --sheets eds --nodes 1..10      a part of the bus, to standard output)";
+  edsc network scan socketcan:can0 --eds eds --bit-rate 500 -o plant.json
+  edsc network scan socketcan:can0 --eds eds --nodes 1..10      a part of the bus, to standard output)";
 
 struct Settings {
   std::string bus;
@@ -61,12 +61,9 @@ int run_scan(const Settings& settings) {
 void add_network_scan_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_scan, exit_code);
   add_bus_argument(command, settings.bus);
-  command.add_option("--sheets", settings.folder, "folder with EDS, DCF and XDD files, and its subfolders")
-      .required()
-      .type_name("FOLDER");
-  command.add_option("-o,--output", settings.output, "network file to write (default: standard output)")
-      .type_name("FILE");
-  command.add_option("--bit-rate", settings.bit_rate, "kbit/s of the bus").range(10, 1000);
+  command.add_option("--eds", settings.folder, "or a folder with such files, and its subfolders").required();
+  command.add_option("--output", settings.output, "the network file (default: standard output)");
+  command.add_option("--bit-rate", settings.bit_rate).range(10, 1000);
   add_scanned_nodes(command, settings.scan);
 }
 

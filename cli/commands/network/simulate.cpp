@@ -22,6 +22,7 @@
 #include "simulate/simulation_report.hpp"
 #include "system/path.hpp"
 #include "system/temporary_folder.hpp"
+#include "text/duration.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -140,17 +141,13 @@ int simulate(const Settings& settings) {
 void add_network_simulate_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, simulate, exit_code);
   command.add_option("FILE", settings.path, "network file (JSON)").required();
-  add_parsed(command, "--for", settings.duration_us, parse_simulated_time, "a time, such as 10s, 500ms or 1h",
-             "simulated time (default: 1min)");
-  command.add_option("--fault", settings.faults, "fault to inject: " + fault_forms() + "; may be given more than once")
-      .one_value_each();
-  command.add_option("--seed", settings.seed, "of the phases and values; the same seed has the same result")
-      .range(std::uint32_t{1}, std::numeric_limits<std::uint32_t>::max())
-      .show_default();
-  command.add_option("-o,--output", settings.output, "folder for the program (default: a temporary one)");
-  command.add_option("--runtime", settings.include_folder, "include folder of the runtime (default: that of edsc)")
-      .existing_folder();
-  add_choice(command, "--format", settings.format, {"text", "json"}, "text or json");
+  command.add_duration("--for", 1, max_simulated_us, [&settings](std::uint64_t us) { settings.duration_us = us; })
+      .show_default(duration_text(settings.duration_us));
+  command.add_option("--fault", settings.faults, fault_forms()).one_value_each();
+  command.add_option("--seed", settings.seed).range(1, std::numeric_limits<std::uint32_t>::max()).show_default();
+  command.add_option("--output", settings.output, "the program (default: a temporary folder)");
+  command.add_option("--runtime", settings.include_folder).existing_folder();
+  add_choice(command, "--format", settings.format, {"text", "json"});
   settings.color.add_to(command);
 }
 

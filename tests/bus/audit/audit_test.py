@@ -119,7 +119,7 @@ class Options(Audits):
     def test_sdo_timeout(self) -> None:
         case = Broken(add(*sdo(1200, 5, "4000100000000000", "4300100000000000", 300)))
         self.assertEqual(self.report(case)["findings"], [])
-        self.assertEqual([one["rule"] for one in self.report(case, "--sdo-timeout", "200")["findings"]], ["sdo-timeout"])
+        self.assertEqual([one["rule"] for one in self.report(case, "--timeout", "200ms")["findings"]], ["sdo-timeout"])
 
     def test_the_options_file_states_the_unit_of_inhibit_times(self) -> None:
         """100 units are 10 ms, with units of 1 ms 100 ms, with units of 50 us 5 ms."""

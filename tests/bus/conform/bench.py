@@ -54,7 +54,7 @@ class Bench:
         return node
 
     def command(self, sheet: Path, report: Path, *options: object, level: str = "all", timeout_ms: int = 2000) -> list[str]:
-        return [*map(str, (self.edsc, "conform", self.address, NODE_ID, sheet, "--level", level, "--timeout", timeout_ms, "--json",
+        return [*map(str, (self.edsc, "conform", self.address, NODE_ID, sheet, "--level", level, "--timeout", f"{timeout_ms}ms", "--json",
                            report, *options))]
 
     def conform(self, sheet: Path, report: Path, *options: object, level: str = "all", timeout_ms: int = 2000) -> dict:

@@ -33,7 +33,7 @@ class Drive(unittest.TestCase):
         self.bench.start_node([NODES / "cpd"], ["--node-id", NODE_ID], "pre-operational")
 
     def edsc(self, command: str, *arguments: object) -> subprocess.CompletedProcess[str]:
-        return subprocess.run([EDSC, command, self.bench.address, str(NODE_ID), *map(str, arguments), "--timeout", "60000"],
+        return subprocess.run([EDSC, command, self.bench.address, str(NODE_ID), *map(str, arguments), "--timeout", "60000ms"],
                               capture_output=True, text=True, timeout=LIMIT)
 
     def conform(self, *options: str) -> subprocess.CompletedProcess[str]:

@@ -45,7 +45,7 @@ class Interruption(unittest.TestCase):
         self.addCleanup(self.client.close)
 
     def edsc(self, command: str, *arguments: object) -> str:
-        result = subprocess.run([EDSC, command, self.bench.address, str(NODE_ID), *map(str, arguments), "--timeout", "60000"],
+        result = subprocess.run([EDSC, command, self.bench.address, str(NODE_ID), *map(str, arguments), "--timeout", "60000ms"],
                                 capture_output=True, text=True, timeout=LIMIT)
         self.assertEqual(result.returncode, 0, result.stderr)
         return result.stdout

@@ -97,7 +97,7 @@ class Accept(unittest.TestCase):
         self.assertEqual(slave.stdout.readline(), "started\n")
 
     def accept(self, *options: object, timeout_ms: int = TIMEOUT_MS) -> subprocess.CompletedProcess[str]:
-        return subprocess.run([EDSC, "accept", self.address, "5", "planted.eds", "--timeout", str(timeout_ms), *map(str, options)],
+        return subprocess.run([EDSC, "accept", self.address, "5", "planted.eds", "--timeout", f"{timeout_ms}ms", *map(str, options)],
                               cwd=self.folder, capture_output=True, text=True, timeout=1200)
 
     def report(self) -> dict:
@@ -122,7 +122,7 @@ class Accept(unittest.TestCase):
         corrections = [one for difference in before if difference["mark"] == "eds_wrong" for one in difference["corrections"]]
         self.assertGreaterEqual(len(corrections), 5)
         made = subprocess.run([EDSC, "overlay", "from-bus", self.address, "5", "planted.eds", "-o", "planted.overlay",
-                               "--timeout", str(SILENCE_MS)], cwd=self.folder, capture_output=True, text=True, timeout=1200)
+                               "--timeout", f"{SILENCE_MS}ms"], cwd=self.folder, capture_output=True, text=True, timeout=1200)
         self.assertEqual(made.returncode, 0, made.stdout + made.stderr)
         text = (self.folder / "planted.overlay").read_text(encoding="utf-8")
         self.assertIn("Base=planted.eds\n", text)
@@ -139,7 +139,7 @@ class Accept(unittest.TestCase):
 
     def test_each_planted_difference_has_its_mark(self) -> None:
         self.start_slave()
-        result = self.accept("-o", "report.html", "--json", "report.json", "--junit", "report.xml", "--only", "2.1", "--title",
+        result = self.accept("--html", "report.html", "--json", "report.json", "--junit", "report.xml", "--only", "2.1", "--title",
                              "A <title>", "--operator", "Ada", "--place", "Hall", timeout_ms=SILENCE_MS)
         self.assertEqual(result.returncode, 1, result.stderr)
         report = self.report()
@@ -232,7 +232,7 @@ class Accept(unittest.TestCase):
 
     def test_an_interruption_ends_with_130_and_a_report(self) -> None:
         self.start_slave()
-        process = subprocess.Popen([EDSC, "accept", self.address, "5", "planted.eds", "--timeout", str(TIMEOUT_MS), "--json",
+        process = subprocess.Popen([EDSC, "accept", self.address, "5", "planted.eds", "--timeout", f"{TIMEOUT_MS}ms", "--json",
                                     "report.json"], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         time.sleep(2)  # it waits for the response of 2008h
         process.send_signal(signal.SIGINT)
@@ -250,8 +250,8 @@ class Accept(unittest.TestCase):
 
     def test_wrong_usage(self) -> None:
         (self.folder / "planted.eds").write_text(eds_of(GOOD), encoding="utf-8")
-        for options in (("--level", "much"), ("--only", "99.1"), ("--deviations", "missing.json"), ("-o", "planted.eds")):
-            if options[0] == "-o":
+        for options in (("--level", "much"), ("--only", "99.1"), ("--deviations", "missing.json"), ("--html", "planted.eds")):
+            if options[0] == "--html":
                 self.start_slave("good")
             self.assertEqual(self.accept(*options).returncode, 2, options)
         result = subprocess.run([EDSC, "accept", "nonsense:", "5", "planted.eds"], cwd=self.folder, capture_output=True, text=True)

@@ -302,7 +302,7 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
     def test_a_stopped_node(self) -> None:
         self.only(x2004="1200")
         self.edsc("nmt", "stop", 5)
-        result = self.edsc("configure", 5, "axis.dcf", "--timeout", 5000)
+        result = self.edsc("configure", 5, "axis.dcf", "--timeout", "5000ms")
         self.assertEqual((result.returncode, result.stderr), (FINE, ""))
 
     def test_the_dcf_of_another_node(self) -> None:
@@ -312,7 +312,7 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
                                     capture_output=True, text=True, timeout=600)
             self.expect(result, FAILED,
                         stderr="edsc: axis.dcf is for node 5, not for node 6 (--force writes anyway)\n")
-        self.expect(self.edsc("configure", 6, "axis.dcf", "--timeout", 50, "--force"), FAILED,
+        self.expect(self.edsc("configure", 6, "axis.dcf", "--timeout", "50ms", "--force"), FAILED,
                     stderr="edsc: node 6 does not answer\n")
         self.assertEqual(self.edsc("configure", 6, "axis.dcf", "--dry-run", "--all", "--force").returncode, FINE)
         path = self.folder / "axis.dcf"

@@ -30,7 +30,7 @@ sys.path.insert(0, str(SOURCE_DIR / "tests/support"))
 from document_commands import run_document  # noqa: E402
 
 ADDRESS = "socketcand:127.0.0.1:29536/vcan0"  # in the document
-TIMEOUT = "--timeout 60000"  # for an answer that must be received, even on a busy machine
+TIMEOUT = "--timeout 60s"  # for an answer that must be received, even on a busy machine
 
 
 class Conform(unittest.TestCase):

@@ -29,9 +29,9 @@ ENVIRONMENT = {**os.environ, "ASAN_OPTIONS": f"exitcode={MEMORY_FAULT}", "UBSAN_
 def commands_of(*group: str) -> list[str]:
     """Returns the commands in the help of edsc, or of a command that has others."""
     printed = subprocess.run([EDSC, *group, "--help"], capture_output=True, text=True, check=True).stdout
-    if group:
-        printed = printed.partition("\nSubcommands:\n")[2]
-    return COMMAND.findall(re.split(r"\nExamples:", printed)[0])
+    if group:  # until the next heading
+        printed = printed.partition("\nCommands:\n")[2]
+    return COMMAND.findall(re.split(r"\nOptions:" if group else r"\nShell:", printed)[0])
 
 
 class EveryCommand(ReferenceDevices):
@@ -96,7 +96,7 @@ class EveryCommand(ReferenceDevices):
                 for form in ("text", "json", "sarif"):
                     self.run_command("network check", plant, "--times", "--format", form)
                 self.run_command("network generate", plant, "-o", plant.stem)
-                self.run_command("document", plant, "--nodes", "-o", f"{plant.stem}.html")
+                self.run_command("document", plant, "--node-pages", "-o", f"{plant.stem}.html")
         self.run_command("network simulate", PLANTS[-1], "--for", "2s")
 
     def test_3_bus(self) -> None:
@@ -132,15 +132,15 @@ class EveryCommand(ReferenceDevices):
                 self.on_bus("conform", node_id, sheet, "--level", "read", "--html", f"{device}.html", "--junit",
                             f"{device}.xml", exit_codes=(FINE, FAILED))
                 self.on_bus("overlay from-bus", node_id, sheet, "-o", f"bus-{device}.overlay", exit_codes=(FINE, FAILED))
-                self.on_bus("accept", node_id, sheet, "-o", f"accept-{device}.html", "--json", f"accept-{device}.json", "--junit",
+                self.on_bus("accept", node_id, sheet, "--html", f"accept-{device}.html", "--json", f"accept-{device}.json", "--junit",
                             f"accept-{device}.xml", "--only", "4.*", exit_codes=(FINE, FAILED))
         self.on_bus("nmt", "start", "all")
-        self.on_bus("send sync", "--every", "10", "--count", "20")
+        self.on_bus("send sync", "--every", "10ms", "--count", "20")
         self.on_bus("send time")
         self.on_bus("send frame", "123#0102")
         self.on_bus("send pdo", f"6={SOURCE_DIR}/eds/cpd.eds", "1", "controlword=0x06")
         for form in ("text", "json"):
-            self.on_bus("monitor", *self.sheets, "--once", "1", "--bit-rate", "500", "--format", form)
+            self.on_bus("monitor", *self.sheets, "--once", "1s", "--bit-rate", "500", "--format", form)
 
     def use_lss(self) -> None:
         """The numbers are those of the sensor, node 8, which keeps its node-ID. The bus has other LSS slaves, so that commands which
@@ -153,12 +153,12 @@ class EveryCommand(ReferenceDevices):
         self.on_bus("lss node-id", 8)
         self.on_bus("lss bit-rate", 250)
         self.on_bus("lss store", exit_codes=(FINE, FAILED))
-        self.on_bus("lss activate", "--delay", 10)
+        self.on_bus("lss activate", "--delay", "10ms")
         self.on_bus("lss state", "waiting")
         self.on_bus("lss assign", *numbers, "--node-id", 8)
 
     def use_plant(self) -> None:
-        self.on_bus("network scan", "--sheets", SOURCE_DIR / "eds", "--nodes", "1..8", "-o", "found.json",
+        self.on_bus("network scan", "--eds", SOURCE_DIR / "eds", "--nodes", "1..8", "-o", "found.json",
                     exit_codes=(FINE, FAILED))
         self.on_bus("network verify", PLANTS[0], "--format", "json", exit_codes=(FINE, FAILED))
         self.on_bus("network apply", PLANTS[0], exit_codes=(FINE, FAILED))

@@ -50,7 +50,7 @@ class FastscanSlave:
 
 class FastscanOfSlavesThatAnswerAlways(LiveTest):
     nodes = ()
-    numbers = ("--step", 50, "--timeout", 2000, "fastscan", "--vendor", "93h", "--product", 2, "--revision", 3)
+    numbers = ("--step", "50ms", "--timeout", "2000ms", "fastscan", "--vendor", "93h", "--product", 2, "--revision", 3)
     shown = "vendor-ID 00000093h, product code 00000002h, revision 00000003h, serial number {:08X}h"
 
     def slaves(self, *serials: int, always: bool = False) -> None:
@@ -75,7 +75,7 @@ class FastscanOfSlavesThatAnswerAlways(LiveTest):
 
     def test_what_was_found_is_shown_on_an_interruption(self) -> None:
         for arguments in (("lss", *self.numbers), ("lss", *self.numbers, "--format", "json"),
-                          ("scan", "--nodes", 9, "--listen", 0, "--timeout", 2000, "--lss", "--step", 50)):
+                          ("scan", "--nodes", 9, "--for", "0ms", "--timeout", "2000ms", "--lss", "--step", "50ms")):
             with self.subTest(arguments), Network(EDSC, LIVE_NODES) as network:
                 self.network = network
                 self.slaves(0x15011234, 0x15011238)

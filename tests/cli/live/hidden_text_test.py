@@ -183,7 +183,7 @@ class OfDevices(HiddenTextTest):
     def test_monitor(self) -> None:
         bus = self.network.address
         for form in ("text", "json"):
-            monitor = subprocess.Popen([EDSC, "monitor", bus, "--node", "5=device.eds", "--once", "15", "--format", form],
+            monitor = subprocess.Popen([EDSC, "monitor", bus, "--node", "5=device.eds", "--once", "15s", "--format", form],
                                        cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
             while monitor.poll() is None:
                 self.edsc("read", bus, 5, "2000h", "--eds", "device.eds")

@@ -44,7 +44,7 @@ class LiveTest(unittest.TestCase):
 
     def command(self, command: str, *arguments: object) -> list[str]:
         if command in ("read", "write", "configure", "save") and "--timeout" not in arguments:
-            arguments = (*arguments, "--timeout", PATIENCE_MS)
+            arguments = (*arguments, "--timeout", f"{PATIENCE_MS}ms")
         return [str(EDSC), command, self.network.address, *map(str, arguments)]
 
     def edsc(self, command: str, *arguments: object) -> subprocess.CompletedProcess[str]:

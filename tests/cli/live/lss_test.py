@@ -18,7 +18,7 @@ class Lss(LiveTest):
     shown = "vendor-ID 00ABCDEFh, product code 00001001h, revision 00010002h, serial number 00000101h"
 
     def lss(self, *arguments: object) -> subprocess.CompletedProcess[str]:
-        return self.edsc("lss", "--timeout", 2000, "--step", 50, *arguments)
+        return self.edsc("lss", "--timeout", "2000ms", "--step", "50ms", *arguments)
 
     def test_assign_by_address(self) -> None:
         self.expect(self.lss("assign", *self.address, "--node-id", 7, "--store"), FINE,
@@ -45,7 +45,7 @@ class Lss(LiveTest):
         self.expect(self.lss("fastscan"), FAILED, stderr="edsc: fastscan: no device without node-ID answers\n")
 
     def test_a_scan_with_fastscan(self) -> None:
-        found = self.expect_json(self.edsc("scan", "--nodes", 9, "--listen", 0, "--timeout", 2000, "--lss", "--step", 50, "--format", "json"),
+        found = self.expect_json(self.edsc("scan", "--nodes", 9, "--for", "0ms", "--timeout", "2000ms", "--lss", "--step", "50ms", "--format", "json"),
                                  "scan.schema.json")
         self.assertEqual([device["serial_number"] for device in found["unconfigured"]], [0x101])
 
@@ -66,7 +66,7 @@ class Lss(LiveTest):
         self.expect(self.lss("inquire"), FINE, self.shown + ", no node-ID\n")
         found = self.expect_json(self.lss("inquire", "--format", "json"), "lss.schema.json")
         self.assertEqual((found["address"]["product_code"], found["node_id"]), (0x1001, None))
-        self.expect(self.lss("activate", "--delay", 20), FINE)
+        self.expect(self.lss("activate", "--delay", "20ms"), FINE)
         self.expect(self.lss("state", "waiting"), FINE)
         self.expect(self.edsc("read", 9, "1000h", "--type", "u32"), FINE, "1000h:00 = 131474 (00020192h)\n")
 
@@ -84,8 +84,8 @@ class LssWithoutFastscan(LiveTest):
         words = ("edsc: fastscan: a device without node-ID answers LSS, but did not answer the first Fastscan request, "
                  "sent twice; it may be slow (--step) or not have Fastscan: with no other device on the bus, \"edsc lss BUS "
                  "state configuration\" and \"inquire\" show its numbers for \"assign\"\n")
-        self.expect(self.edsc("lss", "--timeout", 2000, "fastscan"), FAILED, stderr=words)
-        self.expect(self.edsc("lss", "--timeout", 2000, "assign", "--node-id", 7), FAILED, stderr=words)
+        self.expect(self.edsc("lss", "--timeout", "2000ms", "fastscan"), FAILED, stderr=words)
+        self.expect(self.edsc("lss", "--timeout", "2000ms", "assign", "--node-id", 7), FAILED, stderr=words)
 
 
 if __name__ == "__main__":

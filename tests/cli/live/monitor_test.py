@@ -29,7 +29,7 @@ class Monitor(LiveTest):
 
     def test_a_summary_as_json(self) -> None:
         self.edsc("write", 5, "1017h", 200, "--type", "u16")
-        process = self.start("monitor", "--node", "5=device.eds", "--once", 15, "--bit-rate", 125, "--format", "json")
+        process = self.start("monitor", "--node", "5=device.eds", "--once", "15s", "--bit-rate", 125, "--format", "json")
         time.sleep(4)  # until it receives frames
         self.edsc("nmt", "start", 5)
         client = self.network.client()
@@ -48,7 +48,7 @@ class Monitor(LiveTest):
         self.assertGreater(found["load_percent"], 0)
 
     def test_a_summary_as_a_table(self) -> None:
-        result = self.edsc("monitor", "--once", 3, "--node", "5=device.eds")
+        result = self.edsc("monitor", "--once", "3s", "--node", "5=device.eds")
         lines = result.stdout.splitlines()
         self.assertRegex(lines[0], r"^socketcand:\S+  \d+\.\d s  \d+ frames  \d+\.\d per s$")
         self.assertEqual(lines[2], "node  name         state            heard  last EMCY")
@@ -100,10 +100,10 @@ class Monitor(LiveTest):
         os.close(inside)
 
     def test_wrong_usage(self) -> None:
-        for arguments in (("--node", "5"), ("--node", "0=device.eds"), ("--format", "json"), ("--once", 0),
+        for arguments in (("--node", "5"), ("--node", "0=device.eds"), ("--format", "json"), ("--once", "0s"),
                           ("--node", "5=missing.eds")):
             self.assertEqual(self.edsc("monitor", *arguments).returncode, WRONG_USAGE, arguments)
-        twice = self.edsc("monitor", "--node", "5=device.eds", "--node", "5=device.eds", "--once", 1)
+        twice = self.edsc("monitor", "--node", "5=device.eds", "--node", "5=device.eds", "--once", "1s")
         self.expect(twice, WRONG_USAGE, stderr="edsc: --node 5=device.eds: node 5 is given twice\n")
 
 

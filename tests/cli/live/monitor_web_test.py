@@ -245,7 +245,7 @@ class MonitorWeb(LiveTest):
     def test_wrong_usage(self) -> None:
         used = self.edsc("monitor", "--web", self.host)
         self.expect(used, WRONG_USAGE, stderr=f"edsc: cannot listen at {self.host}\n")
-        for arguments in (("--web", "nowhere"), ("--web", "127.0.0.1:70000"), ("--web", "127.0.0.1:0", "--once", 1)):
+        for arguments in (("--web", "nowhere"), ("--web", "127.0.0.1:70000"), ("--web", "127.0.0.1:0", "--once", "1s")):
             self.assertEqual(self.edsc("monitor", *arguments).returncode, WRONG_USAGE, arguments)
 
     def test_other_computers_are_warned_of(self) -> None:

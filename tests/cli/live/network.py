@@ -67,7 +67,7 @@ class Network:
     """`edsc bus`, and nodes of tests/fixtures/live_device.eds with these node-IDs; 255: a device without a node-ID."""
 
     def __init__(self, edsc: Path, live_nodes: Path, *nodes: int) -> None:
-        self.bus = subprocess.Popen([edsc, "bus", "--listen", "127.0.0.1:0", "--log"], text=True,
+        self.bus = subprocess.Popen([edsc, "bus", "--listen", "127.0.0.1:0", "--log", "-"], text=True,
                                     stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.address = self.bus.stderr.readline().strip()
         self.port = int(re.search(r":(\d+)/", self.address)[1])

@@ -234,7 +234,7 @@ node axis2 (6): 0 of 1 value differ
         self.three_axes()
         self.fake_axis(silent=("607 2B",))
         process = subprocess.Popen([EDSC, "network", "apply", self.network.address, "plant.json", "--start", "--timeout",
-                                    str(PATIENCE_MS)], cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                                    f"{PATIENCE_MS}ms"], cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.addCleanup(process.kill)
         while not any(frame.startswith("607 2B") for frame in self.network.log):
             time.sleep(0.02)
@@ -309,7 +309,7 @@ node axis2 (6): 0 of 1 value differ
         (sheets / "drive.eds").write_text(SHEET.read_text())
         (sheets / "newer.eds").write_text(SHEET.read_text().replace("0x00010002", "0x00010003"))
         self.edsc("write", 6, "1017h", 300, "--type", "u16")
-        some = ("--sheets", "sheets", "--nodes", "5,6,7", "--listen", "100", "-o", "plant.json")
+        some = ("--eds", "sheets", "--nodes", "5,6,7", "--for", "100ms", "-o", "plant.json")
         result = self.network_command("scan", *some, "--bit-rate", "500", timeout=5000)
         self.assertEqual((result.stdout, result.returncode), ("plant.json: 2 of 2 nodes\n", FINE), result.stderr)
         self.assertIn("edsc: node 5: sheets/newer.eds fits too; using sheets/drive.eds\n", result.stderr)
@@ -325,18 +325,18 @@ node axis2 (6): 0 of 1 value differ
 
     def test_scan_of_two_nodes_with_one_node_id(self) -> None:
         self.network.device(lambda frame: ["585 43 00 10 00 92 01 02 00"] if frame.startswith("605 40 00 10 00") else [])
-        result = self.network_command("scan", "--sheets", ".", "--nodes", "5,6", "--listen", "500", timeout=5000)
+        result = self.network_command("scan", "--eds", ".", "--nodes", "5,6", "--for", "500ms", timeout=5000)
         self.assertEqual(result.returncode, FAILED, result.stderr)
         twice = "node 5: an SDO request got more than one response; two nodes may have node-ID 5\n"
         self.assertIn("edsc: " + twice, result.stderr)
         self.assertNotIn("node-ID 6", result.stderr)
-        self.assertIn(twice, self.edsc("scan", "--nodes", "5,6", "--listen", "500").stdout)
+        self.assertIn(twice, self.edsc("scan", "--nodes", "5,6", "--for", "500ms").stdout)
 
     def test_scan_of_a_node_without_a_file(self) -> None:
         sheets = self.folder / "sheets"
         sheets.mkdir()
         (sheets / "other.eds").write_text(SHEET.read_text().replace("0x00001001", "0x00001002"))
-        result = self.network_command("scan", "--sheets", "sheets", "--nodes", "5", "--listen", "100", timeout=5000)
+        result = self.network_command("scan", "--eds", "sheets", "--nodes", "5", "--for", "100ms", timeout=5000)
         self.assertEqual(result.returncode, FAILED)
         self.assertIn("edsc: node 5: no file fits; the closest is sheets/other.eds: product code is 00001001h, "
                       "expected 00001002h\n", result.stderr)

@@ -18,23 +18,23 @@ class Nmt(LiveTest):
         self.assertEqual(self.network.frames("000"), ["000 01 00", "000 02 05", "000 80 05", "000 82 06"])
 
     def test_it_waits_for_the_boot_up_message(self) -> None:
-        self.expect(self.edsc("nmt", "reset-node", 5, "--wait", 60_000), FINE)
-        self.expect(self.edsc("nmt", "reset-node", 9, "--wait", 50), FAILED,
+        self.expect(self.edsc("nmt", "reset-node", 5, "--wait", "60000ms"), FINE)
+        self.expect(self.edsc("nmt", "reset-node", 9, "--wait", "50ms"), FAILED,
                     stderr="edsc: node 9 did not report boot-up within 50 ms: it has not sent a boot-up message\n")
 
     def test_it_says_why_no_heartbeat_may_come(self) -> None:
-        self.expect(self.edsc("nmt", "start", 5, "--wait", 50), FAILED,
+        self.expect(self.edsc("nmt", "start", 5, "--wait", "50ms"), FAILED,
                     stderr="edsc: node 5 did not report operational within 50 ms: it has not sent a heartbeat; "
                            f"1017h may be 0 (edsc read {self.network.address} 5 1017h --type u16)\n")
         self.edsc("write", 6, "1017h", 10, "--type", "u16")
-        self.expect(self.edsc("nmt", "stop", 6, "--wait", 60_000), FINE)
+        self.expect(self.edsc("nmt", "stop", 6, "--wait", "60000ms"), FINE)
         self.network.device(lambda frame: ["707 7F"] if frame == "000 01 07" else [])
-        self.expect(self.edsc("nmt", "start", 7, "--wait", 10_000), FAILED,
+        self.expect(self.edsc("nmt", "start", 7, "--wait", "10000ms"), FAILED,
                     stderr="edsc: node 7 did not report operational within 10000 ms: the last state that it reported is "
                            "pre-operational\n")
 
     def test_wrong_usage(self) -> None:
-        for arguments in (("start",), ("go", 5), ("start", 128), ("start", "all", "--wait", 10)):
+        for arguments in (("start",), ("go", 5), ("start", 128), ("start", "all", "--wait", "10ms")):
             self.assertEqual(self.edsc("nmt", *arguments).returncode, WRONG_USAGE)
 
 

@@ -60,7 +60,7 @@ class Read(LiveTest):
                     stderr="edsc: 2006h:00: refused by the device: 0601 0001h, read of a write-only object\n")
 
     def test_a_node_that_is_not_there(self) -> None:
-        self.expect(self.edsc("read", 9, "1018h:01", "1018h:02", "--timeout", 50), FAILED,
+        self.expect(self.edsc("read", 9, "1018h:01", "1018h:02", "--timeout", "50ms"), FAILED,
                     stderr="edsc: 1018h:01: no answer\nedsc: node 9 does not answer: 1 more not read\n")
 
     def test_all_as_json(self) -> None:
@@ -81,7 +81,7 @@ class Read(LiveTest):
             "abort_code": 0x06020000, "text": "refused by the device: 0602 0000h, object does not exist"}])
 
     def test_a_domain_goes_to_a_file_by_block_transfer(self) -> None:
-        self.expect(self.edsc("read", 5, "log", "--eds", "device.eds", "--file", "log.bin"), FINE,
+        self.expect(self.edsc("read", 5, "log", "--eds", "device.eds", "--output", "log.bin"), FINE,
                     "2001h:00 Log: 3000 bytes to log.bin\n")
         self.assertEqual((self.folder / "log.bin").read_bytes(), b"\xA5" * 3000)
         self.assertEqual(self.network.frames("605")[0], "605 A4 01 20 00 7F 1C 00 00")
@@ -97,7 +97,7 @@ class Read(LiveTest):
                 (("5", "--all"), "--eds"),
                 (("5", "1000h", "--eds", "missing.eds"), "missing.eds"),
                 (("5", "speeed", "--eds", "device.eds"), "speed"),
-                (("5", "1018h", "--eds", "device.eds", "--file", "x"), "one entry, not of 5")):
+                (("5", "1018h", "--eds", "device.eds", "--output", "x"), "one entry, not of 5")):
             with self.subTest(arguments=arguments):
                 result = self.edsc("read", *arguments)
                 self.assertEqual((result.returncode, result.stdout), (WRONG_USAGE, ""))

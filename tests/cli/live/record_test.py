@@ -40,7 +40,7 @@ class Record(LiveTest):
         self.assertEqual(times, sorted(times))
 
     def test_its_file_is_one_for_decode_and_can_utils(self) -> None:
-        process = self.start("record", "-o", "bus.log", "--interface", "can7")
+        process = self.start("record", "-o", "bus.log", "--log-interface", "can7")
         client, log = self.network.client(), self.folder / "bus.log"
         while not log.exists() or not log.stat().st_size:
             client.send("605 40 00 10 00 00 00 00 00")
@@ -57,7 +57,7 @@ class Record(LiveTest):
             self.assertEqual((ascii_log.returncode, ascii_log.stdout.count(" 605 ")), (0, count), ascii_log)
 
     def test_it_ends_after_its_time(self) -> None:
-        self.expect(self.edsc("record", "--seconds", 0.05), FINE)
+        self.expect(self.edsc("record", "--for", "0.05s"), FINE)
 
     def test_a_full_disk(self) -> None:
         process = self.start("record", "-o", "/dev/full")
@@ -77,7 +77,7 @@ class Record(LiveTest):
         self.assertIn(": the bus is lost: ", stderr)
 
     def test_wrong_usage(self) -> None:
-        for arguments in (("--count", 0), ("--seconds", 0), ("--interface", "a b"), ("-o", "no/such/folder/log")):
+        for arguments in (("--count", 0), ("--for", "0s"), ("--log-interface", "a b"), ("-o", "no/such/folder/log")):
             self.assertEqual(self.edsc("record", *arguments).returncode, WRONG_USAGE, arguments)
 
 

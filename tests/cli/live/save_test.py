@@ -108,7 +108,7 @@ class Save(LiveTest):
                     '00001002h; "edsc scan BUS --eds FILE" finds the node of a file; --force saves anyway\n')
         self.assertFalse((self.folder / "axis.dcf").exists())
         self.assertEqual(self.edsc("save", 5, "other.eds", "-o", "axis.dcf", "--force").returncode, FINE)
-        self.expect(self.edsc("save", 9, "device.eds", "--timeout", 50), FAILED, stderr="edsc: node 9 does not answer\n")
+        self.expect(self.edsc("save", 9, "device.eds", "--timeout", "50ms"), FAILED, stderr="edsc: node 9 does not answer\n")
 
     def test_wrong_usage(self) -> None:
         for arguments in (("device.eds", "--format", "json"), ("missing.eds",), ("device.eds", "-o", "device.eds/x.dcf")):

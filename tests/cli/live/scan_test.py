@@ -14,7 +14,7 @@ from live import EDSC, FAILED, FINE, SHEET, WRONG_USAGE, LiveTest, run
 
 class Scan(LiveTest):
     nodes = (5, 6)
-    fast = ("--timeout", 5000, "--listen", 100)
+    fast = ("--timeout", "5000ms", "--for", "100ms")
     some = ("--nodes", "1..16")  # all are queried at the same time
 
     def test_it_tells_who_is_there(self) -> None:
@@ -103,13 +103,13 @@ class ScanOfAnEmptyBus(LiveTest):
             return ["587 43 00 10 00 92 01 02 00"] if frame[7:15] == "00 10 00" else [f"587 80 {frame[7:15]} 00 00 02 06"]
 
         self.network.device(answer)
-        result = self.edsc("scan", "--nodes", "7", "--timeout", 500, "--listen", 100, "--format", "json")
+        result = self.edsc("scan", "--nodes", "7", "--timeout", "500ms", "--for", "100ms", "--format", "json")
         (node,) = self.expect_json(result, "scan.schema.json")["nodes"]
         self.assertEqual((node["node_id"], node["answers_sdo"], node["device_type"]), (7, True, 0x20192))
         self.assertEqual([frame[7:15] for frame in requests[:2]], ["00 10 00", "00 10 00"])
 
     def test_nothing_is_there(self) -> None:
-        self.expect(self.edsc("scan", "--timeout", 20, "--listen", 20), FAILED,
+        self.expect(self.edsc("scan", "--timeout", "20ms", "--for", "20ms"), FAILED,
                     stderr=f"edsc: no node answers on {self.network.address}\n")
 
     def test_a_bus_that_is_not_there(self) -> None:

@@ -30,7 +30,7 @@ class Send(LiveTest):
         self.assertEqual(self.network.frames("080", "081"), ["080 01", "080 02", "080 03", "080 01", "080 02", "081"])
 
     def test_sync_until_ctrl_c(self) -> None:
-        process = self.start("send", "sync", "--every", 2)
+        process = self.start("send", "sync", "--every", "2ms")
         while len([frame for frame in self.network.log if frame == "080"]) < 20:
             time.sleep(0.01)
         process.send_signal(signal.SIGINT)
@@ -40,7 +40,7 @@ class Send(LiveTest):
     def test_the_period_does_not_drift(self) -> None:
         """A process that waits for a period after each frame needs longer."""
         begin = time.monotonic()
-        self.expect(self.edsc("send", "sync", "--every", 20, "--count", 50), FINE)
+        self.expect(self.edsc("send", "sync", "--every", "20ms", "--count", 50), FINE)
         self.assertGreaterEqual(time.monotonic() - begin, 0.98)
         self.assertEqual(len(self.network.frames("080")), 50)
 
@@ -77,7 +77,7 @@ class Send(LiveTest):
     def test_a_pdo_on_the_can_id_of_the_file(self) -> None:
         text = SHEET.read_text()
         (self.folder / "other.eds").write_text(text.replace("DefaultValue=$NODEID+0x200", "DefaultValue=0x333"))
-        self.expect(self.edsc("send", "pdo", "5=other.eds", 1, "6040h=6", "60FFh=1"), FINE)
+        self.expect(self.edsc("send", "pdo", 5, "--eds", "other.eds", 1, "6040h=6", "60FFh=1"), FINE)
         self.assertEqual(self.network.frames("333"), ["333 06 00 01 00 00 00"])
 
     def test_frames(self) -> None:
@@ -100,7 +100,7 @@ class Send(LiveTest):
         self.assertEqual(self.network.frames("205"), [])
 
     def test_wrong_usage(self) -> None:
-        for arguments in ((), ("sync", "--overflow", 241), ("sync", "--every", 0), ("frame", "181"), ("frame", "181#0"),
+        for arguments in ((), ("sync", "--overflow", 241), ("sync", "--every", "0ms"), ("frame", "181"), ("frame", "181#0"),
                           ("pdo", "device.eds", 1), ("time", "yesterday"), ("time", "")):
             with self.subTest(arguments):
                 result = self.edsc("send", *arguments)

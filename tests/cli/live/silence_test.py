@@ -28,7 +28,7 @@ class Silence(LiveTest):
 
     def test_ctrl_c_aborts_the_transfer(self) -> None:
         asked = self.network.client()
-        process = self.start("read", 5, "1017h", "--timeout", 600_000)
+        process = self.start("read", 5, "1017h", "--timeout", "600000ms")
         self.assertEqual(asked.receive(), "605 40 17 10 00 00 00 00 00")
         process.send_signal(signal.SIGINT)
         self.assertEqual(self.wait_for(process), (INTERRUPTED, "", "edsc: interrupted\n"))
@@ -36,7 +36,7 @@ class Silence(LiveTest):
 
     def test_the_bus_goes_away(self) -> None:
         asked = self.network.client()
-        process = self.start("read", 5, "1017h", "--timeout", 600_000)
+        process = self.start("read", 5, "1017h", "--timeout", "600000ms")
         asked.receive()
         self.network.bus.kill()
         exit_code, stdout, stderr = self.wait_for(process)
@@ -46,7 +46,7 @@ class Silence(LiveTest):
     def test_a_device_that_falls_silent_in_the_middle(self) -> None:
         answers = {"605 40 08 10 00 00 00 00 00": ["585 41 08 10 00 0B 00 00 00"]}
         self.network.device(lambda frame: answers.get(frame, []))
-        self.expect(self.edsc("read", 5, "1008h", "--timeout", 50), FAILED, stderr="edsc: 1008h:00: no answer\n")
+        self.expect(self.edsc("read", 5, "1008h", "--timeout", "50ms"), FAILED, stderr="edsc: 1008h:00: no answer\n")
         self.assertEqual(self.network.frames("605")[-1], "605 80 08 10 00 00 00 04 05")
 
     def test_a_device_that_breaks_the_protocol(self) -> None:
@@ -101,7 +101,7 @@ class Silence(LiveTest):
     def test_an_abort_of_another_entry_is_no_refusal(self) -> None:
         answers = {"605 40 17 10 00 00 00 00 00": ["585 80 00 00 00 05 00 04 05"]}
         self.network.device(lambda frame: answers.get(frame, []))
-        self.expect(self.edsc("read", 5, "1017h", "--timeout", 5000), FAILED,
+        self.expect(self.edsc("read", 5, "1017h", "--timeout", "5000ms"), FAILED,
                     stderr="edsc: 1017h:00: no answer, but an abort of 0000h:00: 0504 0005h, out of memory\n")
 
     def test_a_block_transfer_that_breaks_is_tried_by_segments(self) -> None:
@@ -134,7 +134,7 @@ class Silence(LiveTest):
                 self.network = network
                 received = bytearray()
                 network.device(device(end_of_block, received))
-                self.expect(self.edsc("write", 5, "2000h", "--file", "firmware.bin", "--timeout", 5000), FINE,
+                self.expect(self.edsc("write", 5, "2000h", "--file", "firmware.bin", "--timeout", "5000ms"), FINE,
                             "2000h:00: 200 bytes from firmware.bin\n",
                             f"edsc: 2000h:00: the block transfer failed: {words}; trying a segmented transfer\n")
                 self.assertEqual(bytes(received), content)
@@ -176,7 +176,7 @@ class Silence(LiveTest):
             with self.subTest(name), Network(EDSC, LIVE_NODES) as network:
                 self.network = network
                 network.device(lambda frame, known=answers: known.get(frame, []))
-                self.expect(self.edsc("read", 5, "log", "--eds", "device.eds", "--timeout", 5000), FINE,
+                self.expect(self.edsc("read", 5, "log", "--eds", "device.eds", "--timeout", "5000ms"), FINE,
                             "2001h:00 Log = 01 02 03 04 05 06 07 08 09 (9 bytes)\n")
 
 

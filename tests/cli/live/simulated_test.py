@@ -214,12 +214,12 @@ class Commands(unittest.TestCase):
                                capture_output=True, text=True, timeout=600)
         self.assertIn("6064h:00 Position actual value = 1.5 rev", shown.stdout)
         self.assertEqual(shown.stderr, notes)
-        shown = self.edsc("monitor", "simulated:devices@5,scaled_drive", "--once", "0.1", "--node", f"5={SCALED_SHEET}")
+        shown = self.edsc("monitor", "simulated:devices@5,scaled_drive", "--once", "0.1s", "--node", f"5={SCALED_SHEET}")
         self.assertEqual((shown.returncode, shown.stderr), (FINE, notes))
 
     def test_nmt(self) -> None:
-        self.expect(self.edsc("nmt", "simulated:devices@5,motor", "start", 5, "--wait", 1000), FINE)
-        result = self.edsc("nmt", "simulated:devices@5", "start", 5, "--wait", 1000)
+        self.expect(self.edsc("nmt", "simulated:devices@5,motor", "start", 5, "--wait", "1000ms"), FINE)
+        result = self.edsc("nmt", "simulated:devices@5", "start", 5, "--wait", "1000ms")
         self.assertEqual(result.returncode, FAILED)
 
     def test_scan(self) -> None:
@@ -233,7 +233,7 @@ class Commands(unittest.TestCase):
         self.assertIn("00ABCDEFh", result.stdout)
 
     def test_an_hour_takes_a_moment(self) -> None:
-        self.expect(self.edsc("nmt", "simulated:devices@5", "stop", 5, "--wait", 600_000), FAILED, "",
+        self.expect(self.edsc("nmt", "simulated:devices@5", "stop", 5, "--wait", "600000ms"), FAILED, "",
                     "edsc: node 5 did not report stopped within 600000 ms: the last state that it reported is boot-up\n")
 
     def test_addresses(self) -> None:

@@ -32,7 +32,7 @@ class Write(LiveTest):
         (self.folder / "device.eds").write_text(scaled)
         for text, raw in (("150 rpm", 1500), ("2.5 rev/s", 1500), ("1500", 1500), ("-0.1 rpm", None)):
             with self.subTest(text):
-                done = self.edsc("write", 5, "speed", "--eds", "device.eds", "--verify", "--timeout", PATIENCE_MS, "--", text)
+                done = self.edsc("write", 5, "speed", "--eds", "device.eds", "--verify", "--timeout", f"{PATIENCE_MS}ms", "--", text)
                 if raw is None:
                     self.expect(done, WRONG_USAGE, stderr='edsc: -0.1 rpm is outside the range of UNSIGNED16: 2004h:00 "Speed"\n')
                 else:
@@ -42,7 +42,7 @@ class Write(LiveTest):
                     stderr='edsc: 150.05 rpm is between 150 rpm and 150.1 rpm: 2004h:00 "Speed"\n')
         self.expect(self.edsc("write", 5, "speed", "5 V", "--eds", "device.eds"), WRONG_USAGE,
                     stderr='edsc: V cannot be converted to rpm: 2004h:00 "Speed"\n')
-        self.expect(self.edsc("send", "pdo", "5=device.eds", 1, "60FFh=250 inc/s", "6040h=0"), WRONG_USAGE,
+        self.expect(self.edsc("send", "pdo", 5, "--eds", "device.eds", 1, "60FFh=250 inc/s", "6040h=0"), WRONG_USAGE,
                     stderr="edsc: 60FFh:00 Target velocity: 250 inc/s is between 200 inc/s and 300 inc/s: "
                            '60FFh:00 "Target velocity"\n')
         self.expect(self.edsc("read", 5, "speed", "--eds", "device.eds"), FINE, "2004h:00 Speed = 150 rpm\n")
@@ -66,7 +66,7 @@ class Write(LiveTest):
         self.assertNotEqual(self.without_bus("check", "set.dcf").returncode, FINE)
 
     def test_a_value_in_brackets_is_no_list(self) -> None:
-        self.expect(self.edsc("write", 5, "label", "--eds", "device.eds", "--timeout", PATIENCE_MS, "--", "[a,b]"), FINE, '2002h:00 Label = "[a,b]"\n')
+        self.expect(self.edsc("write", 5, "label", "--eds", "device.eds", "--timeout", f"{PATIENCE_MS}ms", "--", "[a,b]"), FINE, '2002h:00 Label = "[a,b]"\n')
         self.expect(self.edsc("write", 5, "label", "[a]", "[b]", "--eds", "device.eds"), FINE, '2002h:00 Label = "[a] [b]"\n')
 
     def test_without_a_data_sheet(self) -> None:
@@ -96,7 +96,7 @@ class Write(LiveTest):
         (self.folder / "firmware.bin").write_bytes(content)
         self.expect(self.edsc("write", 5, "firmware", "--file", "firmware.bin", "--eds", "device.eds"), FINE,
                     "2000h:00 Firmware: 5000 bytes from firmware.bin\n")
-        self.edsc("read", 5, "log", "--eds", "device.eds", "--file", "back.bin")
+        self.edsc("read", 5, "log", "--eds", "device.eds", "--output", "back.bin")
         self.assertEqual((self.folder / "back.bin").read_bytes(), content)
         self.assertEqual(self.network.frames("605")[0], "605 C6 00 20 00 88 13 00 00")
 
@@ -108,7 +108,7 @@ class Write(LiveTest):
         (self.folder / "firmware.bin").write_bytes(bytes(range(200)))
         self.expect(self.edsc("write", 5, "2000h", "--file", "firmware.bin", "--segmented"), FINE,
                     "2000h:00: 200 bytes from firmware.bin\n")
-        self.expect(self.edsc("read", 5, "2001h", "--file", "back.bin", "--eds", "device.eds", "--segmented"), FINE,
+        self.expect(self.edsc("read", 5, "2001h", "--output", "back.bin", "--eds", "device.eds", "--segmented"), FINE,
                     "2001h:00 Log: 200 bytes to back.bin\n")
         self.assertEqual((self.folder / "back.bin").read_bytes(), bytes(range(200)))
         self.assertEqual([frame[:15] for frame in self.network.frames("605") if frame[7:15] in ("00 20 00", "01 20 00")],

@@ -225,7 +225,7 @@ def run(edsc: Path, folder: Path, example: Example, kind: str, base: str) -> tup
     if file.endswith(".overlay"):
         (folder / "base.eds").write_text(base, encoding="utf-8")
     command = block.option("command", "check")
-    arguments = {"check": ["--all"], "generate": ["-o", "out"], "format": ["--check"]}[command]
+    arguments = {"check": ["--all-findings"], "generate": ["-o", "out"], "format": ["--check"]}[command]
     words = ["network", "check", file] if is_network else [command, file, *arguments]
     is_strict = "strict" in block.words
     if is_strict:
@@ -276,7 +276,7 @@ information and does not change the exit code, not even with `--strict`. `--sile
 [options file](options.md) disable a rule for `check`; for `generate`, only its warnings and notes. `allow` in the options
 file, or a comment in the EDS, allows [expected findings](options.md#allowed-findings). `edsc check --list-rules` prints this
 table, `--explain RULE` one row of it with its examples. A finding that follows from another one is counted below it;
-`edsc check --all` lists it.
+`edsc check --all-findings` lists it.
 
 The examples are changes to an EDS without findings: a line replaces the one with the same key, a section that begins with
 `-` is removed, and `^` marks the position of the finding. `tests/generator/lint/rules_test.py` runs the examples of

@@ -1,0 +1,20 @@
+/// FILE arguments that may be folders.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace edsc {
+
+inline constexpr std::string_view sheet_extensions[] = {".eds", ".dcf", ".xdd", ".xdc", ".overlay"};
+/// Those that `edsc format` can write in place.
+inline constexpr std::string_view canonical_extensions[] = {".eds", ".dcf"};
+
+/// Replaces each folder by its files with one of these extensions (in any letter case), in its subfolders too,
+/// ascending by path. Hidden folders are left out. Ends the command if a folder has no such file or cannot be read.
+[[nodiscard]] std::vector<std::string> expand_folders(const std::vector<std::string>& paths,
+                                                      std::span<const std::string_view> extensions = sheet_extensions);
+
+}  // namespace edsc
