@@ -55,7 +55,7 @@ std::string buses() {
 
 std::string nodes() {
   std::string text;
-  for (const NamedNode& node : named_nodes(default_network())) text += node.name + "\n";
+  for (const NamedNode& node : named_nodes(default_network())) text += fmt::format("{}\n", node.node_id);
   return text;
 }
 

@@ -30,7 +30,7 @@ interrupted by Ctrl\-C or SIGTERM
 the bus of commands that are called without BUS, such as socketcan:can0
 .TP
 .B EDSC_NETWORK
-a network file, which names the nodes and their files
+a network file, of which completion offers node\-IDs and objects
 .TP
 .B NO_COLOR
 if set, output is not coloured unless

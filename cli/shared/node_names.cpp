@@ -45,9 +45,4 @@ std::vector<NamedNode> named_nodes(const std::string& network) {
   return nodes;
 }
 
-Option add_network_option(Command command, std::string& network) {
-  network = default_network();
-  return command.add_option("--network", network);
-}
-
 }  // namespace edsc

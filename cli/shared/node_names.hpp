@@ -1,13 +1,9 @@
-/// The nodes that a network file names, for commands that address nodes: `--network FILE`, or EDSC_NETWORK.
+/// The nodes that a network file names, for completions.
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
-
-#include "shared/command_line.hpp"
 
 namespace edsc {
 
@@ -17,14 +13,11 @@ struct NamedNode {
   std::string sheet;  ///< EDS or DCF; empty: the network file states none
 };
 
-/// The network file that is used without `--network`: EDSC_NETWORK; empty if it is not set.
+/// The network file that the environment states: EDSC_NETWORK; empty if it is not set.
 [[nodiscard]] std::string default_network();
 
 /// The nodes with a node-ID, in the order of the file; none for an empty path. Ends the command if the file cannot be
 /// read.
 [[nodiscard]] std::vector<NamedNode> named_nodes(const std::string& network);
-
-/// `--network FILE`
-Option add_network_option(Command command, std::string& network);
 
 }  // namespace edsc

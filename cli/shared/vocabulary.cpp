@@ -95,7 +95,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--segmented",      0,   "",          flag,       "do not use block transfer"},
     {"--serial",         0,   "NUMBER",    number,     "serial number, 1018h:04"},
     {"--silence",        0,   "RULE",      rule,       "rule not to report"},
-    {"--skip",           0,   "NAME",      node,       "node to ignore"},
+    {"--skip",           0,   "NAME",      text,       "node to ignore"},
     {"--start",          0,   "",          flag,       "start the node after success"},
     {"--static-mapping", 0,   "",          flag,       "no PDO can be mapped over the bus, for smaller firmware"},
     {"--step",           0,   "DURATION",  duration,   "time of each step of Fastscan; more on a slow bus"},
