@@ -69,7 +69,7 @@ std::string name_of_older(const Settings& settings, const LoadedDevice& older) {
 }
 
 int document_device(const Settings& settings) {
-  if (settings.nodes) throw_invalid("--nodes", "is for networks, not for devices");
+  if (settings.nodes) throw_invalid("--node-pages", "is for networks, not for devices");
   Diagnostics diagnostics;
   const auto loaded = load_device(settings.load, diagnostics);
   if (loaded->device) report_unused_allowances(*loaded, diagnostics);

@@ -30,7 +30,7 @@ constexpr const char* examples = R"(Examples:
   edsc network generate plant.json -o build       DCFs, concise DCFs, C++ headers, DBC file, drawings)"
 #ifndef EDSC_OFFLINE
                                  R"(
-  edsc network scan socketcan:can0 --sheets eds -o plant.json    the network file of the nodes on a bus
+  edsc network scan socketcan:can0 --eds eds -o plant.json       the network file of the nodes on a bus
   edsc network verify socketcan:can0 plant.json                  what differs from it
   edsc network apply socketcan:can0 plant.json --start           configure all nodes, then start them)"
 #endif
