@@ -1,5 +1,5 @@
 // expect: an event timer is for RPDOs, and for TPDOs of transmission types 254 and 255
-// expect: canopen::TpdoNumber<1> .*false, 240, 0, 50, false}
+// expect: canopen::TpdoNumber<1> .*false, 240, 0, 50, false, false}
 // A synchronous TPDO is sent at its SYNC.
 #include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>

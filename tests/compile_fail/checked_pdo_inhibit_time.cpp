@@ -1,5 +1,5 @@
 // expect: an inhibit time is for TPDOs of transmission types 254 and 255
-// expect: canopen::TpdoNumber<1>.*false, 1, 100, 0, false}
+// expect: canopen::TpdoNumber<1>.*false, 1, 100, 0, false, false}
 //
 // A synchronous TPDO is sent at its SYNC.
 #include <canopen/pdo/pdo_check.hpp>

@@ -1,4 +1,4 @@
-// expect: its transmission type is reserved .*canopen::RpdoNumber<1>.*false, 253, 0, 0, false}
+// expect: its transmission type is reserved .*canopen::RpdoNumber<1>.*false, 253, 0, 0, false, false}
 // A remote frame cannot request an RPDO.
 #include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>

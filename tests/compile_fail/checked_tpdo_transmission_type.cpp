@@ -1,4 +1,4 @@
-// expect: its transmission type is reserved .*canopen::TpdoNumber<1>.*false, 241, 0, 0, false}
+// expect: its transmission type is reserved .*canopen::TpdoNumber<1>.*false, 241, 0, 0, false, false}
 // 241 to 251 are reserved.
 #include <canopen/pdo/pdo_check.hpp>
 #include <every_type/device.hpp>

@@ -173,7 +173,7 @@ class Usage(Simulation):
                              ("errors:9/1ms", "at least 1000 us apart"), ("lost:inputs@2h", "later than the end of the run")):
             with self.subTest(fault):
                 self.expect_refusal(path, "--fault", fault, error=error)
-        self.expect_refusal(path, "--for", "soon", error="such as 10s, 500ms or 1h")
+        self.expect_refusal(path, "--for", "soon", error="such as 10ms, 3s, 1m or 1h")
 
     def test_a_network_with_errors_is_not_simulated(self) -> None:
         plant = json.loads(json.dumps(PLANT))
