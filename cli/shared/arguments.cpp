@@ -240,11 +240,17 @@ class Reader {
     return bus != nullptr && bus->get_positional();
   }
 
+  /// Whether help is asked for, which needs no bus.
+  [[nodiscard]] bool wants_help_later() const {
+    return std::any_of(words_.begin() + static_cast<std::ptrdiff_t>(at_), words_.end(),
+                       [](const std::string& word) { return word == "--help" || word == "-h"; });
+  }
+
   /// Whether the word is BUS; otherwise EDSC_BUS is inserted.
   bool take_bus(const std::string& word) {
     if (!is_bus_address(word)) {
       insert_default_bus();
-      if (default_bus() == nullptr) {
+      if (default_bus() == nullptr && !wants_help_later()) {
         fail(fmt::format("{} is not a bus address: write {}; the environment variable EDSC_BUS states the default",
                          quote(word), bus_forms));
       }

@@ -78,14 +78,14 @@ class BusCommand(unittest.TestCase):
 
     def test_it_prints_its_addresses_and_ends_with_a_signal(self) -> None:
         for number in (signal.SIGINT, signal.SIGTERM):
-            with self.subTest(signal=number), Bus("--bus", "vcan0", "--bus", "plant", buses=2) as bus:
+            with self.subTest(signal=number), Bus("vcan0", "plant", buses=2) as bus:
                 self.assertEqual([address[2] for address in bus.addresses], ["vcan0", "plant"])
                 client = self.client(bus, "plant")
                 self.assertEqual(bus.end(number), (FINE, "", ""))
                 self.assertEqual(client.hear(1), "")
 
     def test_its_log_is_that_of_candump(self) -> None:
-        with Bus("--log") as bus:
+        with Bus("--log", "-") as bus:
             sender, other = self.client(bus), self.client(bus)
             before = time.time()
             sender.say("< send 605 2 40 0 >< sendrtr 705 1 >< send 00000123 0 >")
@@ -102,7 +102,7 @@ class BusCommand(unittest.TestCase):
                              ["vcan0 705#R1", "vcan0 00000123#"])
 
     def test_its_log_is_one_for_decode_and_can_utils(self) -> None:
-        with Bus("--log") as bus:
+        with Bus("--log", "-") as bus:
             sender = self.client(bus)
             sender.say("< send 705 1 5 >< sendrtr 705 1 >< send 00000123 0 >< echo >")
             sender.expect("< echo >")
@@ -139,17 +139,16 @@ class BusCommand(unittest.TestCase):
             first.expect("< echo >")
             code, _, complained = bus.end()
             self.assertEqual(code, FINE)
-            self.assertRegex(complained, r"\Aedsc bus: client 127\.0\.0\.1:\d+ is disconnected: element too long\n"
-                                         r"edsc bus: client 127\.0\.0\.1:\d+ is disconnected: too many clients\n\Z")
+            self.assertRegex(complained, r"\Aedsc: client 127\.0\.0\.1:\d+ is disconnected: element too long\n"
+                                         r"edsc: client 127\.0\.0\.1:\d+ is disconnected: too many clients\n\Z")
 
     def test_what_it_refuses(self) -> None:
         with Bus() as bus:
             for arguments, words in ((("--listen", f"127.0.0.1:{bus.port}"), "Address already in use"),
                                      (("--listen", "127.0.0.1"), "expected HOST:PORT"),
                                      (("--listen", "192.0.2.1:0"), "Cannot assign requested address"),
-                                     (("--bus", "a/b"), "not a bus name"),
-                                     (("--clients", "0"), "--clients"),
-                                     (("vcan0",), "vcan0")):
+                                     (("a/b",), "not a bus name"),
+                                     (("--clients", "0"), "--clients")):
                 with self.subTest(arguments=arguments):
                     result = subprocess.run([EDSC, "bus", *arguments], capture_output=True, text=True, timeout=600)
                     self.assertEqual(result.returncode, WRONG_USAGE)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
 import unittest
@@ -305,7 +306,14 @@ class Git(CommandLine):
         self.git("commit", "-q", "-m", "link")
         self.expect(WRONG_USAGE, self.against("HEAD", "eds/link.eds", "--allow-new"),
                     "eds/link.eds is a symbolic link in the git revision HEAD")
-        self.expect(WRONG_USAGE, self.against("HEAD", "eds", "--allow-new"), "eds is a folder in the git revision HEAD")
+        (self.folder / "eds.eds").mkdir()
+        (self.folder / "eds.eds/a.eds").write_text("")
+        self.git("add", ".")
+        self.git("commit", "-q", "-m", "folder")
+        shutil.rmtree(self.folder / "eds.eds")
+        (self.folder / "eds.eds").write_bytes((self.folder / "eds/device.eds").read_bytes())
+        self.expect(WRONG_USAGE, self.against("HEAD", "eds.eds", "--allow-new"),
+                    "eds.eds is a folder in the git revision HEAD")
 
     def test_a_repository_of_someone_else_runs_nothing(self) -> None:
         """A missing blob would be fetched from the promisor remote, whose address here is a command."""

@@ -17,21 +17,12 @@ import tempfile
 from pathlib import Path
 
 import live
-from live import EDSC, FAILED, FINE, SOURCE_DIR, ReferenceDevices
+from live import EDSC, FAILED, FINE, SOURCE_DIR, ReferenceDevices, every_command
 
 MEMORY_FAULT = 99  # as an exit code, which none of the commands has
 REPORT = re.compile(r"==\d+==|runtime error:")  # of AddressSanitizer, valgrind; of UBSan
 PLANTS = [SOURCE_DIR / f"examples/networks/{plant}.json" for plant in ("eight_devices", "four_modules", "twelve_axes")]
-COMMAND = re.compile(r"^  ([a-z][a-z-]*)  ", re.MULTILINE)
 ENVIRONMENT = {**os.environ, "ASAN_OPTIONS": f"exitcode={MEMORY_FAULT}", "UBSAN_OPTIONS": f"exitcode={MEMORY_FAULT}"}
-
-
-def commands_of(*group: str) -> list[str]:
-    """Returns the commands in the help of edsc, or of a command that has others."""
-    printed = subprocess.run([EDSC, *group, "--help"], capture_output=True, text=True, check=True).stdout
-    if group:  # until the next heading
-        printed = printed.partition("\nCommands:\n")[2]
-    return COMMAND.findall(re.split(r"\nOptions:" if group else r"\nShell:", printed)[0])
 
 
 class EveryCommand(ReferenceDevices):
@@ -40,9 +31,7 @@ class EveryCommand(ReferenceDevices):
     @classmethod
     def tearDownClass(cls) -> None:
         """After all tests: no command was forgotten."""
-        every = set()
-        for command in commands_of():
-            every |= {(command, name) for name in commands_of(command)} or {(command,)}
+        every = {tuple(name.split()) for name in every_command()}
         assert every == cls.used, f"not the commands of the help: {sorted(every ^ cls.used)}"
 
     def run_command(self, words: str, *arguments: object, exit_codes: tuple[int, ...] = (FINE,), bus: bool = False) -> None:
@@ -64,6 +53,8 @@ class EveryCommand(ReferenceDevices):
     def test_1_files_of_devices(self) -> None:
         for kind in ("bash", "zsh", "man"):
             self.run_command("completion", kind)
+        self.run_command("help", "check")
+        self.run_command("version")
         for device in self.devices:
             with self.subTest(device):
                 sheet = SOURCE_DIR / f"eds/{device}.eds"

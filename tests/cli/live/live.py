@@ -31,6 +31,13 @@ def entry(section: str, name: str, data_type: int, access: str, value: object) -
             f"DefaultValue={value}\nPDOMapping=0\n")
 
 
+def every_command() -> set[str]:
+    """The commands of edsc, without those that have other commands: `network check`."""
+    listed = json.loads(subprocess.run([EDSC, "completion", "json"], capture_output=True, text=True, check=True).stdout)
+    names = {command["command"] for command in listed["commands"]}
+    return {name for name in names if name and not any(other.startswith(f"{name} ") for other in names)}
+
+
 class LiveTest(unittest.TestCase):
     maxDiff = None
     nodes: tuple[int, ...] = (5,)

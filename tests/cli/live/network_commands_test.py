@@ -32,7 +32,7 @@ class NetworkCommands(LiveTest):
     def network_command(self, action: str, *arguments: object,
                         timeout: int = PATIENCE_MS) -> subprocess.CompletedProcess[str]:
         return subprocess.run([str(EDSC), "network", action, self.network.address, *map(str, arguments), "--timeout",
-                               str(timeout)], cwd=self.folder, capture_output=True, text=True, timeout=600)
+                               f"{timeout}ms"], cwd=self.folder, capture_output=True, text=True, timeout=600)
 
     def place(self, file: str, text: str, column_of: str = "") -> str:
         """`FILE:LINE:COLUMN: error: ` of the first line with a text."""

@@ -12,7 +12,7 @@ from datetime import UTC, datetime, timedelta
 
 from live import FINE, INTERRUPTED, SHEET, WRONG_USAGE, LiveTest, run
 
-NODE = "5=device.eds"
+NODE = (5, "--eds", "device.eds")
 TIME_EPOCH = datetime(1984, 1, 1, tzinfo=UTC)  # CiA 301, 7.1.6.6
 
 
@@ -58,20 +58,20 @@ class Send(LiveTest):
 
     def test_the_node_takes_the_values_of_an_rpdo(self) -> None:
         self.expect(self.edsc("nmt", "start", 5), FINE)
-        self.expect(self.edsc("send", "pdo", NODE, 1, "target_velocity=-2 inc/s", "6040h=0x0F"), FINE)
+        self.expect(self.edsc("send", "pdo", *NODE, 1, "target_velocity=-2 inc/s", "6040h=0x0F"), FINE)
         self.expect(self.edsc("read", 5, "6040h", "60FFh", "--eds", "device.eds", "--raw"), FINE,
                     stdout="6040h:00 Controlword = 0F 00\n60FFh:00 Target velocity = FE FF FF FF\n")
         self.assertEqual(self.network.frames("205"), ["205 0F 00 FE FF FF FF"])
 
     def test_values_by_name_and_unit(self) -> None:
-        self.expect(self.edsc("send", "pdo", NODE, 1, "target_velocity=100 inc/s", "controlword=enable_operation, halt"), FINE)
+        self.expect(self.edsc("send", "pdo", *NODE, 1, "target_velocity=100 inc/s", "controlword=enable_operation, halt"), FINE)
         self.assertEqual(self.network.frames("205"), ["205 0F 01 64 00 00 00"])
-        result = self.edsc("send", "pdo", NODE, 1, "target_velocity=1", "controlword=enable_operations")
+        result = self.edsc("send", "pdo", *NODE, 1, "target_velocity=1", "controlword=enable_operations")
         self.assertEqual(result.returncode, WRONG_USAGE)
         self.assertIn('"enable_operations" is not a field or value; did you mean "enable_operation"?', result.stderr)
 
     def test_a_tpdo_in_place_of_the_node(self) -> None:
-        self.expect(self.edsc("send", "pdo", NODE, 1, "statusword=0x27", "6064h=-1", "--tpdo"), FINE)
+        self.expect(self.edsc("send", "pdo", *NODE, 1, "statusword=0x27", "6064h=-1", "--tpdo"), FINE)
         self.assertEqual(self.network.frames("185")[-1], "185 27 00 FF FF FF FF")
 
     def test_a_pdo_on_the_can_id_of_the_file(self) -> None:
@@ -93,8 +93,8 @@ class Send(LiveTest):
                 ((1, "6040h", "60FFh=1"), 'edsc: "6040h" is not of the form OBJECT=VALUE\n'),
                 ((99,), "edsc: device.eds does not have RPDO 99\n")):
             with self.subTest(arguments):
-                self.expect(self.edsc("send", "pdo", NODE, *arguments), WRONG_USAGE, stderr=problem)
-        result = self.edsc("send", "pdo", NODE, 1, "6040h=65536", "60FFh=1")
+                self.expect(self.edsc("send", "pdo", *NODE, *arguments), WRONG_USAGE, stderr=problem)
+        result = self.edsc("send", "pdo", *NODE, 1, "6040h=65536", "60FFh=1")
         self.assertEqual(result.returncode, WRONG_USAGE)
         self.assertRegex(result.stderr, "^edsc: 6040h:00 Controlword: .*65536")
         self.assertEqual(self.network.frames("205"), [])
@@ -107,9 +107,9 @@ class Send(LiveTest):
                 self.assertEqual(result.returncode, WRONG_USAGE, result.stderr)
 
     def test_numbers_that_cannot_be_meant(self) -> None:
-        for arguments, problem in ((("sync", "--count", 0), '--count: "0" is not a number from 1\n'),
-                                   (("sync", "--id", 0), '--id: "0" is not a CAN-ID up to 1FFFFFFFh, or is reserved by CiA 301\n'),
-                                   (("time", "--id", "705h"), '--id: "705h" is not a CAN-ID')):
+        for arguments, problem in ((("sync", "--count", 0), 'edsc: --count: "0" is not a number from 1\n'),
+                                   (("sync", "--id", 0), 'edsc: --id: "0" is not a CAN-ID up to 1FFFFFFFh, or is reserved by CiA 301\n'),
+                                   (("time", "--id", "705h"), 'edsc: --id: "705h" is not a CAN-ID')):
             with self.subTest(arguments):
                 result = self.edsc("send", *arguments)
                 self.assertEqual(result.returncode, WRONG_USAGE)

@@ -11,15 +11,13 @@ from __future__ import annotations
 
 import json
 import os
-import re
 import signal
 import subprocess
 import time
 from dataclasses import dataclass, field
 
-from live import EDSC, FAILED, FINE, SOURCE_DIR, WRONG_USAGE, LiveTest, run
+from live import EDSC, FAILED, FINE, SOURCE_DIR, WRONG_USAGE, LiveTest, run, every_command
 
-COMMAND = re.compile(r"^  ([a-z][a-z-]*)  ", re.MULTILINE)
 LOG = "(1.0) vcan0 705#00\n(2.0) vcan0 705#7F\nnot a frame\n"
 NUMBERS = ("--vendor", "92h", "--product", "1234h", "--revision", "10002h", "--serial", "100h")
 
@@ -38,6 +36,8 @@ class Row:
 
 ROWS = (
     Row("completion", ("bash",)),
+    Row("help", ("check",)),
+    Row("version", ()),
     Row("check", ("warned.eds",)),
     Row("check", ("broken.eds",), FAILED),
     Row("dump", ("warned.eds",), warns=True),
@@ -60,56 +60,41 @@ ROWS = (
     Row("network members", ()),
     Row("network generate", ("plant.json", "-o", "plant"), files=("plant/axis.dcf", "plant/plant.dbc"), warns=True),
     Row("network simulate", ("no_rate.json",), FAILED, warns=True),
-    Row("network scan", ("--sheets", ".", "--nodes", "5..6", "-o", "found.json"), files=("found.json",), bus=True),
+    Row("network scan", ("--eds", ".", "--nodes", "5..6", "-o", "found.json"), files=("found.json",), bus=True),
     Row("network verify", ("plant.json",), bus=True),
     Row("network apply", ("plant.json",), bus=True),
-    Row("scan", ("--nodes", "5..6", "--listen", 0), bus=True),
+    Row("scan", ("--nodes", "5..6", "--for", "1ms"), bus=True),
     Row("read", (5, "2FFFh", "--type", "u16"), FAILED, bus=True, warns=True),
     Row("write", (5, "2FFFh", "1", "--type", "u16"), FAILED, bus=True, warns=True),
     Row("configure", (5, "other.dcf"), bus=True),
     Row("save", (5, "device.eds", "-o", "saved.dcf"), files=("saved.dcf",), bus=True),
     Row("save", (5, "device.eds"), bus=True, warns=True),
-    Row("monitor", ("--once", "0.1"), bus=True),
+    Row("monitor", ("--once", "100ms"), bus=True),
     Row("nmt", ("start", 5), bus=True),
     Row("send sync", (), bus=True),
     Row("send time", (), bus=True),
     Row("send frame", ("123#0102",), bus=True),
-    Row("send pdo", ("5=device.eds", 1, "nothing=1"), WRONG_USAGE, bus=True, warns=True),
+    Row("send pdo", (5, "--eds", "device.eds", 1, "nothing=1"), WRONG_USAGE, bus=True, warns=True),
     Row("lss fastscan", (), FAILED, bus=True, warns=True),
     Row("lss select", NUMBERS, FAILED, bus=True, warns=True),
     Row("lss inquire", (), FAILED, bus=True, warns=True),
     Row("lss node-id", (9,), FAILED, bus=True, warns=True),
     Row("lss bit-rate", (250,), FAILED, bus=True, warns=True),
     Row("lss store", (), FAILED, bus=True, warns=True),
-    Row("lss activate", ("--delay", 10), bus=True),
+    Row("lss activate", ("--delay", "10ms"), bus=True),
     Row("lss state", ("waiting",), bus=True),
     Row("lss assign", (*NUMBERS, "--node-id", 9), FAILED, bus=True, warns=True),
     Row("conform", (5, "device.eds", "--only", "1.0", "--html", "conform.html", "--json", "conform.json"),
         files=("conform.html", "conform.json"), bus=True),
-    Row("accept", (5, "device.eds", "--only", "1.0", "-o", "accept.html", "--json", "accept.json"),
+    Row("accept", (5, "device.eds", "--only", "1.0", "--html", "accept.html", "--json", "accept.json"),
         files=("accept.html", "accept.json"), bus=True),
-    Row("record", ("--seconds", "0.1", "-o", "recorded.log"), bus=True),
+    Row("record", ("--for", "100ms", "-o", "recorded.log"), bus=True),
     Row("decode", ("bus.log", "--node", "5=device.eds"), FAILED, warns=True),
     Row("decode", ("bus.log", "--node", "5=device.eds", "--format", "csv"), FAILED, warns=True),
     Row("audit", ("bus.log", "--node", "5=device.eds"), FAILED, warns=True),
     Row("plot", ("bus.log", "1017h", "--node", "5=device.eds"), FAILED, warns=True),
 )
 ENDLESS = {"bus"}  # until SIGINT
-
-
-def commands_of(*group: str) -> list[str]:
-    """Returns the commands in the help of edsc, or of a command that has others."""
-    printed = subprocess.run([EDSC, *group, "--help"], capture_output=True, text=True, check=True).stdout
-    if group:
-        printed = printed.partition("\nSubcommands:\n")[2]
-    return COMMAND.findall(re.split(r"\nExamples:", printed)[0])
-
-
-def every_command() -> set[str]:
-    found = set()
-    for command in commands_of():
-        found |= {f"{command} {name}" for name in commands_of(command)} or {command}
-    return found
 
 
 class StandardStreams(LiveTest):
