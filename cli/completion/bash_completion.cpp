@@ -96,7 +96,8 @@ std::string completed_by(const OptionValue& value) {
 
 /// What completes an argument of the command: its subcommands, a word, or a kind for each position.
 std::string arguments_of(const CommandParts& command, const CommandParts& program) {
-  const bool is_help = !command.arguments.empty() && command.arguments.front().value.kind == ValueKind::command_words;
+  const bool is_help =
+      !command.arguments.empty() && command.arguments.front().value.kind == OptionValueKind::command_words;
   const CommandParts& chosen_from = is_help ? program : command;
   std::vector<std::string> names;
   for (const CommandParts& sub : chosen_from.subcommands) names.push_back(sub.name);

@@ -28,7 +28,7 @@ OptionValue value_of(const CLI::Option& option) {
   const OptionFacts& facts = facts_of(option);
   if (option.get_items_expected_max() == 0) return {};
   if (facts.words.empty()) return {facts.value, facts.kind, {}, facts.suggestions};
-  return {fmt::format("{}", fmt::join(facts.words, "|")), ValueKind::word, facts.words, {}};
+  return {fmt::format("{}", fmt::join(facts.words, "|")), OptionValueKind::word, facts.words, {}};
 }
 
 /// `before`: the usage of the parent, with its arguments.

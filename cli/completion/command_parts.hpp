@@ -13,7 +13,7 @@ namespace edsc {
 /// The value of an option or argument.
 struct OptionValue {
   std::string name;  ///< `text|json`, `NUMBER`; empty for a flag
-  ValueKind kind = ValueKind::flag;
+  OptionValueKind kind = OptionValueKind::flag;
   std::vector<std::string> words;        ///< the only values; empty: any
   std::vector<std::string> suggestions;  ///< values to offer, where there are others too
 };

@@ -57,13 +57,13 @@ std::string action_of(const OptionValue& value) {
   const std::vector<std::string>& words = value.words.empty() ? value.suggestions : value.words;
   if (!words.empty()) return fmt::format("({})", quoted(fmt::format("{}", fmt::join(words, " "))));
   switch (value.kind) {
-    case ValueKind::file:
-    case ValueKind::path:
-    case ValueKind::node_file: return "_edsc_file";
-    case ValueKind::folder: return "_files -/";
-    case ValueKind::bus: return "_edsc_call buses";
-    case ValueKind::node: return "_edsc_call nodes";
-    case ValueKind::object: return "_edsc_objects";
+    case OptionValueKind::file:
+    case OptionValueKind::path:
+    case OptionValueKind::node_file: return "_edsc_file";
+    case OptionValueKind::folder: return "_files -/";
+    case OptionValueKind::bus: return "_edsc_call buses";
+    case OptionValueKind::node: return "_edsc_call nodes";
+    case OptionValueKind::object: return "_edsc_objects";
     default: return " ";
   }
 }

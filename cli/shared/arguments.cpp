@@ -199,7 +199,7 @@ class Reader {
   static std::string present_notation(std::string value, const std::string& name, const CLI::Option* option,
                                       const OldOptionRow* old) {
     if (option == nullptr) return value;
-    const bool has_duration = facts_of(*option).kind == ValueKind::duration || name == "--fault";
+    const bool has_duration = facts_of(*option).kind == OptionValueKind::duration || name == "--fault";
     if (old != nullptr && !old->unit.empty() && is_number_without_unit(value)) return value.append(old->unit);
     if (has_duration && ends_with_old_minutes(value)) value.erase(value.size() - 2);
     return value;

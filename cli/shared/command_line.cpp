@@ -63,7 +63,7 @@ Option added(CLI::Option& option, const std::string& name) {
   OptionFacts& facts = all_facts()[&option];
   if (is_argument(name)) {
     const ArgumentRow* const row = find_argument_row(name);
-    facts.kind = row != nullptr ? row->kind : ValueKind::text;
+    facts.kind = row != nullptr ? row->kind : OptionValueKind::text;
     facts.value = name;
   } else {
     facts.kind = row_of(name).kind;

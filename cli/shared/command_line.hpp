@@ -19,7 +19,7 @@ namespace edsc {
 
 /// What the help, completions and the manual page state of an option or argument.
 struct OptionFacts {
-  ValueKind kind = ValueKind::text;
+  OptionValueKind kind = OptionValueKind::text;
   std::string value;                     ///< what its value is called; empty for a flag
   std::vector<std::string> words;        ///< the only values; empty: any
   std::vector<std::string> suggestions;  ///< values for completions, where there are others too

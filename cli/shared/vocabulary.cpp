@@ -6,7 +6,7 @@
 namespace edsc {
 namespace {
 
-using enum ValueKind;
+using enum OptionValueKind;
 
 // clang-format off
 constexpr CommandOptionRow rows_of_options[] = {
@@ -153,7 +153,7 @@ constexpr OldOptionRow rows_of_old_options[] = {
 
 }  // namespace
 
-std::string_view to_string(ValueKind kind) {
+std::string_view to_string(OptionValueKind kind) {
   constexpr std::string_view names[] = {"flag",   "text", "number",    "duration",     "word",         "file",
                                         "folder", "path", "node_file", "address",      "bus",          "node",
                                         "object", "rule", "case",      "case_command", "command_words"};

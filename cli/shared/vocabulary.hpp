@@ -8,7 +8,7 @@
 namespace edsc {
 
 /// What the value of an option or argument is; completions follow from it.
-enum class ValueKind : std::uint8_t {
+enum class OptionValueKind : std::uint8_t {
   flag,  ///< no value
   text,
   number,
@@ -29,21 +29,21 @@ enum class ValueKind : std::uint8_t {
 };
 
 /// The word for a kind in the machine-readable list of the commands.
-[[nodiscard]] std::string_view to_string(ValueKind kind);
+[[nodiscard]] std::string_view to_string(OptionValueKind kind);
 
 /// An option. Commands that have it add details to its meaning, not another meaning.
 struct CommandOptionRow {
   std::string_view name;
   char short_name = 0;     ///< `o` of `-o`; 0: none
   std::string_view value;  ///< what its value is called in the help; empty for a flag
-  ValueKind kind = ValueKind::flag;
+  OptionValueKind kind = OptionValueKind::flag;
   std::string_view meaning;
 };
 
 /// An argument without a name on the command line.
 struct ArgumentRow {
   std::string_view name;
-  ValueKind kind = ValueKind::text;
+  OptionValueKind kind = OptionValueKind::text;
 };
 
 /// An option as previous versions spelled it. It is read for one version, with a note.
