@@ -2,8 +2,8 @@
 # libedsc-dev_VERSION_all.deb with the files to compile a device.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME edsc)
-# Debian requires name and address of a maintainer: `-DEDSC_MAINTAINER="Name <address>"`. The default address is a placeholder
-# (RFC 2606).
+# Debian requires name and address of a maintainer: `-DEDSC_MAINTAINER="Name <address>"`. No mail reaches the default address,
+# whose domain is reserved for that (RFC 2606).
 set(EDSC_MAINTAINER "edsc maintainers <maintainers@edsc.invalid>" CACHE STRING "Maintainer of the Debian packages")
 set(CPACK_PACKAGE_CONTACT "${EDSC_MAINTAINER}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)

@@ -13,7 +13,7 @@ inline constexpr std::string_view sheet_extensions[] = {".eds", ".dcf", ".xdd", 
 inline constexpr std::string_view canonical_extensions[] = {".eds", ".dcf"};
 
 /// Replaces each folder by its files with one of these extensions (in any letter case), in its subfolders too,
-/// ascending by path. Hidden folders are left out. Ends the command if a folder has no such file or cannot be read.
+/// ascending by path. Hidden folders are not searched. Ends the command if a folder has no such file or cannot be read.
 [[nodiscard]] std::vector<std::string> expand_folders(const std::vector<std::string>& paths,
                                                       std::span<const std::string_view> extensions = sheet_extensions);
 

@@ -41,7 +41,7 @@ std::optional<std::string> existing(const std::string& path) {
   return bytes;
 }
 
-/// Lines that are not of the list are left out: their files count as files of others.
+/// Lines that have another form are ignored: edsc then treats their files as not written by itself.
 WrittenFiles read_list(const std::string& path) {
   WrittenFiles list;
   const std::optional<std::string> text = existing(path);

@@ -116,7 +116,7 @@ class PacketSource final : public LogSource {
       const std::uint16_t protocol = big_endian_16(frame, is_first ? 14 : 0);
       if (protocol != can_protocol && protocol != can_fd_protocol && protocol != can_xl_protocol) return false;
       frame = frame.subspan(header);
-      // Here the CAN-ID has the byte order of the computer, which is that of the capture.
+      // In these captures the CAN-ID has the byte order of the capture file.
       if (!packet.is_big_endian && frame.size() >= packet_header) std::ranges::reverse(frame.first(4));
     }
     line.interface = packet.interface;
