@@ -23,10 +23,13 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-bool is_ip_address(const std::string& host) {
+bool is_address(int family, const std::string& host) {
+  if (host.find('\0') != std::string::npos) return false;  // inet_pton reads up to it
   in6_addr buffer;
-  return inet_pton(AF_INET, host.c_str(), &buffer) == 1 || inet_pton(AF_INET6, host.c_str(), &buffer) == 1;
+  return inet_pton(family, host.c_str(), &buffer) == 1;
 }
+
+bool is_ip_address(const std::string& host) { return is_address(AF_INET, host) || is_address(AF_INET6, host); }
 
 }  // namespace
 
@@ -56,8 +59,9 @@ bool RequestGuard::is_own_host(std::string_view host) const {
   const bool has_port = end != std::string_view::npos && host[end] == ':';
   if (has_port ? host.substr(end + 1) != std::to_string(address_.port) : address_.port != default_port) return false;
   if (has_port) host = host.substr(0, end);
-  if (host.size() > 2 && host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  const std::string name = lower(host);
+  const bool in_brackets = host.size() > 2 && host.starts_with('[') && host.ends_with(']');
+  const std::string name = lower(in_brackets ? host.substr(1, host.size() - 2) : host);
+  if (in_brackets && !is_address(AF_INET6, name)) return false;
   if (name == lower(address_.host) || is_loopback(name)) return true;
   return !is_loopback(address_.host) && is_ip_address(name);
 }

@@ -20,9 +20,10 @@ TEST(RequestGuard, HostsOfAServerForThisComputer) {
   for (const char* host : {"127.0.0.1:8080", "localhost:8080", "[::1]:8080", "127.9.9.9:8080", "LocalHost:8080"}) {
     EXPECT_EQ(guard.check(request(host)), 200) << host;
   }
-  for (const char* host : {"", ":8080", "127.0.0.1", "127.0.0.1:80", "127.0.0.1:80801", "evil.example:8080",
-                           "127.0.0.1.evil.example:8080", "localhost.evil.example:8080", "192.168.0.5:8080",
-                           "[fe80::1]:8080", "127.0.0.1:8080:8080", "[127.0.0.1:8080"}) {
+  for (const char* host :
+       {"", ":8080", "127.0.0.1", "127.0.0.1:80", "127.0.0.1:80801", "evil.example:8080", "127.0.0.1.evil.example:8080",
+        "localhost.evil.example:8080", "192.168.0.5:8080", "[fe80::1]:8080", "127.0.0.1:8080:8080", "[127.0.0.1:8080",
+        "[127.0.0.1]:8080", "[localhost]:8080"}) {
     EXPECT_EQ(guard.check(request(host)), 421) << host;
   }
 }
@@ -33,6 +34,8 @@ TEST(RequestGuard, HostsOfAServerForOtherComputers) {
   EXPECT_EQ(any.check(request("[fe80::1]:8080")), 200);
   EXPECT_EQ(any.check(request("localhost:8080")), 200);
   EXPECT_EQ(any.check(request("rebound.example:8080")), 421);
+  const std::string address_and_more{"192.168.0.5\0.example:8080", 25};
+  EXPECT_EQ(any.check(request(address_and_more)), 421);
   const RequestGuard named{{"bench.example", 80}, token};
   EXPECT_EQ(named.check(request("bench.example")), 200);
   EXPECT_EQ(named.check(request("bench.example:80")), 200);
