@@ -11,15 +11,15 @@ help() {
   sources   each source and public header compiles alone and passes clang-tidy; each gate detects a planted fault
   quick     the gates; the generated code, the short tests of the command line, the conformance test of the reference
             devices; the unit and trace tests (about 3 minutes after a build)
-  odr       no two sources of edsc define different types of one name (g++ with -flto)
   test      a release build with all tests but those of the other gears
   asan      the GoogleTest programs (unit and trace tests) and a short run of each fuzz target with AddressSanitizer
             and UBSan
   firmware  the images of the reference devices for Cortex-M under QEMU
-  long      builds the static program, and compares what it writes in an empty root folder with the release build; before a
-            release
+  odr       no two sources of edsc define different types of one name (g++ with -flto)
+  long      before a release: odr; the static program, and what it writes in an empty root folder compared with the release
+            build; each header of the runtime alone; each fuzz target for a minute
 
-Without a gear: gates, odr, test, asan, firmware. The last two use the program edsc of the release build, and build it there
+Without a gear: gates, test, asan, firmware. The last two use the program edsc of the release build, and build it there
 if it is missing. The time of each test is printed at the end of a gear, slowest first.
 HELP
 }
@@ -29,7 +29,7 @@ run() {
   local build=build/$1 status=0
   case $1 in
     gates | sources | quick | long) build=build/test ;;
-    unit) build=build/asan ;;
+    unit | long-asan) build=build/asan ;;
   esac
   rm -f "$build/times-$1.xml"
   echo "== $1"
@@ -39,7 +39,7 @@ run() {
 }
 
 gears=("$@")
-[ $# -gt 0 ] || gears=(gates odr test asan firmware)
+[ $# -gt 0 ] || gears=(gates test asan firmware)
 for gear in "${gears[@]}"; do
   case $gear in
     gates | sources | quick | odr | test | asan | firmware | long) ;;
@@ -54,7 +54,7 @@ for gear in "${gears[@]}"; do
     quick) for part in gates quick unit; do run "$part"; done ;;
     long)
       cmake --workflow --preset static
-      run long
+      for part in odr long long-asan; do run "$part"; done
       ;;
     *) run "$gear" ;;
   esac
