@@ -24,18 +24,51 @@ if it is missing. The time of each test is printed at the end of a gear, slowest
 HELP
 }
 
+# Seconds on two processors: of a build from nothing, and of the tests.
+declare -A build_seconds=([gates]=0 [sources]=0 [quick]=700 [unit]=500 [odr]=300 [test]=700 [asan]=500 [firmware]=300 [static]=400
+                          [long]=0 [long-asan]=500)
+declare -A test_seconds=([gates]=100 [sources]=1500 [quick]=60 [unit]=60 [odr]=0 [test]=1500 [asan]=350 [firmware]=100 [static]=0
+                         [long]=700 [long-asan]=900)
+
+build_of() {
+  case $1 in
+    gates | sources | quick | long) echo build/test ;;
+    unit | long-asan) echo build/asan ;;
+    *) echo "build/$1" ;;
+  esac
+}
+
+# expect PRESET: sets `tests` to the seconds that its tests took in the last run, if there was one, and `compile` to those of its
+# build: what exists is built faster, but how much has changed is known only to ninja.
+expect() {
+  local build last
+  build=$(build_of "$1")
+  tests=${test_seconds[$1]} compile=${build_seconds[$1]}
+  for last in "$build/times-$1.xml.last" "$build/times-$1.xml"; do
+    if [ -f "$last" ]; then tests=$(sed -nE '1,9 s/^\ttime="([0-9]+).*/\1/p' "$last"); fi
+  done
+  if [ -f "$build/.ninja_log" ]; then compile=$((compile / 10)); fi
+}
+
 # run PRESET: a workflow preset and the times of its tests.
 run() {
-  local build=build/$1 status=0
-  case $1 in
-    gates | sources | quick | long) build=build/test ;;
-    unit | long-asan) build=build/asan ;;
-  esac
-  rm -f "$build/times-$1.xml"
+  local status=0 times tests compile
+  times=$(build_of "$1")/times-$1.xml
+  expect "$1"
+  if [ -f "$times" ]; then mv "$times" "$times.last"; fi
   echo "== $1"
-  cmake --workflow --preset "$1" || status=$?
-  .ci/test-times "$build/times-$1.xml"
+  cmake --workflow --preset "$1" 2>&1 | .ci/progress "$1" "$compile" "$tests" "$times.last" || status=$?
+  .ci/test-times "$times"
   return $status
+}
+
+# parts GEAR: its presets.
+parts() {
+  case $1 in
+    quick) echo gates quick unit ;;
+    long) echo static odr long long-asan ;;
+    *) echo "$1" ;;
+  esac
 }
 
 gears=("$@")
@@ -48,14 +81,16 @@ for gear in "${gears[@]}"; do
   esac
 done
 
+total=0
+for gear in "${gears[@]}"; do
+  for part in $(parts "$gear"); do
+    expect "$part"
+    total=$((total + compile + tests))
+  done
+done
+echo "${gears[*]}: about $(((total + 59) / 60)) min on two processors; the first builds take longer than later ones"
+
 .ci/install-packages test
 for gear in "${gears[@]}"; do
-  case $gear in
-    quick) for part in gates quick unit; do run "$part"; done ;;
-    long)
-      cmake --workflow --preset static
-      for part in odr long long-asan; do run "$part"; done
-      ;;
-    *) run "$gear" ;;
-  esac
+  for part in $(parts "$gear"); do run "$part"; done
 done

@@ -39,6 +39,13 @@ function(edsc_add_host_library name)
   target_include_directories(${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${EDSC_UNITY_BUILD} UNITY_BUILD_MODE GROUP)
   edsc_set_host_flags(${name})
+  if(EDSC_PRECOMPILE_HEADERS AND name STREQUAL "edsc_device")
+    target_precompile_headers(
+      edsc_device PRIVATE <algorithm> <charconv> <chrono> <filesystem> <functional> <map> <memory> <optional> <ranges> <span>
+      <string> <variant> <vector> <fmt/format.h> <nlohmann/json.hpp>)
+  elseif(EDSC_PRECOMPILE_HEADERS)
+    target_precompile_headers(${name} REUSE_FROM edsc_device)
+  endif()
   edsc_group_by_folder(${ARGN})
   if(EDSC_BUILD_FUZZ) # Report coverage to the fuzzer.
     target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)

@@ -121,7 +121,7 @@ void show_identities(demo::Master& master) {
 /// Configures the nodes before they start, with one write that a node refuses.
 void configure(demo::Master& master) {
   master.write<ezd_1136::od::producer_heartbeat_time>(stepper_id, 50_ms);
-  master.write<rk5c::od::tpdo_communication_parameter_1::event_timer>(sensor_id, 20_ms);
+  master.write<rk5c::od::tpdo_communication_parameter_1::event_timer>(sensor_id, 5_ms);
   if (!master.write<rk5c::od::position_values_for_multi_sensor_devices<1>>(sensor_id, 0_um)) {
     const auto code = static_cast<std::uint32_t>(master.last_abort());
     fmt::print("   => refused: {:08X}h {}\n", code, canopen::to_text(master.last_abort()));
@@ -209,9 +209,12 @@ int run_demo(demo::CandumpLog& log) {
     bus.run_for(2ms);
   }
   inputs.modify(can_2053c::od::read_input_8_bit<1>{}, [](auto& lines) { lines.di0(true).di2(true); });
-  sensor.set<rk5c::od::position_values_for_multi_sensor_devices<1>>(12.3456_m);
   sensor.set<rk5c::od::speed_value<1>>(-0.25_m_per_s);
-  bus.run_for(20ms);
+  for (int step = 1; step <= 8; ++step) {  // to 12.3456 m
+    sensor.set<Position>(canopen::raw(15'432 * step));
+    bus.run_for(5ms);
+  }
+  bus.run_for(5ms);
   fmt::print("   => the master has got the position {} m\n", position.in<canopen::unit::metre>());
   master.send_rpdo<ezd_1136::Rpdo2>(stepper_id, 2, ezd_1136::Rpdo2::pack(canopen::raw(position.raw()), 40_rev_per_s));
   bus.run_for(10ms);
