@@ -160,7 +160,7 @@ class Ways(unittest.TestCase):
         self.document("Debian packages", 0)
         architecture = run("dpkg", "--print-architecture").strip()
         program, development = (self.sources / f"build/release/{name}" for name in (
-            f"edsc_0.1.0_{architecture}.deb", "libedsc-dev_0.1.0_all.deb"))
+            f"edsc_0.9.0_{architecture}.deb", "libedsc-dev_0.9.0_all.deb"))
         for package, fields in ((program, {"Package": "edsc", "Architecture": architecture}),
                                 (development, {"Package": "libedsc-dev", "Architecture": "all"})):
             for field, value in fields.items():
@@ -169,7 +169,7 @@ class Ways(unittest.TestCase):
             self.assertRegex(run("dpkg-deb", "-f", package, "Description"), r"Compiler for CANopen.*\n .+")
         for library in ("libc6", "libstdc", "libfmt", "libcpp-httplib", "libpugixml", "libnettle", "zlib1g"):
             self.assertIn(library, run("dpkg-deb", "-f", program, "Depends"))
-        self.assertEqual(run("dpkg-deb", "-f", development, "Depends").strip(), "edsc (= 0.1.0)")
+        self.assertEqual(run("dpkg-deb", "-f", development, "Depends").strip(), "edsc (= 0.9.0)")
 
         files = [{line.split(maxsplit=5)[5] for line in run("dpkg-deb", "-c", package).splitlines() if line[0] != "d"}
                  for package in (program, development)]
@@ -223,7 +223,7 @@ class Ways(unittest.TestCase):
         archive = self.folder / "edsc.tar.gz"
         if not archive.exists():
             with tarfile.open(archive, "w:gz", compresslevel=1) as tar:
-                tar.add(self.sources, "edsc-0.1.0", filter=lambda entry: None if "/build" in entry.name else entry)
+                tar.add(self.sources, "edsc-0.9.0", filter=lambda entry: None if "/build" in entry.name else entry)
         return archive
 
     def test_fetch_content(self) -> None:

@@ -77,7 +77,7 @@ inline RunReport every_verdict() {
   run.level = Level::communication;
   run.permissions = Permission::store;
   run.seed = 7;
-  run.version = "0.1.0";
+  run.version = "0.9.0";
   run.cases.push_back(result_of(save_row, Verdict::passed));
   run.cases.back().warnings = {"0800 0000h in place of 0601 0002h"};
   run.cases.push_back(failure(read_row, "0602 0000h, object does not exist", "0609 0011h, sub-index does not exist"));
