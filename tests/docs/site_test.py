@@ -119,7 +119,8 @@ class Site(unittest.TestCase):
                 raise Skipped("chromium is not installed")
         except Skipped as reason:
             self.skipTest(str(reason))
-        files = [self.site / name for name in ("index.html", "tutorial.html", "how-to/storage.html")]
+        files = [self.site / name for name in ("index.html", "tutorial.html", "how-to/storage.html", "application.html",
+                                                 "command-line.html", "changelog.html", "stability.html", "how-to/audit.html")]
         result = subprocess.run(["node", "pages.mjs", CHROMIUM, "site", *files], cwd=WORK, capture_output=True, text=True)
         self.assertEqual(result.returncode, 0, result.stderr)
         for file, found in json.loads(result.stdout).items():
@@ -127,6 +128,7 @@ class Site(unittest.TestCase):
             outside = [one for one in found["requests"] if not one.startswith(self.site.as_uri())]
             self.assertEqual((outside, found["errors"]), ([], []), file)
             self.assertIn("rules.html#pdo-length", found["results"], file)
+            self.assertEqual(found["overflow"], 0, file)
 
 
 if __name__ == "__main__":

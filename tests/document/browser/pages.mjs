@@ -18,19 +18,21 @@ async function audit(first, files, isExpanded) {
   return found;
 }
 
-// Pages of the site of the documents: violations, requests, and the links that its search finds.
+// Pages of the site of the documents: violations, requests, the links that its search finds, and what is wider than the page.
 async function site(first, files) {
   const found = {};
   for (const file of files) {
-    for (const scheme of ['light', 'dark']) {
+    for (const [scheme, width] of [['light', 1300], ['dark', 1300], ['light', 390]]) {
       const page = await first.browser().newPage();
       const seen = watch(page);
+      await page.setViewport({ width, height: 1000 });
       await inScheme(page, scheme);
       await open(page, file);
+      const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
       await type(page, 'pdo-length');
       const links = await page.$$eval('#results a', (all) => all.map((one) => one.getAttribute('href').replace(/^(\.\.?\/)+/, '')));
       const { requests, errors } = structuredClone(seen); // axe itself reads the style sheets
-      found[`${file} ${scheme}`] = { requests, errors, results: links, violations: await violations(page) };
+      found[`${file} ${scheme} ${width}`] = { requests, errors, overflow, results: links, violations: await violations(page) };
       await page.close();
     }
   }

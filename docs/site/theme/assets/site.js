@@ -1,6 +1,20 @@
 // The search, by lunr over the index of MkDocs. It works for files and on a server.
 (() => {
-  for (const block of document.querySelectorAll('pre')) block.tabIndex = 0; // scrolls by keyboard
+  // What is wider than the page scrolls by keyboard.
+  const scrolls = () => {
+    for (const block of document.querySelectorAll('main pre, main table')) {
+      if (block.scrollWidth > block.clientWidth) block.tabIndex = 0;
+      else block.removeAttribute('tabindex');
+    }
+  };
+  addEventListener('resize', scrolls);
+  scrolls();
+  // On a narrow screen the text comes first.
+  const narrow = matchMedia('(max-width: 45rem)');
+  const menu = document.querySelector('.menu');
+  const fold = () => { menu.open = !narrow.matches; };
+  narrow.addEventListener('change', fold);
+  fold();
   const query = document.getElementById('query');
   const results = document.getElementById('results');
   const pages = new Map(searchIndex.docs.map((page) => [page.location, page]));
@@ -10,7 +24,8 @@
       this.ref('location');
       this.field('title', { boost: 10 });
       this.field('text');
-      for (const page of pages.values()) this.add(page);
+      // Pages for users come first.
+      for (const page of pages.values()) this.add(page, { boost: page.location.startsWith('developers/') ? 0.1 : 1 });
     });
     const words = lunr.tokenizer(text).map(String).filter((word) => word);
     return index.query((all) => {
