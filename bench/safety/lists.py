@@ -8,7 +8,7 @@
 
 RUNTIME is runtime/include/canopen. Sources are read as tokens, without comments and literals. A counted loop is a `for` whose
 variable is compared with a bound, is changed only by the header, as is the bound, and moves in one direction. GCC writes the
-graph of calls, without inlining; functions of the standard library and lambdas are left out of the names of a cycle.
+graph of calls, without inlining; functions of the standard library and lambdas are ignored of the names of a cycle.
 """
 
 from __future__ import annotations

@@ -46,8 +46,8 @@ std::vector<std::string> Acceptance::objections() const {
   if (comparison.interrupted) list.emplace_back("the comparison was interrupted");
   for (const IdentityRow& row : identity()) {
     if (row.differs && !is_shown(comparison, *row.number)) {
-      list.push_back(fmt::format("{} {:08X}h differs from that of the EDS, {:08X}h", row.number->name, *row.in_device,
-                                 *row.in_eds));
+      list.push_back(
+          fmt::format("{} {:08X}h differs from the EDS, {:08X}h", row.number->name, *row.in_device, *row.in_eds));
     }
   }
   if (const std::size_t count = comparison.undeclared(); count > 0) {

@@ -341,7 +341,7 @@ bool lacks_predefined_cob_id(const Facts& facts) {
 
 bool is_count(const Facts& facts) { return facts.sub_index() == 0 && states_highest_sub_index(*facts.object); }
 
-/// Sub-index 0 of the EDS is not the highest sub-index described, and that of the device is.
+/// Sub-index 0 of the EDS is not the highest sub-index described, and sub-index 0 of the device is.
 bool contradicts_own_sub_indices(const Facts& facts) {
   return is_count(facts) && written_count(facts.data, *facts.object) != facts.object->highest_sub_index() &&
          device_number(facts) == facts.object->highest_sub_index();
@@ -460,8 +460,8 @@ constexpr Decision decision_rows[] = {
 
     {Kind::sub_index_missing, "required-sub-index", "CiA 301 requires the sub-index in this object", device_wrong, is_required_sub_index,
      "the device has {object}, for which {clause} requires {entry}"},
-    {Kind::sub_index_missing, "eds-count", "sub-index 0 of the EDS is less, and that of the device is equal to it", eds_wrong, exceeds_own_count,
-     "the EDS contradicts itself: it describes {entry}, but its own sub-index 0 is {other}, as that of the device", remove_section},
+    {Kind::sub_index_missing, "eds-count", "sub-index 0 of the EDS is less, and sub-index 0 of the device is equal to it", eds_wrong, exceeds_own_count,
+     "the EDS contradicts itself: it describes {entry}, but its own sub-index 0 is {other}, as in the device", remove_section},
     {Kind::sub_index_missing, "optional-sub-index", "none: the sub-index is optional", undecided, always,
      "no standard requires {entry}; the frames do not show whether the device lacks it or the EDS promises too much", remove_section},
 
@@ -487,10 +487,10 @@ constexpr Decision decision_rows[] = {
     {Kind::length, "free-type", "none: no standard defines the data type", undecided, always,
      "no standard defines the data type of {entry}; the frames do not show which length is intended", set_type_of_size},
 
-    {Kind::access, "standard-access", "CiA 301 allows the access of the EDS and excludes that of the device", device_wrong, standard_has_access_of_eds,
-     "{clause} allows the access of the EDS, {eds}, and not that of the device"},
-    {Kind::access, "eds-access", "CiA 301 excludes the access of the EDS and allows that of the device", eds_wrong, standard_has_access_of_device,
-     "{clause} does not allow the access of the EDS, {eds}, and allows that of the device", set_access},
+    {Kind::access, "standard-access", "CiA 301 allows the access of the EDS and excludes the access of the device", device_wrong, standard_has_access_of_eds,
+     "{clause} allows the access of the EDS, {eds}, and not the access of the device"},
+    {Kind::access, "eds-access", "CiA 301 excludes the access of the EDS and allows the access of the device", eds_wrong, standard_has_access_of_device,
+     "{clause} does not allow the access of the EDS, {eds}, and allows the access of the device", set_access},
     {Kind::access, "free-access", "none: no standard defines the access", undecided, always,
      "no standard defines the access of {entry}; the frames do not show which is intended", set_access},
 
@@ -500,8 +500,8 @@ constexpr Decision decision_rows[] = {
      "the device has the COB-ID of the pre-defined connection set ({clause}) for its node-ID, and the EDS has another", set_predefined_cob_id},
     {Kind::value, "predefined-cob-id", "the EDS has the COB-ID of the pre-defined connection set as read-only, the device has another one", device_wrong, lacks_predefined_cob_id,
      "the EDS has the COB-ID of the pre-defined connection set ({clause}), and the device has another that cannot be written"},
-    {Kind::value, "eds-sub-index-0", "sub-index 0 of the EDS is not the highest sub-index described, and that of the device is", eds_wrong, contradicts_own_sub_indices,
-     "the EDS contradicts itself: sub-index 0 is not the highest sub-index that it describes, and that of the device is", set_value},
+    {Kind::value, "eds-sub-index-0", "sub-index 0 of the EDS is not the highest sub-index described, and sub-index 0 of the device is", eds_wrong, contradicts_own_sub_indices,
+     "the EDS contradicts itself: sub-index 0 is not the highest sub-index that it describes, and sub-index 0 of the device is", set_value},
     {Kind::value, "device-sub-index-0", "sub-index 0 of the device is not its highest sub-index", device_wrong, device_miscounts,
      "the device contradicts itself: its sub-index 0 is not the highest sub-index that it has (CiA 301, 7.4.4)"},
     {Kind::value, "standard-count", "CiA 301 does not define as many sub-indices as the device states", device_wrong, exceeds_standard_count,

@@ -72,7 +72,7 @@ std::string totals_text(const Report& report) {
   const Totals& totals = report.totals;
   const std::string nodes = counted(totals.nodes, "node");
   if (!totals.has_times) {
-    return fmt::format("{} of {}, without times: cycles and delays were not judged", counted(totals.frames, "frame"),
+    return fmt::format("{} of {}, without times: cycles and delays were not checked", counted(totals.frames, "frame"),
                        nodes);
   }
   return fmt::format("{} of {} in {}.{:03} s{}", counted(totals.frames, "frame"), nodes, totals.duration_us / 1'000'000,

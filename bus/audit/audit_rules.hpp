@@ -40,7 +40,7 @@ inline constexpr Rule audit[] = {
     row("heartbeat-late", error, "a heartbeat is later than 1017h", "CiA 301, 7.5.2.20",
         "also a node that becomes silent before the end of the log"),
     row("heartbeat-early", warning, "two heartbeats are closer than 1017h", "CiA 301, 7.5.2.20",
-        "two nodes may have one node-ID; a heartbeat after an NMT command is not judged"),
+        "two nodes may have one node-ID; a heartbeat after an NMT command is not checked"),
     row("heartbeat-consumer", warning, "a heartbeat consumer does not report a missing heartbeat with EMCY 8130h",
         "CiA 301, 7.5.2.19", "1016h of the consumer; it has 100 ms and its EMCY inhibit time to report"),
     row("guarding-toggle", error, "wrong toggle bit in a response to node guarding", "CiA 301, 7.2.8.3.2.1",
@@ -48,11 +48,11 @@ inline constexpr Rule audit[] = {
     row("guarding-response", error, "a node does not respond to node guarding", "CiA 301, 7.2.8.3.2.1",
         "within 100 ms; also a node that is not on the bus any more"),
     row("nmt-command", error, "an unknown NMT command, or one of another length", "CiA 301, 7.2.8.3.1",
-        "the master is at fault"),
+        "the NMT master sent it"),
     row("nmt-state", error, "a node reports an unknown state, or one that does not follow from the NMT commands",
         "CiA 301, 7.3.2.2",
         "leaving Operational after an EMCY is accepted: 1029h; so is a self-starting node: 1F80h; the NMT "
-        "master, 1F80h or --master, need not obey"),
+        "master, 1F80h or --master, is exempt"),
     row("nmt-boot-up", error, "a node does not send a boot-up message after a reset command", "CiA 301, 7.3.2.2.1",
         "within 5 s; not of the NMT master: 1F80h or --master"),
     row("nmt-reset", error, "a node sends a boot-up message without a reset command", "CiA 301, 7.3.2.2.1",
@@ -88,7 +88,7 @@ inline constexpr Rule audit[] = {
     row("lss-response", error, "an LSS response that does not fit the last request", "CiA 305, 3", ""),
     row("lss-mode", error, "an LSS configuration or inquiry command outside of LSS configuration", "CiA 305, 3",
         "the state follows from the last switch state command in the log"),
-    row("lss-command", error, "an unknown LSS command, or one without those that belong before it", "CiA 305, 3",
+    row("lss-command", error, "unknown LSS command, or the preceding parts of an LSS address are missing", "CiA 305, 3",
         "the parts of an LSS address are sent in their order"),
     row("lss-refused", note, "an LSS slave rejects a command", "CiA 305, 3", "each command is a finding"),
     row("lss-timeout", error, "the LSS slave in the configuration state does not respond", "CiA 305, 3",
@@ -106,7 +106,7 @@ inline constexpr Rule audit[] = {
     row("log-time", note, "the times of the log go back", "edsc",
         "by more than 100 ms: the clock was set, or two logs were joined; times before and after it are not compared"),
     row("log-interface", note, "frames of more than one interface", "edsc",
-        "they are judged as those of one bus; --interface selects one"),
+        "they are checked as frames of one bus; --interface selects one"),
 };
 
 }  // namespace rule_table

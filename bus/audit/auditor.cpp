@@ -6,7 +6,7 @@
 namespace edsc::audit {
 
 Auditor::Auditor(const Decoder& decoder, const Limits& limits)
-    : nmt_{[this](std::uint8_t node_id, const Moment& now) { end_stretch(node_id, now); }} {
+    : nmt_{[this](std::uint8_t node_id, const Moment& now) { end_interval(node_id, now); }} {
   audit_.limits = limits;
   for (std::size_t id = 1; id < AuditState::node_ids; ++id) {
     NodeState& node = audit_.nodes[id];
@@ -34,7 +34,7 @@ void Auditor::restart_times(const Moment& now, std::int64_t back_us) {
     return std::pair<std::string, std::string>{"times in order", milliseconds(back_us) + " back"};
   });
   for (std::size_t id = 1; id < AuditState::node_ids; ++id) {
-    end_stretch(static_cast<std::uint8_t>(id), now_);
+    end_interval(static_cast<std::uint8_t>(id), now_);
     NodeState& node = audit_.nodes[id];
     node.settings_since = audit_.times_since;
     node.state.reset();
@@ -42,7 +42,7 @@ void Auditor::restart_times(const Moment& now, std::int64_t back_us) {
   }
 }
 
-void Auditor::judge_interface(const LogLine& line) {
+void Auditor::check_interface(const LogLine& line) {
   if (line.interface.empty() || line.interface == interface_) return;
   if (interface_.empty()) {
     interface_ = line.interface;
@@ -53,10 +53,10 @@ void Auditor::judge_interface(const LogLine& line) {
   });
 }
 
-void Auditor::end_stretch(std::uint8_t node_id, const Moment& now) {
-  heartbeat_.end_stretch(node_id, now, audit_);
-  sync_.end_stretch(node_id, now, audit_);
-  pdo_.end_stretch(node_id, now, audit_);
+void Auditor::end_interval(std::uint8_t node_id, const Moment& now) {
+  heartbeat_.end_interval(node_id, now, audit_);
+  sync_.end_interval(node_id, now, audit_);
+  pdo_.end_interval(node_id, now, audit_);
 }
 
 /// A finished transfer or a boot-up message may have changed what is in force.
@@ -70,7 +70,7 @@ void Auditor::read_settings(const Message& message) {
   // Each write to 1017h starts the heartbeat again.
   const bool restarts = message.download && message.index == 0x1017 && message.step == TransferStep::finished;
   if (settings == node.settings && !restarts) return;
-  end_stretch(message.node_id, now_);
+  end_interval(message.node_id, now_);
   node.settings = std::move(settings);
   node.settings_since = now_.us;
 }
@@ -78,7 +78,7 @@ void Auditor::read_settings(const Message& message) {
 void Auditor::see(const LogLine& line, const Message& message) {
   now_ = moment_of(line);
   ++frames_;
-  judge_interface(line);
+  check_interface(line);
   const SeenMessage seen{line.frame, message, now_};
   bus_.see(seen, audit_);
   heartbeat_.see(seen, audit_);

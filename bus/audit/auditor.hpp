@@ -1,5 +1,5 @@
-/// A verdict on a recorded bus: each frame is judged by the parameters in force of the nodes, with memory that does not
-/// grow with the log.
+/// A verdict on a recorded bus: each frame is checked against the parameters that apply to the nodes, with memory that
+/// does not grow with the log.
 #pragma once
 
 #include <cstdint>
@@ -47,10 +47,10 @@ class Auditor {
   /// The run of `edsc conform` that wrote the log.
   void expect(Provocations provocations) { audit_.findings.expect(std::move(provocations)); }
 
-  /// Judges a frame whose message the decoder has just returned.
+  /// Checks a frame whose message the decoder has just returned.
   void see(const LogLine& line, const Message& message);
 
-  /// Judges what is missing at the end of the log.
+  /// Reports what is still missing at the end of the log.
   void finish();
 
   [[nodiscard]] const Findings& findings() const { return audit_.findings; }
@@ -61,8 +61,8 @@ class Auditor {
  private:
   [[nodiscard]] Moment moment_of(const LogLine& line);
   void restart_times(const Moment& now, std::int64_t back_us);
-  void judge_interface(const LogLine& line);
-  void end_stretch(std::uint8_t node_id, const Moment& now);
+  void check_interface(const LogLine& line);
+  void end_interval(std::uint8_t node_id, const Moment& now);
   void read_settings(const Message& message);
 
   AuditState audit_;

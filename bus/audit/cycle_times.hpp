@@ -38,7 +38,7 @@ struct Cycle {
 class CycleTimes {
  public:
   using Map = std::map<CycleKey, Cycle>;
-  /// Maximum number of cycles, so that the memory does not grow with the log. Further ones are left out.
+  /// Maximum number of cycles, so that the memory does not grow with the log. Further ones are ignored.
   static constexpr std::size_t max_cycles = 4096;
 
   void see(const SeenMessage& seen, const AuditState& audit);

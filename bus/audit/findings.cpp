@@ -4,7 +4,7 @@
 
 namespace edsc::audit {
 
-Finding* Findings::count(const Subject& subject, const Moment& moment, std::int64_t badness) {
+Finding* Findings::count(const Subject& subject, const Moment& moment, std::int64_t excess) {
   if (silenced_.contains(subject.rule)) return nullptr;
   if (provocations_ && moment.has_time && provocations_->count(subject.rule, first_us_ + moment.us)) return nullptr;
   const auto found = findings_.find(subject);
@@ -15,10 +15,10 @@ Finding* Findings::count(const Subject& subject, const Moment& moment, std::int6
   Finding& finding =
       found != findings_.end() ? found->second : findings_.emplace(subject, Finding{subject}).first->second;
   const bool is_first = finding.count++ == 0;
-  if (!is_first && badness <= finding.badness) return nullptr;
+  if (!is_first && excess <= finding.excess) return nullptr;
   if (is_first) finding.first = moment;
   finding.worst = moment;
-  finding.badness = badness;
+  finding.excess = excess;
   return &finding;
 }
 

@@ -38,7 +38,7 @@ struct Finding {
   Subject subject;
   Moment first = {}, worst = {};
   std::size_t count = 0;
-  std::int64_t badness = 0;
+  std::int64_t excess = 0;
   std::string expected = {}, seen = {};  ///< of the worst occurrence
 };
 
@@ -55,10 +55,10 @@ class Findings {
   void begin_at(std::int64_t log_us) { first_us_ = log_us; }
 
   /// Counts an occurrence. `texts` returns what was expected and what was seen; it is called for the first occurrence
-  /// and for those with more badness than all before.
+  /// and for those with more excess than all before.
   template <class Texts>
-  void add(const Subject& subject, const Moment& moment, std::int64_t badness, Texts texts) {
-    Finding* const finding = count(subject, moment, badness);
+  void add(const Subject& subject, const Moment& moment, std::int64_t excess, Texts texts) {
+    Finding* const finding = count(subject, moment, excess);
     if (finding != nullptr) std::tie(finding->expected, finding->seen) = texts();
   }
 
@@ -71,7 +71,7 @@ class Findings {
 
  private:
   /// Null if the texts of an earlier occurrence remain.
-  Finding* count(const Subject& subject, const Moment& moment, std::int64_t badness);
+  Finding* count(const Subject& subject, const Moment& moment, std::int64_t excess);
 
   std::map<Subject, Finding> findings_;
   std::set<RuleId> silenced_;

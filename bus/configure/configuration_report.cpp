@@ -142,7 +142,7 @@ std::string summary_text(const ConfigurationRun& run) {
                         counted(result.values, "value"), result.verified);
   }
   if (!result.failures.empty()) text += fmt::format(", {} failed", result.failures.size());
-  if (run.left_out != 0) text += fmt::format(", {} left out", run.left_out);
+  if (run.left_out != 0) text += fmt::format(", {} skipped", run.left_out);
   if (!run.withheld.empty()) text += fmt::format(", {} not written (node-ID, bit rate)", run.withheld.size());
   if (run.time_written) text += ", 1020h written";
   if (run.stored) text += ", stored";

@@ -14,13 +14,13 @@
 namespace edsc {
 
 struct Configuration {
-  std::vector<ConfigurationValue> values;  ///< except those that are left out
+  std::vector<ConfigurationValue> values;  ///< except those that are ignored
   std::size_t left_out = 0;                ///< `is_left_out`
   std::optional<ConfigurationTime> time;   ///< of 1020h
 };
 
 /// The ParameterValues of a DCF, and its values for 1020h, or else the date of the file. Invalid values are reported
-/// and left out. The result refers to `device`, which is that of `dcf`, with the node-ID.
+/// and ignored. The result refers to `device`, which is that of `dcf`, with the node-ID.
 [[nodiscard]] Configuration configuration_of(const DataSheet& dcf, const Device& device, Diagnostics& diagnostics);
 
 /// The values of a concise DCF, of an entry that it writes twice the last one; nothing if its length does not match its

@@ -36,7 +36,7 @@ struct SavedDcf {
   std::vector<NotSaved> missing;  ///< also the entries that could not be read
 };
 
-/// Reads the DCF back: values that it does not preserve are left out and reported in `missing`. Of a PDO mapping or a
+/// Reads the DCF back: values that it does not preserve are ignored and reported in `missing`. Of a PDO mapping or a
 /// compact form, all values are saved if one differs.
 [[nodiscard]] SavedDcf make_saved_dcf(const SavedDcfInput& input);
 

@@ -15,7 +15,7 @@ class Dut;
 /// What a run may do to the device. Each level includes those before it.
 enum class Level : std::uint8_t {
   read,           ///< reads, and requests that each device must refuse without being written
-  communication,  ///< writes 1000h to 1FFFh and puts back; NMT to this node
+  communication,  ///< writes 1000h to 1FFFh and restores; NMT to this node
   all,            ///< all of `Permission`, and each case but the hostile ones
   hostile,        ///< `all`, and malformed, late, random and repeated frames: only by its name
 };

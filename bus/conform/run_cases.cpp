@@ -109,11 +109,11 @@ CaseResult run_case(const CaseRow& row, Dut& dut, RunReport& report) {
   if (first.verdict != Verdict::failed || !first.rule.text().empty()) return first;
   dut.start_again();
   CaseResult second = run_once(row, dut);
-  second.not_put_back.insert(second.not_put_back.end(), first.not_put_back.begin(), first.not_put_back.end());
+  second.not_restored.insert(second.not_restored.end(), first.not_restored.begin(), first.not_restored.end());
   if (std::string reason = why_lost(second, dut); !reason.empty()) end_run(second, std::move(reason), report);
   if (second.verdict == Verdict::failed) return second;
-  const auto judged = first.judged_frames();
-  second.first_run = FirstRun{std::move(first.expected), std::move(first.got), {judged.begin(), judged.end()}};
+  const auto frames = first.verdict_frames();
+  second.first_run = FirstRun{std::move(first.expected), std::move(first.got), {frames.begin(), frames.end()}};
   if (second.verdict != Verdict::inconclusive) {
     second.reason = fmt::format("failed, and the repetition has the verdict {}", row_of(second.verdict).text);
     second.verdict = Verdict::inconclusive;
@@ -132,7 +132,7 @@ void run_selected(const std::vector<const CaseRow*>& rows, Dut& dut, const RunSe
     } else {
       result = run_case(*rows[i], dut, report);
     }
-    report.not_put_back.insert(report.not_put_back.end(), result.not_put_back.begin(), result.not_put_back.end());
+    report.not_restored.insert(report.not_restored.end(), result.not_restored.begin(), result.not_restored.end());
     report.cases.push_back(std::move(result));
     settings.ended(report.cases.back());
   }
@@ -199,14 +199,14 @@ void run_cases(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const RunSet
     dut.on_record = [&report](const SeenFrame& seen) { report.frames.push_back(seen); };
     if (!find_device(bus, sheet, settings.dut, dut, report)) return;
     try {
-      report.not_put_back = dut.find_state();
+      report.not_restored = dut.find_state();
       run_selected(rows, dut, settings, report);
-      const std::vector<std::string> left = dut.put_back();
-      report.not_put_back.insert(report.not_put_back.end(), left.begin(), left.end());
+      const std::vector<std::string> left = dut.restore_changed();
+      report.not_restored.insert(report.not_restored.end(), left.begin(), left.end());
     } catch (const Interrupted&) {
       report.interrupted = true;
-      const std::vector<std::string> left = dut.put_back();
-      report.not_put_back.insert(report.not_put_back.end(), left.begin(), left.end());
+      const std::vector<std::string> left = dut.restore_changed();
+      report.not_restored.insert(report.not_restored.end(), left.begin(), left.end());
     }
   } catch (const BusLost& problem) {
     report.lost = fmt::format("the bus is lost: {}", problem.what());

@@ -29,7 +29,7 @@ struct RunRefused : std::runtime_error {
 };
 
 /// Runs the cases and fills the report, except for what identifies the EDS, the bus and edsc. An interruption or a lost
-/// bus ends the run; before, the values of the device are put back as far as possible. Throws RunRefused.
+/// bus ends the run; before, the values of the device are restored as far as possible. Throws RunRefused.
 void run_cases(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const RunSettings& settings, RunReport& report);
 
 }  // namespace edsc::conform

@@ -88,7 +88,7 @@ std::size_t RunReport::count(Verdict verdict) const {
 }
 
 bool RunReport::passed() const {
-  return !cases.empty() && count(Verdict::failed) == 0 && unused_deviations.empty() && not_put_back.empty() &&
+  return !cases.empty() && count(Verdict::failed) == 0 && unused_deviations.empty() && not_restored.empty() &&
          !interrupted && lost.empty();
 }
 

@@ -71,15 +71,15 @@ struct CaseResult {
   std::vector<EntryAddress> failed_entries;  ///< all that failed, of a case that tries many; else empty
   std::vector<std::string> warnings;         ///< accepted differences from CiA 301
   std::vector<SeenFrame> frames;
-  std::optional<std::size_t> until_failure;  ///< number of frames before it; the others put values back
+  std::optional<std::size_t> until_failure;  ///< number of frames before it; the others restore values
   std::string deviation;                     ///< the reason in the file of deviations
-  std::vector<std::string> not_put_back;     ///< changed by the case and could not be put back
+  std::vector<std::string> not_restored;     ///< changed by the case and could not be restored
   std::uint64_t began = 0;                   ///< microseconds since the run began
   std::uint64_t took = 0;                    ///< microseconds
   std::uint64_t lag = 0;                     ///< maximum lag of the test itself, microseconds
 
   /// The frames on which the verdict is based.
-  [[nodiscard]] std::span<const SeenFrame> judged_frames() const {
+  [[nodiscard]] std::span<const SeenFrame> verdict_frames() const {
     return std::span{frames}.first(until_failure.value_or(frames.size()));
   }
 };
@@ -120,7 +120,7 @@ struct RunReport {
   std::vector<CaseResult> cases;
   std::vector<SeenFrame> frames;               ///< of the whole run, also between cases
   std::vector<std::string> unused_deviations;  ///< declared, but the case passed: an error
-  std::vector<std::string> not_put_back;       ///< at the end of the run
+  std::vector<std::string> not_restored;       ///< at the end of the run
   bool interrupted = false;
   std::string lost;  ///< why the run ended early: the bus is lost, or the device does not respond
 
@@ -129,7 +129,7 @@ struct RunReport {
   [[nodiscard]] std::vector<Cause> causes() const;
   /// The conditions that did not hold, in the order of their first case.
   [[nodiscard]] std::vector<MissingCondition> missing_conditions() const;
-  /// Cases ran and none failed, no deviation is unused, all values are put back and the run is complete.
+  /// Cases ran and none failed, no deviation is unused, all values are restored and the run is complete.
   [[nodiscard]] bool passed() const;
 };
 

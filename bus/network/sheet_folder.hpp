@@ -28,7 +28,7 @@ struct SheetFolder {
 };
 
 /// Reads the files of a folder and its subfolders, by their extension: .eds, .dcf, .xdd, .xdc, .overlay. The base of an
-/// overlay is left out: the overlay describes the device. A folder that cannot be read is a problem.
+/// overlay is skipped: the overlay describes the device. A folder that cannot be read is a problem.
 [[nodiscard]] SheetFolder read_sheet_folder(const std::string& folder);
 
 /// A file that fits a device.

@@ -68,7 +68,7 @@ inline constexpr CommandRow commands[] = {
     {"Bus", "scan", "find and identify the nodes on a bus", add_scan_options},
     {"Bus", "read", "read objects of a node over SDO", add_read_options},
     {"Bus", "write", "write an object of a node over SDO", add_write_options},
-    {"Bus", "configure", "write the values of a DCF that differ from those of a node", add_configure_options},
+    {"Bus", "configure", "write the values of a DCF that differ from the values of a node", add_configure_options},
     {"Bus", "save", "read the configuration of a node and write it as a DCF", add_save_options},
     {"Bus", "monitor", "show nodes, states, PDO values, rates and load of a bus, live", add_monitor_options},
     {"Bus", "nmt", "start, stop or reset nodes", add_nmt_options},
@@ -80,7 +80,7 @@ inline constexpr CommandRow commands[] = {
     {"Logs", "record", "write the frames of a bus as a candump log", add_record_options},
 #endif
     {"Logs", "decode", "decode the frames of a log", add_decode_options},
-    {"Logs", "audit", "judge a log by the EDS files of its nodes", add_audit_options},
+    {"Logs", "audit", "check a log against the EDS files of its nodes", add_audit_options},
     {"Logs", "plot", "plot values of a log over time, as SVG", add_plot_options},
     {"Shell", "completion", "print the completion for a shell, or the manual page", add_completion_options},
     {"Shell", "help", "show the options and examples of a command", add_help_options},

@@ -112,7 +112,7 @@ void add_completion_options(Command command, int& exit_code) {
   command.add_option("KIND", settings.kind, "what to print")
       .required()
       .one_of({"bash", "zsh", "man", "json", "buses", "nodes", "objects"});
-  command.add_option("FILE", settings.files, "with objects: EDS files (default: those of EDSC_NETWORK)");
+  command.add_option("FILE", settings.files, "with objects: EDS files (default: the EDS files of EDSC_NETWORK)");
 }
 
 }  // namespace edsc

@@ -125,7 +125,7 @@ void write_values(LiveBus& bus, SdoAccess& node, const Settings& settings, const
   if (run.result.done() && settings.store) store_parameters(run, node, settings.sdo.timeout_ms);
   if (restarted) {
     run.problems.push_back(fmt::format(
-        "node {} restarted meanwhile: it may have lost what was written before; configure it again", run.node));
+        "node {} restarted during the configuration: values written before may be lost; configure it again", run.node));
   }
   if (run.succeeded() && settings.start) bus.send_all(canopen::nmt_frame(canopen::NmtCommand::start, node.node()));
 }

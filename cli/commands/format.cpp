@@ -61,7 +61,7 @@ struct Settings {
   ColorOption color;
 };
 
-/// These rules report parts as left out that remain in the text.
+/// These rules report parts as skipped that remain in the text.
 constexpr AnyRule rules_of_what_stays[] = {"unknown-key", "unknown-section"};
 
 /// A data sheet with its lines. Values are not checked here, but by `edsc check`.
@@ -94,7 +94,7 @@ void convert(const Settings& settings, Input& input, Diagnostics& diagnostics) {
   const std::string_view format = sheet.is_dcf ? "DCF" : "EDS";
   for (const NotInEds& lost : not_in_eds) {
     diagnostics.note("xml-element", lost.position,
-                     fmt::format("{} cannot be expressed in the {}; it is left out", lost.what, format));
+                     fmt::format("{} cannot be expressed in the {}; ignored", lost.what, format));
   }
   input.has_values_for_eds = sheet.is_dcf && ends_with_ignoring_case(settings.output, ".eds");
   std::filesystem::path path = to_native(settings.output.empty() ? settings.paths.front() : settings.output);

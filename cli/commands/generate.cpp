@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 constexpr const char* examples = R"(Examples:
   edsc generate eds/drive.eds -o build/generated           headers for namespace drive
   edsc generate drive.eds -o out --name axis1 --node-id 5  a second one, with its node-ID fixed
-  edsc generate vendor.eds -o out --keep-going             leave out what is wrong in the EDS of a purchased device
+  edsc generate vendor.eds -o out --keep-going             skip invalid objects of a purchased device's EDS
   edsc generate drive.eds --node-id 5 --dbc drive.dbc      the PDOs of node 5 for CAN tools, without headers
   edsc generate drive.eds -o out --target c                out/drive/objects.h for programs in C)";
 

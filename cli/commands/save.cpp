@@ -66,7 +66,7 @@ void report(const Settings& settings, const NodeConfiguration& found, const Save
   std::string text = fmt::format("node {}: {} entries read, {} values saved", settings.node,
                                  found.values.size() + found.process_data.size(), saved.values.size());
   if (!settings.output.empty()) text += " to " + settings.output;
-  if (!found.process_data.empty()) text += fmt::format(", {} left out (process data)", found.process_data.size());
+  if (!found.process_data.empty()) text += fmt::format(", {} skipped (process data)", found.process_data.size());
   if (!saved.missing.empty()) text += fmt::format(", {} not saved", saved.missing.size());
   if (settings.output.empty()) {
     print_to_stderr("{}\n", text);

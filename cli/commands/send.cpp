@@ -146,7 +146,7 @@ void add_can_id_option(Command command, Settings& settings) {
     return can_id && !canopen::is_restricted(*can_id) ? can_id : std::nullopt;
   };
   add_parsed(command, "--id", settings.can_id, parse, "a CAN-ID up to 1FFFFFFFh, or is reserved by CiA 301",
-             "default: that of CiA 301");
+             "default: the value of CiA 301");
 }
 
 void add_sync_options(Command command, Settings& settings) {

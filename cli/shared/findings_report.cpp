@@ -44,7 +44,7 @@ void FindingsReport::add(const Diagnostics& diagnostics) {
 void FindingsReport::add_left_out(const std::vector<LeftOut>& left_out) {
   if (format_ == "text") fmt::print("{}", left_out_text(left_out));
   for (const LeftOut& one : left_out) {
-    if (format_ == "sarif") sarif_.notify(one.position, "left out: " + one.what);
+    if (format_ == "sarif") sarif_.notify(one.position, "skipped: " + one.what);
     const Place place = place_of(one.position);
     json_["left_out"].push_back(
         {{"file", place.file}, {"line", place.line}, {"column", place.column}, {"what", one.what}});

@@ -21,7 +21,7 @@ std::string left_out_text(const std::vector<LeftOut>& left_out) {
   for (const LeftOut& one : left_out) {
     const Place place = place_of(one.position);
     text +=
-        fmt::format("{}:{}:{}: left out: {}\n", printable(place.file), place.line, place.column, printable(one.what));
+        fmt::format("{}:{}:{}: skipped: {}\n", printable(place.file), place.line, place.column, printable(one.what));
   }
   return text;
 }

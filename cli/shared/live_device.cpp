@@ -43,7 +43,7 @@ std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uin
   auto loaded = load_device(settings, diagnostics);
   if (loaded->device) {
     if (diagnostics.errors() > 0) {
-      print_to_stderr("edsc: {}: {}; what is wrong is left out (\"edsc check --keep-going\" lists it)\n",
+      print_to_stderr("edsc: {}: {}; invalid objects are skipped (\"edsc check --keep-going\" lists them)\n",
                       printable(path), counted(diagnostics.errors(), "error"));
     }
     return loaded;
@@ -104,7 +104,7 @@ void report_broken_block(const LiveEntry& entry, const SdoOutcome& outcome) {
 
 bool report_live_scales(LiveScales& scales) {
   for (const std::string& one : scales.take_differences()) {
-    print_to_stderr("edsc: {}; units are those of the device\n", one);
+    print_to_stderr("edsc: {}; units are as in the device\n", one);
   }
   const std::string failure = scales.take_failure();
   if (!failure.empty()) print_to_stderr("edsc: {}; values in its unit are raw numbers\n", failure);

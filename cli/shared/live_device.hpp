@@ -12,7 +12,7 @@
 
 namespace edsc {
 
-/// Loads the device of an EDS for this node. What is wrong is left out, and the number of errors is printed.
+/// Loads the device of an EDS for this node. Invalid objects are skipped, and the number of errors is printed.
 /// Ends the command if the file cannot be read as an EDS.
 [[nodiscard]] std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uint8_t node);
 

@@ -15,7 +15,7 @@ namespace edsc {
 namespace {
 
 /// From the name in the options, else from ParameterName, else from the index. A name in the options that C++ reserves
-/// ends with an underscore, which is left out.
+/// ends with an underscore, which is ignored.
 std::string identifier(const Options& options, std::string_view name, std::uint16_t index, std::uint8_t sub_index) {
   if (const auto at = options.names.find({index, sub_index}); at != options.names.end()) {
     return to_snake_case(at->second);

@@ -100,7 +100,7 @@ class MeaningComparison {
     const auto is_left_out = [&](const Entry& entry) {
       return entry.meaning && entry.meaning->quantity && !sources.has(entry.meaning->quantity->source);
     };
-    // Options that are left out may replace the keys of the EDS, which the other version shows.
+    // Options that are ignored may replace the keys of the EDS, which the other version shows.
     if (!is_left_out(before_) && !is_left_out(after_)) compare_quantities("", a.quantity, b.quantity);
     compare_values("", a.values, b.values);
     compare_bits(a, b);

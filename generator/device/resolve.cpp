@@ -98,7 +98,7 @@ class Resolver {
     entries_ += device_.objects.back().entries.size();
     if (entries_ <= max_entries) return true;
     diagnostics_.error("dictionary-size", last.position,
-                       fmt::format("a device can have at most {} entries; everything after {} is left out", max_entries,
+                       fmt::format("a device can have at most {} entries; everything after {} is ignored", max_entries,
                                    index_label(last.index)));
     return false;
   }

@@ -8,7 +8,7 @@
 namespace edsc {
 
 /// Resolves a data sheet, and formulas if the node-ID is known. What cannot be resolved is reported as an error and
-/// left out; each assumption is reported as a warning.
+/// skipped; each assumption is reported as a warning.
 [[nodiscard]] Device resolve_device(const DataSheet& sheet, const Options& options,
                                     const std::optional<std::uint8_t>& node_id, Diagnostics& diagnostics);
 

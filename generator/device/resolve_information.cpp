@@ -132,7 +132,7 @@ class InformationReader {
         information_.connected_modules.push_back(static_cast<std::uint16_t>(*module));
       } else if (module) {
         diagnostics_.warning("modules", slot.field.position,
-                             fmt::format("{} is not the number of a module; it is left out", quote(slot.field.text)));
+                             fmt::format("{} is not the number of a module; ignored", quote(slot.field.text)));
       }
     }
   }
@@ -158,8 +158,7 @@ std::optional<std::uint32_t> read_number(const Field& field, WarningRule rule, D
                         fmt::format("a leading 0 makes {} an octal number: {}", quote(text), *number));
   }
   if (number && *number <= 0xFFFF'FFFF) return static_cast<std::uint32_t>(*number);
-  diagnostics.warning(rule, field.position,
-                      fmt::format("{} is not an UNSIGNED32 value; it is left out", quote(field.text)));
+  diagnostics.warning(rule, field.position, fmt::format("{} is not an UNSIGNED32 value; ignored", quote(field.text)));
   return std::nullopt;
 }
 

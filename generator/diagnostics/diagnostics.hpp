@@ -83,7 +83,7 @@ class Diagnostics {
   /// Adds a finding of another collection.
   void report(Diagnostic diagnostic);
 
-  /// Drops the warnings and notes of a rule; its errors remain, since they cause parts of the device to be left out.
+  /// Drops the warnings and notes of a rule; its errors remain, since they cause parts of the device to be skipped.
   void silence(RuleId rule);
   /// Sets aside the findings to which an allowance applies: warnings and notes, but not errors, as in silence().
   void set_outline(SheetOutline outline) { allowances_.set_outline(std::move(outline)); }

@@ -39,7 +39,7 @@ void add_sources(const MeaningText& texts, Json& view) {
   view["row_place"] = shown(texts.place);
 }
 
-/// Adds rows, and whether any of them has a sentence or a place: a column without one is left out.
+/// Adds rows, and whether any of them has a sentence or a place: a column without one is ignored.
 void add_rows(std::string_view name, Json rows, Json& view) {
   const auto any = [&](auto... keys) {
     return std::ranges::any_of(rows, [&](const Json& row) {

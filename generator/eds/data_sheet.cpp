@@ -70,7 +70,7 @@ class DataSheetReader {
     } else if (name.kind == SectionKind::unknown) {
       diagnostics_.warning(
           "unknown-section", position,
-          fmt::format("unknown section {}; it is left out{}", quote(section.name), similar_section(section.name)));
+          fmt::format("unknown section {}; ignored{}", quote(section.name), similar_section(section.name)));
     } else if (!name.remark.empty()) {
       diagnostics_.warning(
           "section-name", position,

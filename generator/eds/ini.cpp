@@ -121,7 +121,7 @@ class IniReader {
     const std::size_t end = content.find(']');
     if (end == std::string_view::npos) {
       error("unterminated-section", line, content.substr(0, 1),
-            "missing ']'; the entries up to the next section are left out");
+            "missing ']'; the entries up to the next section are ignored");
       target_ = Target::unreadable_section;
       return;
     }
@@ -169,7 +169,7 @@ class IniReader {
   void report_entry_outside(std::string_view line, std::string_view key) {
     if (!found_entry_outside_) {
       error("entry-outside-section", line, key,
-            quote(key) + " is before the first section; all entries up to there are left out");
+            quote(key) + " is before the first section; all entries up to there are ignored");
     }
     found_entry_outside_ = true;
   }

@@ -34,7 +34,7 @@ void check_default(const RuleContext& context, const Entry& entry) {
 
 void check_objects(const RuleContext& context) {
   for (const std::uint16_t index : mandatory_objects) {
-    // What is described and left out is reported where it is described.
+    // What is described and ignored is reported where it is described.
     if (context.device.find(index) != nullptr || context.sheet.find(index) != nullptr) continue;
     context.report("mandatory-object", context.whole_file(),
                    fmt::format("mandatory object {} is missing", index_label(index)), {}, "missing");

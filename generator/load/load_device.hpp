@@ -23,7 +23,7 @@ struct LoadSettings {
   std::optional<std::uint8_t> node_id;
   bool static_mapping = false;  ///< of all PDOs, regardless of the options file
   bool check = true;            ///< run the rules over the device
-  bool keep_going = false;      ///< errors in the EDS become warnings; what is wrong is left out
+  bool keep_going = false;      ///< errors in the EDS become warnings; invalid objects are skipped
   bool needs_reasons = false;   ///< report sections of an overlay without a reason
   std::string profile_path{};   ///< a profile database of the user; empty: none
 };

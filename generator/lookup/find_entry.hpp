@@ -29,7 +29,7 @@ struct FoundEntry {
   [[nodiscard]] bool ok() const { return problem.empty(); }
 };
 
-/// Finds entries of one device, whose objects do not change meanwhile.
+/// Finds entries of one device, whose objects do not change while it exists.
 class EntryFinder {
  public:
   explicit EntryFinder(const NamedDevice& named);

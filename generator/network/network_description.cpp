@@ -178,7 +178,7 @@ class NetworkReader {
     }
     for (const auto& [name, json] : file_.members(*nodes)) {
       if (network.nodes.size() == max_nodes) {
-        return error(*json, fmt::format("a network has at most {} nodes; the others are left out", max_nodes));
+        return error(*json, fmt::format("a network has at most {} nodes; the others are ignored", max_nodes));
       }
       if (!json->is_object()) {
         error(*json, fmt::format("node {} must be an object", quote(name)));

@@ -134,15 +134,15 @@ inline constexpr MemberRow<NodeDescription> node_members[] = {
     {"eds", &NodeDescription::eds, "EDS, XDD or XDC file, relative to the network file"},
     {"dcf", &NodeDescription::dcf, "DCF with the configuration of the node, instead of `eds`"},
     {"options", &NodeDescription::options, "options file of the device; `NAME.options.json` beside the EDS if missing"},
-    {"keep_going", &NodeDescription::keep_going, "errors in the EDS are warnings, and what is wrong is left out"},
+    {"keep_going", &NodeDescription::keep_going, "errors in the EDS are warnings, and invalid objects are skipped"},
     {"master", &NodeDescription::master, "the NMT master; it needs neither `eds` nor `dcf`"},
     {"heartbeat_ms", &NodeDescription::heartbeat_ms, "producer heartbeat time in ms: 1017h", 0, 65535},
     {"heartbeat_timeout_ms", &NodeDescription::heartbeat_timeout_ms,
      "consumer heartbeat time of the master for this node in ms; twice `heartbeat_ms` if missing", 1, 65535},
     {"sdo_timeout_ms", &NodeDescription::sdo_timeout_ms,
-     "time in ms in which the node responds to an SDO request; that of the network if missing", 1, 65535},
+     "time in ms in which the node responds to an SDO request; default: the time of the network", 1, 65535},
     {"serial_number", &NodeDescription::serial_number, "serial number of the device: 1018h:04", 0, 0xFFFF'FFFF},
-    {"set", &NodeDescription::set, "values of entries that differ from those of the file: `{\"6083h\": 2000}`"},
+    {"set", &NodeDescription::set, "values of entries that differ from the file: `{\"6083h\": 2000}`"},
 };
 
 inline constexpr MemberRow<SignalDescription> signal_members[] = {

@@ -23,7 +23,7 @@ struct Signal {
 };
 
 /// Finds nodes and entries. A signal with an unknown name, an entry that cannot be mapped in its direction, or ends of
-/// different data types is reported and left out.
+/// different data types is reported and ignored.
 [[nodiscard]] std::vector<Signal> resolve_signals(const Network& network, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -45,7 +45,7 @@ struct Rule {
   std::string_view title;
   std::string_view source;            ///< clause of a CiA document or standard, or "edsc" for a rule of edsc
   Severity mildest = severity;        ///< if the value can still be read, or the fault is harmless
-  std::string_view explanation = {};  ///< how it is judged, what to look at, or why a change breaks something
+  std::string_view explanation = {};  ///< how it is checked, what to look at, or why a change breaks something
   bool is_fatal = false;              ///< an error stops edsc even with `--keep-going`: no device can be resolved
   Breaks breaks = {};                 ///< of a rule about changes
   bool is_of_names = false;           ///< notes about names of the generated code, for commands that write it

@@ -41,7 +41,7 @@ class ValueReader {
     switch (type_.kind) {
       case DataClass::string: return string();
       case DataClass::domain:
-        warning("domain-value", "a DOMAIN cannot have a value in an EDS; it is left out", "value");
+        warning("domain-value", "a DOMAIN cannot have a value in an EDS; ignored", "value");
         return std::nullopt;
       case DataClass::boolean:
       case DataClass::unsigned_integer:
@@ -167,7 +167,7 @@ class ValueReader {
   std::optional<Value> out_of_range(bool above, std::string_view condition = "") {
     if (limit_ == (above ? Limit::high : Limit::low)) {
       warning("number-range",
-              fmt::format("{} is outside the range of {}{}; this limit has no effect and is left out",
+              fmt::format("{} is outside the range of {}{}; this limit has no effect and is ignored",
                           quote(field_.text), type_.name, condition),
               same_text());
       return std::nullopt;

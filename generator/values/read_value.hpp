@@ -18,7 +18,7 @@ namespace edsc {
 
 enum class Limit : std::uint8_t { low, high };
 
-/// The same for LowLimit or HighLimit. A limit outside the range of the type has no effect and is left out, with a
+/// The same for LowLimit or HighLimit. A limit outside the range of the type has no effect and is ignored, with a
 /// warning.
 [[nodiscard]] std::optional<Value> parse_limit(const Field& field, Limit which, const canopen::DataTypeRow& type,
                                                std::optional<std::uint8_t> node_id, Diagnostics& diagnostics);

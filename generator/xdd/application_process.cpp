@@ -299,7 +299,7 @@ void ApplicationProcess::read_property(pugi::xml_node property, Parameter& param
     return;
   }
   xml_.note_once("xml-element", "property " + std::string{name}, xml_.position(property),
-                 fmt::format("property {} is tool-specific; it is left out, here and elsewhere", quote(name)));
+                 fmt::format("property {} is tool-specific; ignored, here and elsewhere", quote(name)));
 }
 
 /// A single range becomes LowLimit and HighLimit. An EDS cannot express more.
@@ -320,7 +320,7 @@ void ApplicationProcess::read_allowed_values(pugi::xml_node element, Parameter& 
   if (others > 0) {
     xml_.diagnostics().warning(
         "xml-element", xml_.position(element),
-        "allowedValues has more than one range, which limits cannot express; the limits are left out");
+        "allowedValues has more than one range, which limits cannot express; the limits are ignored");
   } else if (range) {
     read_range(range, parameter.entry);
   }

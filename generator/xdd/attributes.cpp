@@ -90,7 +90,7 @@ Field respell(XmlDocument& xml, const Field& field, AttributeForm form) {
 
 void report_unknown_attribute(XmlDocument& xml, pugi::xml_node element, pugi::xml_attribute attribute) {
   xml.note_once("xml-element", std::string{local_name(element)} + "@" + attribute.name(), xml.position(attribute),
-                fmt::format("unknown attribute {} of {}; it is left out, here and elsewhere", quote(attribute.name()),
+                fmt::format("unknown attribute {} of {}; ignored, here and elsewhere", quote(attribute.name()),
                             local_name(element)));
 }
 

@@ -120,9 +120,8 @@ void read_baud_rates(XmlDocument& xml, pugi::xml_node baud_rate, std::vector<Dev
     } else if (rate && *rate <= 0xFFFF) {
       rates.push_back({static_cast<std::uint16_t>(*rate), {"1", value.position, true}});
     } else if (!equal_ignoring_case(value.text, automatic_rate)) {
-      xml.diagnostics().warning(
-          "device-info", value.present ? value.position : xml.position(child),
-          fmt::format("{} is not a baud rate such as 500 Kbps; it is left out", quote(value.text)));
+      xml.diagnostics().warning("device-info", value.present ? value.position : xml.position(child),
+                                fmt::format("{} is not a baud rate such as 500 Kbps; ignored", quote(value.text)));
     }
   });
 }
@@ -171,9 +170,8 @@ std::vector<NumberedField> read_dummy_usage(XmlDocument& xml, pugi::xml_node ele
     if (const auto dummy = read_dummy(xml.value(entry))) {
       dummies.push_back(*dummy);
     } else {
-      xml.diagnostics().warning(
-          "xml-element", xml.position(child),
-          fmt::format("{} is not a dummy such as Dummy0005=1; it is left out", quote(entry.value())));
+      xml.diagnostics().warning("xml-element", xml.position(child),
+                                fmt::format("{} is not a dummy such as Dummy0005=1; ignored", quote(entry.value())));
     }
   });
   return dummies;

@@ -126,8 +126,8 @@ class ObjectListReader {
     finish(object);
     if (parameter.is_disabled) {
       xml_.diagnostics().note("xml-element", object.position,
-                              fmt::format("{:04X}h is disabled by the property CO_disabled; it is left out", *index),
-                              {}, "CO_disabled");
+                              fmt::format("{:04X}h is disabled by the property CO_disabled; ignored", *index), {},
+                              "CO_disabled");
       return;
     }
     const Field sub_number = xml_.value(find_attribute(element, "subNumber"));
@@ -164,7 +164,7 @@ class ObjectListReader {
     const std::optional<std::uint16_t> number = read_hex(field.text, max_digits);
     if (!number) {
       xml_.diagnostics().error("number", field.present ? field.position : xml_.position(element),
-                               fmt::format("{} {} is not a number of up to {} hexadecimal digits; this {} is left out",
+                               fmt::format("{} {} is not a number of up to {} hexadecimal digits; this {} is ignored",
                                            name, quote(field.text), max_digits, local_name(element)));
     }
     return number;

@@ -119,7 +119,7 @@ class XddReader {
     }
     if (other_type_.empty()) other_type_ = type;
     xml_.diagnostics().note("xml-element", xml_.position(body),
-                            fmt::format("profile type {} is not CANopen; it is left out", quote(type)));
+                            fmt::format("profile type {} is not CANopen; ignored", quote(type)));
     return false;
   }
 

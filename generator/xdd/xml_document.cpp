@@ -106,9 +106,9 @@ void XmlDocument::find_root() {
     if (node.type() == pugi::node_doctype) {
       report_doctype(node);
     } else if (is_text(node)) {
-      diagnostics_.warning("xml-syntax", {&source_}, "text outside of the root element is left out");
+      diagnostics_.warning("xml-syntax", {&source_}, "text outside of the root element is ignored");
     } else if (node.type() == pugi::node_element && root_) {
-      diagnostics_.error("xml-syntax", position(node), "a second root element; it is left out");
+      diagnostics_.error("xml-syntax", position(node), "a second root element; ignored");
       return;
     } else if (node.type() == pugi::node_element) {
       root_ = node;

@@ -347,8 +347,8 @@ class Suggestions(CheckTest):
     def test_of_a_key(self) -> None:
         for key, hint in (("CreatedBye", '; did you mean "CreatedBy"?'), ("Colour", "")):
             self.assertEqual(self.messages(("CreatedBy=edsc", f"CreatedBy=edsc\n{key}=edsc", "")),
-                             [f'unknown key "{key}" in section "FileInfo"; it is left out{hint}'])
-        self.assertTrue(any(message.endswith('in section "1000"; it is left out; did you mean "AccessType"?')
+                             [f'unknown key "{key}" in section "FileInfo"; ignored{hint}'])
+        self.assertTrue(any(message.endswith('in section "1000"; ignored; did you mean "AccessType"?')
                             for message in self.messages(("[1000]", "[1000]\nAccesType=ro", ""))))
         self.assertTrue(any(message.endswith('did you mean "SupportedObjects"?')
                             for message in self.messages(("[MandatoryObjects]", "[MandatoryObjects]\nSuportedObjects=3", ""))))
@@ -357,7 +357,7 @@ class Suggestions(CheckTest):
         for section, hint in (("DeviceInfos", '; did you mean "DeviceInfo"?'), ("1003Vale", '; did you mean "1003Value"?'),
                               ("Colours", "")):
             self.assertEqual(self.messages(("[DeviceInfo]", f"[{section}]\n[DeviceInfo]", "")),
-                             [f'unknown section "{section}"; it is left out{hint}'])
+                             [f'unknown section "{section}"; ignored{hint}'])
 
 
 class Sarif(CheckTest):
@@ -420,7 +420,7 @@ class Sarif(CheckTest):
         run = self.sarif(*arguments)["runs"][0]
         notifications = [one for invocation in run["invocations"] for one in invocation["toolExecutionNotifications"]]
         self.assertEqual([(one["message"]["text"], one["locations"][0]["physicalLocation"]["region"]["startLine"]) for one in notifications],
-                         [(f"left out: {one['what']}", one["line"]) for one in findings["left_out"]])
+                         [(f"skipped: {one['what']}", one["line"]) for one in findings["left_out"]])
         self.assertTrue(notifications)
 
     def test_of_a_file_that_cannot_be_read(self) -> None:

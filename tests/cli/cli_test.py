@@ -388,7 +388,7 @@ class Generate(CommandLine):
         result = self.edsc("generate", WRONG, "-o", self.output, "--keep-going", "--name", "wrong")
         self.expect(FINE, result, "warning: ", "[pdo-size]")
         self.assertNotIn("error: ", result.stderr)
-        self.assertIn("TPDO 1, 1800h and 1A00h: left out", (self.output / "wrong/pdo.hpp").read_text())
+        self.assertIn("TPDO 1, 1800h and 1A00h: skipped", (self.output / "wrong/pdo.hpp").read_text())
 
     def test_refusal_names_the_way_to_go_on(self) -> None:
         """Only if it helps: users can correct their options file, and a file without objects leaves nothing to generate."""
@@ -416,7 +416,7 @@ class Generate(CommandLine):
             self.expect(INPUT_HAS_ERRORS, self.edsc("generate", sheet, "-o", self.output), "error: ", "[data-type]", "--keep-going")
             result = self.edsc("generate", sheet, "-o", self.output, "--keep-going")
             self.expect(FINE, result, "warning: ", "[data-type]")
-            self.assertNotIn("left out: ", result.stderr)
+            self.assertNotIn("skipped: ", result.stderr)
             self.assertRegex((self.output / "odd/dictionary.hpp").read_text(), r"odd.*Domain")
             device = json.loads(self.edsc("dump", sheet, "--keep-going").stdout)
             entry = next(row for row in device["objects"] if row["index"] == 0x2100)["entries"][0]
@@ -427,7 +427,7 @@ class Generate(CommandLine):
                            "AccessType=rw\nDefaultValue=5\n[2101]\nParameterName=Even\nObjectType=7\nDataType=5\nAccessType=rw\n"
                            "DefaultValue=x\n")
         result = self.edsc("generate", wrong, "-o", self.output, "--keep-going")
-        said = [line.split("left out: ")[1] for line in result.stderr.splitlines() if "left out: " in line]
+        said = [line.split("skipped: ")[1] for line in result.stderr.splitlines() if "skipped: " in line]
         self.assertEqual(said, ['the DefaultValue of 2100h:00 "Odd"', 'the DefaultValue of 2101h:00 "Even"',
                                 "the default mapping of TPDO 1"])
 
@@ -436,7 +436,7 @@ class Generate(CommandLine):
         start = text.index("DefaultValue=", text.index("[1800sub1]"))
         wrong = self.write("wrong.eds", text[:start] + "DefaultValue=$NODEID+0x580\n" + text[text.index("\n", start) + 1:])
         result = self.edsc("generate", wrong, "-o", self.output, "--keep-going")
-        self.expect(FINE, result, "[cob-id-restricted]", "left out: TPDO 1\n")
+        self.expect(FINE, result, "[cob-id-restricted]", "skipped: TPDO 1\n")
 
     def test_an_error_cannot_be_silenced(self) -> None:
         wrong = self.write("wrong.eds", WRONG.read_text())
@@ -445,14 +445,14 @@ class Generate(CommandLine):
         self.expect(INPUT_HAS_ERRORS, self.edsc("generate", wrong, "-o", self.output), "[pdo-size]")
         self.assertEqual(snapshot(self.output), {})
         self.expect(FINE, self.edsc("generate", wrong, "-o", self.output, "--keep-going"),
-                    "left out: the default mapping of TPDO 1")
+                    "skipped: the default mapping of TPDO 1")
 
     def test_a_silenced_warning_does_not_hide_what_is_left_out(self) -> None:
         sheet = self.write("off.eds", WRONG.read_text().replace("$NODEID+0x180", "$NODEID+0x80000180"))
-        self.expect(FINE, self.edsc("generate", sheet, "-o", self.output), "the PDO is disabled by default and left out")
+        self.expect(FINE, self.edsc("generate", sheet, "-o", self.output), "the PDO is disabled by default and ignored")
         self.write("off.options.json", '{"silence": ["pdo-size"]}')
         result = self.edsc("generate", sheet, "-o", self.output)
-        self.expect(FINE, result, "left out: the default mapping of TPDO 1")
+        self.expect(FINE, result, "skipped: the default mapping of TPDO 1")
         self.assertNotIn("[pdo-size]", result.stderr)
 
     def test_with_static_mapping_keeps_the_mapping_in_flash(self) -> None:
@@ -543,7 +543,7 @@ class Check(CommandLine):
     def test_keep_going_makes_warnings_of_errors(self) -> None:
         self.expect(INPUT_HAS_ERRORS, self.edsc("check", WRONG), "error: ", "[pdo-size]")
         result = self.edsc("check", WRONG, "--keep-going")
-        self.expect(FINE, result, "warning: ", "[pdo-size]", "left out: the default mapping of TPDO 1")
+        self.expect(FINE, result, "warning: ", "[pdo-size]", "skipped: the default mapping of TPDO 1")
         self.assertNotIn("error: ", result.stdout)
         self.expect(INPUT_HAS_ERRORS, self.edsc("check", WRONG, "--keep-going", "--strict"))
 

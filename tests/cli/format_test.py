@@ -257,7 +257,7 @@ class FromXdd(CommandLine):
         for line in ("FileName=drive.eds", "EDSVersion=4.0", "[DummyUsage]", "DataType=0x0007", "DefaultValue=$NODEID+0x180"):
             self.assertIn(line, text)
         self.assertNotIn("ParameterValue", text)
-        self.assertIn("DeviceIdentity/deviceFamily cannot be expressed in the EDS; it is left out", made.stderr)
+        self.assertIn("DeviceIdentity/deviceFamily cannot be expressed in the EDS; ignored", made.stderr)
         self.assertIn("the attribute selfStartingDevice of CANopenGeneralFeatures cannot be expressed", made.stderr)
         self.assertNotIn("parameter/unit", made.stderr)
 

@@ -7,7 +7,7 @@
 Each EDS, DCF and XDD of the corpus, of eds/ and of the tests' fixtures becomes code that is compiled with a node, several of
 them into one program, and `edsc conform --level all` tests it. A failure that the file causes is not a failure of the device:
 the report names a rule, and `edsc check` must report this rule for the file, too. A file that `edsc generate` rejects is
-generated with --keep-going; such a device may reject its own values: its failures and the values that are not put back are
+generated with --keep-going; such a device may reject its own values: its failures and the values that are not restored are
 only counted, but the run must reach its end. Deviations that NAME.deviations.json beside a file declares must fail.
 
 The corpus is in the folder EDSC_CORPUS, or in ../shared/eds-corpus beside the repository; without a corpus only the files of
@@ -171,7 +171,7 @@ class Driver:
         for case in report["cases"]:
             job.verdicts[case["verdict"]] += 1
             if not job.refused:
-                problems += [f"{case['id']} not put back: {text}" for text in case["not_put_back"]]
+                problems += [f"{case['id']} not restored: {text}" for text in case["not_restored"]]
         problems += [f"unused deviation: {text}" for text in report["unused_deviations"]]
         if report["ended_early"]:
             problems.append(report["ended_early"])

@@ -56,7 +56,7 @@ def first_error_in(output: str) -> str:
     return next((line for line in output.splitlines() if ERROR.search(line)), "").rpartition("/")[2]
 
 
-def judge(path: str, exit_code: int, stderr: str) -> Outcome:
+def outcome_of(path: str, exit_code: int, stderr: str) -> Outcome:
     error = first_error_in(stderr)
     problem = ""
     if exit_code not in (0, 1):
@@ -85,7 +85,7 @@ def run_file(job: tuple[Path, str, Path, Path, Path]) -> Outcome:
         result = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=SECONDS)
     except subprocess.TimeoutExpired:
         return Outcome(path, problem=f"not done after {SECONDS} s")
-    outcome = judge(path, result.returncode, result.stderr)
+    outcome = outcome_of(path, result.returncode, result.stderr)
     if outcome.fine and GCC.installed:
         error = compile_headers(output, runtime)
         return Outcome(path, 0, error, "what is generated does not compile" if error else "")

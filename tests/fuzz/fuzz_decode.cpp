@@ -66,7 +66,7 @@ void decode(const Nodes& nodes, std::string_view log, LogOutput output, const Lo
     require(lines <= log.size(), "a log ends");
     out.clear();
     decoder.decode(line, out, complaints);
-    require(out.size() < max_output_per_line, "a frame is told in a line of bearable length");
+    require(out.size() < max_output_per_line, "the line of a frame has a limited length");
     if (output != LogOutput::csv) {
       require(out.empty() || (out.ends_with('\n') && out.find('\n') == out.size() - 1), "a frame is one line");
     }

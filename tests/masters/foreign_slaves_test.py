@@ -176,7 +176,7 @@ def main() -> int:
                 programs.append(npm)
                 assert npm.stdout.readline().strip() == "started"
             except Skipped as reason:
-                print(f"left out: npm's canopen: {reason}")
+                print(f"skipped: npm's canopen: {reason}")
                 with_npm = False
         problems = boot(arguments, address, with_npm)
     finally:

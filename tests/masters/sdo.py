@@ -19,12 +19,12 @@ class Silence(Exception):
 
 
 class SdoClient:
-    def __init__(self, wire: Wire, node_id: int, patience: float = 3.0) -> None:
-        self.wire, self.node_id, self.patience = wire, node_id, patience
+    def __init__(self, wire: Wire, node_id: int, timeout: float = 3.0) -> None:
+        self.wire, self.node_id, self.timeout = wire, node_id, timeout
 
     def ask(self, request: bytes) -> bytes:
         self.wire.send(0x600 + self.node_id, request)
-        answer = self.wire.receive(0x580 + self.node_id, self.patience)
+        answer = self.wire.receive(0x580 + self.node_id, self.timeout)
         if answer is None:
             raise Silence
         if answer[0] == 0x80:

@@ -25,7 +25,7 @@ def without_lists(output: str) -> list[str]:
 
 
 def errors_in(output: str) -> list[list[str]]:
-    """Returns the lines of each error, with its notes and excerpts of sources. A summary of all errors is left out."""
+    """Returns the lines of each error, with its notes and excerpts of sources. A summary of all errors is ignored."""
     errors: list[list[str]] = []
     before: list[str] = []
     for line in output.splitlines():

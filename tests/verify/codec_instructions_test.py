@@ -33,7 +33,7 @@ class Target:
     name: str
     compiler: Compiler
     objdump: str
-    judged: bool
+    checked: bool
 
 
 TARGETS = (
@@ -87,12 +87,12 @@ def main() -> int:
         for target, typed, by_hand in columns:
             row += f"{typed[name]:>14} :{by_hand[name]:>5}  "
             most = by_hand[name] * (1 if name.split("_")[1] in WHOLE_BYTES else MOST_OF_BITS)
-            if target.judged and typed[name] > most:
+            if target.checked and typed[name] > most:
                 problems.append(f"{target.name}: {name} needs {typed[name]} instructions, by hand {by_hand[name]}")
         print(row.rstrip())
     print("\n".join(problems))
     print(f"{len(columns)} targets, {len(problems)} problems (typed : by hand)")
-    return 1 if problems else 0 if any(target.judged for target, *_ in columns) else SKIPPED
+    return 1 if problems else 0 if any(target.checked for target, *_ in columns) else SKIPPED
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ constexpr LengthRow lengths[] = {{Service::sync, 0, 1, "0 or 1 byte"},
                                  {Service::heartbeat, 1, 1, "1 byte"},
                                  {Service::lss, 8, 8, "8 bytes"}};
 
-void judge_length(const SeenMessage& seen, AuditState& audit) {
+void check_length(const SeenMessage& seen, AuditState& audit) {
   const canopen::Frame& frame = seen.frame;
   const auto* const row = std::ranges::find(lengths, seen.message.service, &LengthRow::service);
   if (row == std::end(lengths) || (!frame.remote && frame.size >= row->min && frame.size <= row->max)) return;
@@ -69,7 +69,7 @@ void BusCheck::see(const SeenMessage& seen, AuditState& audit) {
     return;
   }
   count_bits(seen, audit);
-  judge_length(seen, audit);
+  check_length(seen, audit);
   if (message.service == Service::unknown) {
     Subject subject{"can-id-unknown"};
     subject.can_id = seen.frame.id;

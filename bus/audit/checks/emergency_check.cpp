@@ -24,7 +24,7 @@ std::string code_text(const Device* device, std::uint16_t code) {
 
 }  // namespace
 
-void EmergencyCheck::judge_emcy(const SeenMessage& seen, AuditState& audit) {
+void EmergencyCheck::check_emcy(const SeenMessage& seen, AuditState& audit) {
   const Message& message = seen.message;
   NodeState& state = audit.sender(message);
   Node& node = nodes_[message.node_id % AuditState::node_ids];
@@ -70,7 +70,7 @@ void EmergencyCheck::judge_emcy(const SeenMessage& seen, AuditState& audit) {
   if (message.error_code == heartbeat_error) state.last_heartbeat_error_us = seen.at.us;
 }
 
-void EmergencyCheck::judge_register_read(const SeenMessage& seen, AuditState& audit) const {
+void EmergencyCheck::check_register_read(const SeenMessage& seen, AuditState& audit) const {
   const Message& message = seen.message;
   const Node& node = nodes_[message.node_id % AuditState::node_ids];
   const bool is_read = message.step == TransferStep::finished && !message.download && message.index == 0x1001;
@@ -87,8 +87,8 @@ void EmergencyCheck::judge_register_read(const SeenMessage& seen, AuditState& au
 
 void EmergencyCheck::see(const SeenMessage& seen, AuditState& audit) {
   switch (seen.message.service) {
-    case Service::emcy: return judge_emcy(seen, audit);
-    case Service::sdo: return judge_register_read(seen, audit);
+    case Service::emcy: return check_emcy(seen, audit);
+    case Service::sdo: return check_register_read(seen, audit);
     case Service::boot_up: nodes_[seen.message.node_id % AuditState::node_ids] = {}; return;
     default: return;
   }

@@ -23,8 +23,8 @@ class EmergencyCheck {
     std::string open_code;                       ///< with its text
   };
 
-  void judge_emcy(const SeenMessage& seen, AuditState& audit);
-  void judge_register_read(const SeenMessage& seen, AuditState& audit) const;
+  void check_emcy(const SeenMessage& seen, AuditState& audit);
+  void check_register_read(const SeenMessage& seen, AuditState& audit) const;
 
   std::array<Node, AuditState::node_ids> nodes_;
 };

@@ -11,7 +11,7 @@ std::string toggle_text(bool toggle) { return toggle ? "toggle 1" : "toggle 0"; 
 
 }  // namespace
 
-void GuardingCheck::judge_silence(std::uint8_t node_id, const Moment& now, AuditState& audit) {
+void GuardingCheck::check_silence(std::uint8_t node_id, const Moment& now, AuditState& audit) {
   Node& node = nodes_[node_id];
   if (!node.asked_us) return;
   const std::int64_t waited = now.us - *node.asked_us;
@@ -26,7 +26,7 @@ void GuardingCheck::judge_silence(std::uint8_t node_id, const Moment& now, Audit
 void GuardingCheck::request(const SeenMessage& seen, AuditState& audit) {
   const std::uint8_t node_id = seen.message.node_id;
   const NodeState& state = audit.nodes[node_id];
-  judge_silence(node_id, seen.at, audit);
+  check_silence(node_id, seen.at, audit);
   const bool responds =
       state.first_seen && state.state != canopen::NmtState::initialisation && state.settings.heartbeat_us == 0;
   if (seen.at.has_time && responds && !nodes_[node_id].asked_us) nodes_[node_id].asked_us = seen.at.us;
@@ -55,7 +55,7 @@ void GuardingCheck::see(const SeenMessage& seen, AuditState& audit) {
 }
 
 void GuardingCheck::finish(const Moment& end, AuditState& audit) {
-  for (std::size_t id = 1; id < AuditState::node_ids; ++id) judge_silence(static_cast<std::uint8_t>(id), end, audit);
+  for (std::size_t id = 1; id < AuditState::node_ids; ++id) check_silence(static_cast<std::uint8_t>(id), end, audit);
 }
 
 }  // namespace edsc::audit

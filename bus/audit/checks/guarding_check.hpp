@@ -20,7 +20,7 @@ class GuardingCheck {
     std::optional<std::int64_t> asked_us;  ///< the first request without a response
   };
 
-  void judge_silence(std::uint8_t node_id, const Moment& now, AuditState& audit);
+  void check_silence(std::uint8_t node_id, const Moment& now, AuditState& audit);
   void request(const SeenMessage& seen, AuditState& audit);
   void response(const SeenMessage& seen, AuditState& audit);
 

@@ -8,23 +8,23 @@ namespace edsc::audit {
 
 using canopen::NmtState;
 
-void HeartbeatCheck::judge_late(std::uint8_t node_id, const Moment& now, AuditState& audit) {
+void HeartbeatCheck::check_late(std::uint8_t node_id, const Moment& now, AuditState& audit) {
   const NodeState& node = audit.nodes[node_id];
   Producer& producer = producers_[node_id];
   const std::int64_t period = node.settings.heartbeat_us;
   // Between a reset command and the boot-up message a node is silent.
-  if (period == 0 || !node.first_seen || node.state == NmtState::initialisation || producer.judged) return;
+  if (period == 0 || !node.first_seen || node.state == NmtState::initialisation || producer.reported) return;
   const std::int64_t from = std::max(producer.last_us.value_or(node.first_seen->us), node.settings_since);
   const std::int64_t gap = now.us - from;
   if (gap <= period + audit.limits.slack(period)) return;
-  producer.judged = true;
+  producer.reported = true;
   audit.findings.add({"heartbeat-late", node_id, 0x1017}, now, gap, [&] {
     return std::pair{"every " + milliseconds(period), "none for " + milliseconds(gap)};
   });
 }
 
 /// Only of two heartbeats with the same state and without a command in between.
-void HeartbeatCheck::judge_early(const SeenMessage& seen, AuditState& audit) {
+void HeartbeatCheck::check_early(const SeenMessage& seen, AuditState& audit) {
   const std::uint8_t node_id = seen.message.node_id;
   const NodeState& node = audit.nodes[node_id];
   const Producer& producer = producers_[node_id];
@@ -38,7 +38,7 @@ void HeartbeatCheck::judge_early(const SeenMessage& seen, AuditState& audit) {
   });
 }
 
-void HeartbeatCheck::judge_consumers(std::uint8_t producer, const Moment& now, AuditState& audit) {
+void HeartbeatCheck::check_consumers(std::uint8_t producer, const Moment& now, AuditState& audit) {
   if (!producers_[producer].last_us) return;
   const std::int64_t last = *producers_[producer].last_us;
   for (const std::uint8_t id : audit.known) {
@@ -68,22 +68,22 @@ void HeartbeatCheck::see(const SeenMessage& seen, AuditState& audit) {
   const std::uint8_t node_id = seen.message.node_id;
   Producer& producer = producers_[node_id];
   if (service == Service::heartbeat) {
-    judge_late(node_id, seen.at, audit);
-    judge_early(seen, audit);
+    check_late(node_id, seen.at, audit);
+    check_early(seen, audit);
   }
-  judge_consumers(node_id, seen.at, audit);
+  check_consumers(node_id, seen.at, audit);
   producer = {seen.at.us, static_cast<std::uint8_t>(seen.frame.data[0] & 0x7F), false};
 }
 
-void HeartbeatCheck::end_stretch(std::uint8_t node_id, const Moment& now, AuditState& audit) {
-  if (now.has_time) judge_late(node_id, now, audit);
+void HeartbeatCheck::end_interval(std::uint8_t node_id, const Moment& now, AuditState& audit) {
+  if (now.has_time) check_late(node_id, now, audit);
 }
 
 void HeartbeatCheck::finish(const Moment& end, AuditState& audit) {
   if (!end.has_time) return;
   for (std::size_t id = 1; id < AuditState::node_ids; ++id) {
-    judge_late(static_cast<std::uint8_t>(id), end, audit);
-    judge_consumers(static_cast<std::uint8_t>(id), end, audit);
+    check_late(static_cast<std::uint8_t>(id), end, audit);
+    check_consumers(static_cast<std::uint8_t>(id), end, audit);
   }
 }
 

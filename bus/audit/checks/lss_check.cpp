@@ -54,7 +54,7 @@ bool needs_part_before(std::uint8_t command) {
 }  // namespace
 
 /// The slave that has responded in the configuration state must respond there again.
-void LssCheck::judge_silence(const Moment& now, AuditState& audit) {
+void LssCheck::check_silence(const Moment& now, AuditState& audit) {
   if (!asked_us_) return;
   const std::int64_t waited = now.us - *asked_us_;
   asked_us_.reset();
@@ -66,7 +66,7 @@ void LssCheck::judge_silence(const Moment& now, AuditState& audit) {
 }
 
 void LssCheck::request(const SeenMessage& seen, AuditState& audit) {
-  judge_silence(seen.at, audit);
+  check_silence(seen.at, audit);
   const std::uint8_t command = seen.frame.data[0], operand = seen.frame.data[1];
   const std::uint8_t before = last_request_.value_or(command - 1);
   last_request_ = command;
@@ -139,6 +139,6 @@ void LssCheck::see(const SeenMessage& seen, AuditState& audit) {
   return seen.message.from_client ? request(seen, audit) : response(seen, audit);
 }
 
-void LssCheck::finish(const Moment& end, AuditState& audit) { judge_silence(end, audit); }
+void LssCheck::finish(const Moment& end, AuditState& audit) { check_silence(end, audit); }
 
 }  // namespace edsc::audit

@@ -20,7 +20,7 @@ class LssCheck {
 
   void request(const SeenMessage& seen, AuditState& audit);
   void response(const SeenMessage& seen, AuditState& audit);
-  void judge_silence(const Moment& now, AuditState& audit);
+  void check_silence(const Moment& now, AuditState& audit);
 
   std::optional<std::uint8_t> last_request_;
   bool answered_ = false;                        ///< the last request, which only one slave may answer

@@ -37,14 +37,14 @@ bool is_new_node_id(std::uint8_t node_id, const AuditState& audit) {
   return audit.lss_node_id == node_id && std::ranges::any_of(audit.nodes, boots);
 }
 
-/// Whether a command may not apply to the node: the master need not obey its own commands, and a node without an EDS
+/// Whether a command may not apply to the node: the master is exempt from its own commands, and a node without an EDS
 /// may be the master.
 bool may_ignore(std::uint8_t node_id, bool is_for_all, const AuditState& audit) {
   const NodeState& node = audit.nodes[node_id];
   return audit.nmt_master == node_id || node.settings.is_nmt_master || (node.model == nullptr && is_for_all);
 }
 
-void judge_boot_time(std::uint8_t node_id, const NodeState& node, const Moment& now, AuditState& audit) {
+void check_boot_time(std::uint8_t node_id, const NodeState& node, const Moment& now, AuditState& audit) {
   if (node.state != NmtState::initialisation || !node.first_seen || !now.has_time) return;
   if (boots_as_another(node, audit)) return;
   const std::int64_t waited = now.us - node.state_since.us;
@@ -94,7 +94,7 @@ void NmtCheck::boot_up(const SeenMessage& seen, AuditState& audit) {
   const std::uint8_t node_id = seen.message.node_id;
   NodeState& node = audit.nodes[node_id];
   if (node.state == NmtState::initialisation) {
-    judge_boot_time(node_id, node, seen.at, audit);
+    check_boot_time(node_id, node, seen.at, audit);
   } else if (!node.may_boot && !is_new_node_id(node_id, audit) && node.first_seen &&
              (node.state || node.first_seen->us >= audit.times_since)) {
     audit.findings.add({"nmt-reset", node_id}, seen.at, 0, [&] {
@@ -154,7 +154,7 @@ void NmtCheck::see(const SeenMessage& seen, AuditState& audit) {
 
 void NmtCheck::finish(const Moment& end, AuditState& audit) {
   for (std::size_t id = 1; id < audit.nodes.size(); ++id) {
-    judge_boot_time(static_cast<std::uint8_t>(id), audit.nodes[id], end, audit);
+    check_boot_time(static_cast<std::uint8_t>(id), audit.nodes[id], end, audit);
   }
 }
 

@@ -17,7 +17,7 @@ Subject subject_of(AuditRule rule, std::uint8_t node_id, std::size_t number, boo
 
 std::string after_syncs(std::uint32_t count) { return "after " + counted(count, "SYNC"); }
 
-void judge_event_timer(std::uint8_t node_id, std::size_t number, const TpdoSettings& settings, std::int64_t gap,
+void check_event_timer(std::uint8_t node_id, std::size_t number, const TpdoSettings& settings, std::int64_t gap,
                        const Moment& now, AuditState& audit) {
   if (!settings.is_sent || !settings.is_event_driven() || settings.event_us == 0) return;
   const std::int64_t longest = std::max(settings.event_us, settings.inhibit_us);
@@ -27,7 +27,7 @@ void judge_event_timer(std::uint8_t node_id, std::size_t number, const TpdoSetti
   });
 }
 
-void judge_inhibit_time(const SeenMessage& seen, const TpdoSettings& settings, std::int64_t gap, AuditState& audit) {
+void check_inhibit_time(const SeenMessage& seen, const TpdoSettings& settings, std::int64_t gap, AuditState& audit) {
   if (!settings.is_event_driven() || gap >= settings.inhibit_us - audit.limits.slack(settings.inhibit_us)) return;
   const Subject subject = subject_of("pdo-inhibit-time", seen.message.node_id, seen.message.number);
   audit.findings.add(subject, seen.at, -gap, [&] {
@@ -35,7 +35,7 @@ void judge_inhibit_time(const SeenMessage& seen, const TpdoSettings& settings, s
   });
 }
 
-void judge_window(const SeenMessage& seen, const NodeState& node, std::int64_t after_sync, AuditState& audit) {
+void check_window(const SeenMessage& seen, const NodeState& node, std::int64_t after_sync, AuditState& audit) {
   const std::int64_t window = node.settings.sync_window_us;
   if (window == 0 || after_sync <= window + audit.limits.slack(window)) return;
   const Subject subject = subject_of("pdo-sync-window", seen.message.node_id, seen.message.number);
@@ -56,7 +56,7 @@ void PdoCheck::count_sync(const SeenMessage& seen, AuditState& audit) {
 }
 
 /// Length and state; a TPDO must have the length of its mapping, an RPDO may be longer.
-void PdoCheck::judge_frame(const SeenMessage& seen, AuditState& audit) {
+void PdoCheck::check_frame(const SeenMessage& seen, AuditState& audit) {
   const Message& message = seen.message;
   const bool transmit = message.service == Service::tpdo;
   const std::size_t bytes = message.pdo->multiplexed ? classical_can.bytes : bytes_for(message.pdo->bits);
@@ -73,7 +73,7 @@ void PdoCheck::judge_frame(const SeenMessage& seen, AuditState& audit) {
   });
 }
 
-void PdoCheck::judge_tpdo(const SeenMessage& seen, AuditState& audit) {
+void PdoCheck::check_tpdo(const SeenMessage& seen, AuditState& audit) {
   const Message& message = seen.message;
   const NodeState& node = audit.sender(message);
   Node& sent = nodes_[message.node_id % AuditState::node_ids];
@@ -96,10 +96,10 @@ void PdoCheck::judge_tpdo(const SeenMessage& seen, AuditState& audit) {
   }
   if (seen.at.has_time && node.is_operational()) {
     const std::int64_t from = std::max(tpdo.last_us.value_or(0), node.unchanged_since());
-    judge_event_timer(message.node_id, message.number, settings, seen.at.us - from, seen.at, audit);
-    if (tpdo.last_event_us && !requested) judge_inhibit_time(seen, settings, seen.at.us - *tpdo.last_event_us, audit);
+    check_event_timer(message.node_id, message.number, settings, seen.at.us - from, seen.at, audit);
+    if (tpdo.last_event_us && !requested) check_inhibit_time(seen, settings, seen.at.us - *tpdo.last_event_us, audit);
     if (settings.is_synchronous() && sent.sync_us && !requested) {
-      judge_window(seen, node, seen.at.us - *sent.sync_us, audit);
+      check_window(seen, node, seen.at.us - *sent.sync_us, audit);
     }
   }
   if (settings.is_cyclic() && node.is_operational() && tpdo.sent && !requested && !due) {
@@ -130,12 +130,12 @@ void PdoCheck::see(const SeenMessage& seen, AuditState& audit) {
   if (message.service == Service::sync) return count_sync(seen, audit);
   if (message.pdo == nullptr) return;
   if (seen.frame.remote) return request(seen, audit);
-  judge_frame(seen, audit);
-  if (message.service == Service::tpdo) judge_tpdo(seen, audit);
+  check_frame(seen, audit);
+  if (message.service == Service::tpdo) check_tpdo(seen, audit);
 }
 
-/// A TPDO that is not sent any more does not have a frame at which it could be judged.
-void PdoCheck::end_stretch(std::uint8_t node_id, const Moment& now, AuditState& audit) {
+/// A TPDO that is not sent any more does not have a frame at which it could be checked.
+void PdoCheck::end_interval(std::uint8_t node_id, const Moment& now, AuditState& audit) {
   const NodeState& state = audit.nodes[node_id];
   Node& node = nodes_[node_id];
   const std::size_t count = state.is_operational() && state.first_seen ? state.settings.tpdos.size() : 0;
@@ -145,7 +145,7 @@ void PdoCheck::end_stretch(std::uint8_t node_id, const Moment& now, AuditState& 
     const Tpdo& tpdo = node.tpdos[at];
     if (now.has_time) {
       const std::int64_t from = std::max(tpdo.last_us.value_or(0), state.unchanged_since());
-      judge_event_timer(node_id, at + 1, settings, now.us - from, now, audit);
+      check_event_timer(node_id, at + 1, settings, now.us - from, now, audit);
     }
     // The first one may wait for the start value of the SYNC counter.
     const std::uint32_t first = tpdo.sent ? 0 : 1U + state.settings.sync_overflow.value_or(0);
@@ -160,7 +160,7 @@ void PdoCheck::end_stretch(std::uint8_t node_id, const Moment& now, AuditState& 
 }
 
 void PdoCheck::finish(const Moment& end, AuditState& audit) {
-  for (const std::uint8_t id : audit.known) end_stretch(id, end, audit);
+  for (const std::uint8_t id : audit.known) end_interval(id, end, audit);
 }
 
 }  // namespace edsc::audit

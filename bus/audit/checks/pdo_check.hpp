@@ -14,7 +14,7 @@ class PdoCheck {
  public:
   void see(const SeenMessage& seen, AuditState& audit);
   /// The state or the settings of a node change: until then the old ones are in force.
-  void end_stretch(std::uint8_t node_id, const Moment& now, AuditState& audit);
+  void end_interval(std::uint8_t node_id, const Moment& now, AuditState& audit);
   void finish(const Moment& end, AuditState& audit);
 
  private:
@@ -33,8 +33,8 @@ class PdoCheck {
   };
 
   void count_sync(const SeenMessage& seen, AuditState& audit);
-  void judge_frame(const SeenMessage& seen, AuditState& audit);
-  void judge_tpdo(const SeenMessage& seen, AuditState& audit);
+  void check_frame(const SeenMessage& seen, AuditState& audit);
+  void check_tpdo(const SeenMessage& seen, AuditState& audit);
   void request(const SeenMessage& seen, AuditState& audit);
 
   std::array<Node, AuditState::node_ids> nodes_;

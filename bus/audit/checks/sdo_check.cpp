@@ -26,7 +26,7 @@ constexpr FaultRow fault_rows[] = {
     {SdoFault::crc, "sdo-crc", "the CRC of the data"},
 };
 
-void judge_fault(const SeenMessage& seen, AuditState& audit) {
+void check_fault(const SeenMessage& seen, AuditState& audit) {
   const Message& message = seen.message;
   for (const FaultRow& row : fault_rows) {
     if (row.fault != message.fault) continue;
@@ -44,7 +44,7 @@ bool answers(const NodeState& node) {
 }  // namespace
 
 /// Returns whether the server has not answered in time. A node that boots or is stopped does not answer any more.
-bool SdoCheck::judge_answer(Channel& channel, const Moment& now, AuditState& audit) {
+bool SdoCheck::check_answer(Channel& channel, const Moment& now, AuditState& audit) {
   if (!channel.asked_us || !now.has_time) return false;
   const NodeState& node = audit.nodes[channel.node_id];
   const std::int64_t until = !answers(node) && node.state_since.us > *channel.asked_us ? node.state_since.us : now.us;
@@ -62,10 +62,10 @@ void SdoCheck::see(const SeenMessage& seen, AuditState& audit) {
   if (channels_.size() <= message.channel) channels_.resize(message.channel + 1U);
   Channel& channel = channels_[message.channel];
   channel.node_id = message.node_id;
-  const bool late = judge_answer(channel, seen.at, audit);
+  const bool late = check_answer(channel, seen.at, audit);
   // The client gave up after its time, or asks again: the response that was missing is one finding, not two.
   const bool gave_up = late && (message.fault == SdoFault::unfinished || message.fault == SdoFault::command);
-  if (message.fault != SdoFault::none && !gave_up) judge_fault(seen, audit);
+  if (message.fault != SdoFault::none && !gave_up) check_fault(seen, audit);
   if (message.step == TransferStep::aborted) {
     const Subject subject{"sdo-abort", message.node_id, message.index, message.sub_index, message.abort_code};
     audit.findings.add(subject, seen.at, 0, [&] { return Texts{"the end of the transfer", message.text}; });
@@ -77,7 +77,7 @@ void SdoCheck::see(const SeenMessage& seen, AuditState& audit) {
 }
 
 void SdoCheck::finish(const Moment& end, AuditState& audit) {
-  for (Channel& channel : channels_) (void)judge_answer(channel, end, audit);
+  for (Channel& channel : channels_) (void)check_answer(channel, end, audit);
 }
 
 }  // namespace edsc::audit

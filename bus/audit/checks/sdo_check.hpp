@@ -23,7 +23,7 @@ class SdoCheck {
     std::uint8_t sub_index = 0;
   };
 
-  bool judge_answer(Channel& channel, const Moment& now, AuditState& audit);
+  bool check_answer(Channel& channel, const Moment& now, AuditState& audit);
 
   std::vector<Channel> channels_;  ///< by Message::channel
 };

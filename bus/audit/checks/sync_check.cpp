@@ -31,7 +31,7 @@ Subject subject_of(AuditRule rule, std::uint8_t producer, std::uint16_t index, s
 }
 
 /// A producer sends in Pre-operational and Operational, the first SYNC within a period.
-void judge_silence(std::uint8_t producer, std::int64_t last_us, const Moment& now, AuditState& audit) {
+void check_silence(std::uint8_t producer, std::int64_t last_us, const Moment& now, AuditState& audit) {
   const NodeState& node = audit.nodes[producer];
   const std::int64_t period = node.settings.sync_period_us;
   const bool sends = node.state == NmtState::pre_operational || node.state == NmtState::operational;
@@ -46,11 +46,11 @@ void judge_silence(std::uint8_t producer, std::int64_t last_us, const Moment& no
 
 }  // namespace
 
-void SyncCheck::judge_period(std::uint32_t id, const Sync& sync, const Moment& now, AuditState& audit) {
+void SyncCheck::check_period(std::uint32_t id, const Sync& sync, const Moment& now, AuditState& audit) {
   const NodeState& node = audit.nodes[sync.producer];
   const std::int64_t period = node.settings.sync_period_us;
   if (sync.producer == 0 || period == 0 || !now.has_time || node.state == NmtState::stopped) return;
-  if (sync.last_us.value_or(-1) < node.unchanged_since()) return judge_silence(sync.producer, 0, now, audit);
+  if (sync.last_us.value_or(-1) < node.unchanged_since()) return check_silence(sync.producer, 0, now, audit);
   const std::int64_t gap = now.us - *sync.last_us;
   const std::int64_t error = std::abs(gap - period);
   if (error <= audit.limits.slack(period)) return;
@@ -59,7 +59,7 @@ void SyncCheck::judge_period(std::uint32_t id, const Sync& sync, const Moment& n
   });
 }
 
-void SyncCheck::judge_counter(std::uint32_t id, const Sync& sync, const SeenMessage& seen, AuditState& audit) {
+void SyncCheck::check_counter(std::uint32_t id, const Sync& sync, const SeenMessage& seen, AuditState& audit) {
   const NodeState& node = audit.nodes[sync.producer];
   if (sync.producer == 0) return;
   const std::uint8_t overflow = node.settings.sync_overflow.value_or(0);
@@ -84,23 +84,23 @@ void SyncCheck::see(const SeenMessage& seen, AuditState& audit) {
   const std::uint32_t id = canopen::cob_id_of(seen.frame);
   Sync& sync = syncs_[id];
   sync.producer = find_producer(id, seen.at, audit);
-  judge_period(id, sync, seen.at, audit);
-  judge_counter(id, sync, seen, audit);
+  check_period(id, sync, seen.at, audit);
+  check_counter(id, sync, seen, audit);
   if (seen.at.has_time) sync.last_us = seen.at.us;
   sync.counter.reset();
   if (seen.message.counter >= 0) sync.counter = static_cast<std::uint8_t>(seen.message.counter);
 }
 
-void SyncCheck::end_stretch(std::uint8_t node_id, const Moment& now, AuditState& audit) {
+void SyncCheck::end_interval(std::uint8_t node_id, const Moment& now, AuditState& audit) {
   const NodeSettings& settings = audit.nodes[node_id].settings;
   if (!settings.is_sync_producer) return;
   const auto found = syncs_.find(settings.sync_id);
   const std::int64_t last_us = found == syncs_.end() ? 0 : found->second.last_us.value_or(0);
-  judge_silence(node_id, last_us, now, audit);
+  check_silence(node_id, last_us, now, audit);
 }
 
 void SyncCheck::finish(const Moment& end, AuditState& audit) {
-  for (const std::uint8_t id : audit.known) end_stretch(id, end, audit);
+  for (const std::uint8_t id : audit.known) end_interval(id, end, audit);
 }
 
 }  // namespace edsc::audit

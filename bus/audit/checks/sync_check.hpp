@@ -13,7 +13,7 @@ class SyncCheck {
  public:
   void see(const SeenMessage& seen, AuditState& audit);
   /// The state or the settings of a node change: until then the old ones are in force.
-  void end_stretch(std::uint8_t node_id, const Moment& now, AuditState& audit);
+  void end_interval(std::uint8_t node_id, const Moment& now, AuditState& audit);
   void finish(const Moment& end, AuditState& audit);
 
  private:
@@ -23,8 +23,8 @@ class SyncCheck {
     std::uint8_t producer = 0;  ///< node-ID; 0: not known
   };
 
-  void judge_period(std::uint32_t id, const Sync& sync, const Moment& now, AuditState& audit);
-  void judge_counter(std::uint32_t id, const Sync& sync, const SeenMessage& seen, AuditState& audit);
+  void check_period(std::uint32_t id, const Sync& sync, const Moment& now, AuditState& audit);
+  void check_counter(std::uint32_t id, const Sync& sync, const SeenMessage& seen, AuditState& audit);
 
   std::map<std::uint32_t, Sync> syncs_;  ///< by COB-ID
 };

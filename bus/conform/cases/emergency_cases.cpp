@@ -216,7 +216,7 @@ constexpr CaseRow emergency_rows[] = {
      Permission::none, read_history},
     {"5.4", "An error sends one EMCY with its code", "CiA 301, 7.2.7.1 and 7.2.7.3", Level::communication,
      Permission::none, force_message, Condition::state | Condition::stimulus},
-    {"5.5", "The error register 1001h equals that of the last EMCY", "CiA 301, 7.2.7.3.1 and 7.5.2.2",
+    {"5.5", "The error register 1001h equals the error register of the last EMCY", "CiA 301, 7.2.7.3.1 and 7.5.2.2",
      Level::communication, Permission::none, register_follows, Condition::state | Condition::stimulus, "5.4"},
     {"5.6", "The error history 1003h begins with the error of the last EMCY", "CiA 301, 7.5.2.4", Level::communication,
      Permission::none, history_follows, Condition::state | Condition::stimulus, "5.4"},

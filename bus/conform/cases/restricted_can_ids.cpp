@@ -74,7 +74,7 @@ void restricted_can_ids(Dut& dut) {
     if (!read.done()) continue;
     const std::uint32_t present = cob_id_in(read);
     if (!canopen::is_legal({entry.index, entry.sub_index, present})) {
-      dut.warn(fmt::format("{} is {:08X}h, which could not be put back; not tested",
+      dut.warn(fmt::format("{} is {:08X}h, which could not be restored; not tested",
                            label(entry.index, entry.sub_index), present));
       continue;
     }

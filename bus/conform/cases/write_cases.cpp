@@ -44,7 +44,7 @@ bool is_written(const Dut& dut, const LiveEntry& entry) {
   if (!is_writable(entry) || entry.type == nullptr || is_domain(entry)) return false;
   if (is_of_wrong_pdo(dut.sheet(), entry)) return false;
   if (is_left_out(entry) || sets_node_id_or_bit_rate(entry)) return false;
-  // The value of a write-only entry cannot be put back.
+  // The value of a write-only entry cannot be restored.
   return (flags_of(dut.sheet(), entry) & refuse_write_flag) == 0 && (is_readable(entry) || dut.simulated());
 }
 

@@ -592,7 +592,7 @@ std::optional<canopen::NodeId> Dut::other_boot_up() const {
 
 void Dut::start_again() {
   if (settings_.level == Level::read) return;
-  // A reset node also resets the application. Without the permission to write it, it could not be put back.
+  // A reset node also resets the application. Without the permission to write it, it could not be restored.
   nmt(allowed(Permission::application) ? NmtCommand::reset_node : NmtCommand::reset_communication);
   const Mark since = mark();
   (void)wait_for(boot_up(), milliseconds{2000}, since);
@@ -607,7 +607,7 @@ void Dut::end_case(CaseResult& result) {
   result.warnings = std::move(warnings_);
   result.frames = frames();
   result.until_failure = failed_;
-  result.not_put_back = put_back();
+  result.not_restored = restore_changed();
 }
 
 std::vector<std::string> Dut::find_state() {
@@ -617,15 +617,15 @@ std::vector<std::string> Dut::find_state() {
   } catch (const CaseEnd&) {
     // 1017h cannot be used as the EDS says: a case will report it.
   }
-  return put_back();
+  return restore_changed();
 }
 
-std::vector<std::string> Dut::put_back() {
+std::vector<std::string> Dut::restore_changed() {
   const Uninterrupted uninterrupted;
   sdo_.set_timeout(std::max(settings_.sdo.timeout_ms, restore_timeout_ms));
   if (transfer_open_) end_transfer();
   if (state_changed_) enter(canopen::NmtState::pre_operational);
-  std::vector<std::string> left = found_values_.put_back(allowed(Permission::application));
+  std::vector<std::string> left = found_values_.restore_changed(allowed(Permission::application));
   if (state_changed_ && found_state_ && *found_state_ != canopen::NmtState::pre_operational) enter(*found_state_);
   state_changed_ = false;
   sdo_.set_timeout(settings_.sdo.timeout_ms);

@@ -107,7 +107,7 @@ class Dut : public CaseFrames {
   // ---- SDO ----
 
   /// Reads or writes an entry through the default SDO: expedited if four bytes suffice, else segmented or in blocks.
-  /// A write first reads the present value, which is put back when the case ends.
+  /// A write first reads the present value, which is restored when the case ends.
   [[nodiscard]] SdoOutcome upload(std::uint16_t index, std::uint8_t sub_index = 0,
                                   SdoTransfer transfer = SdoTransfer::segmented);
   [[nodiscard]] SdoOutcome download(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value,
@@ -123,9 +123,9 @@ class Dut : public CaseFrames {
   void write(std::uint16_t index, std::uint8_t sub_index, std::uint64_t number);
   /// Writes without reading the present value: "save", "load", and what a case undoes itself.
   [[nodiscard]] SdoOutcome command(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value);
-  /// Writes the values in the sequence of CiA 301 (`order_writes`). They are put back when the case ends.
+  /// Writes the values in the sequence of CiA 301 (`order_writes`). They are restored when the case ends.
   [[nodiscard]] ConfigurationResult write_in_order(const std::vector<ConfigurationValue>& values);
-  /// Reads an entry that the case then writes frame by frame. The value is put back when the case ends.
+  /// Reads an entry that the case then writes frame by frame. The value is restored when the case ends.
   void remember(std::uint16_t index, std::uint8_t sub_index) { found_values_.remember(index, sub_index); }
 
   /// Sends one request to the default SDO server and returns its next frame; std::nullopt after the timeout. A transfer
@@ -212,7 +212,7 @@ class Dut : public CaseFrames {
 
   // ---- for the runner ----
 
-  /// The result names what could not be put back. Throws Interrupted, BusLost.
+  /// The result names what could not be restored. Throws Interrupted, BusLost.
   void begin_case(const CaseRow& row);
   /// After a failure: the first condition of the case that does not hold. Call it before `end_case`.
   [[nodiscard]] std::optional<Unmet> unmet_condition(const CaseRow& row);
@@ -230,9 +230,9 @@ class Dut : public CaseFrames {
   /// without a boot-up message.
   void start_again();
   void end_case(CaseResult& result);
-  /// Puts back what was changed and not yet put back: at an interruption, and at the end. Returns what could not be.
-  std::vector<std::string> put_back();
-  /// Finds the NMT state of the device before the run, if error control reports it. Returns what could not be put back.
+  /// Restores what was changed and not yet restored: at an interruption, and at the end. Returns what could not be.
+  std::vector<std::string> restore_changed();
+  /// Finds the NMT state of the device before the run, if error control reports it. Returns what could not be restored.
   [[nodiscard]] std::vector<std::string> find_state();
 
  private:

@@ -99,7 +99,7 @@ std::vector<std::string> FoundValues::restore(const Values& wanted, bool applica
   return left;
 }
 
-std::vector<std::string> FoundValues::put_back(bool application) {
+std::vector<std::string> FoundValues::restore_changed(bool application) {
   Values wanted = changed_;
   if (was_reset_) {
     for (const auto& [key, bytes] : configuration_) wanted[key] = bytes;

@@ -1,4 +1,4 @@
-/// The values of the device before a case, and how they are put back.
+/// The values of the device before a case, and how they are restored.
 #pragma once
 
 #include <cstdint>
@@ -27,10 +27,10 @@ class FoundValues {
   void remember(std::uint16_t index, std::uint8_t sub_index);
   /// Call before each reset.
   void remember_before_reset();
-  /// Puts back what was written or reset since the last call. Returns what could not be put back: without
+  /// Restores what was written or reset since the last call. Returns what could not be restored: without
   /// `application`, also what a reset has changed at 2000h and above.
-  [[nodiscard]] std::vector<std::string> put_back(bool application);
-  /// Writes the values that differ now. Returns those that cannot be written; `application` as in `put_back`.
+  [[nodiscard]] std::vector<std::string> restore_changed(bool application);
+  /// Writes the values that differ now. Returns those that cannot be written; `application` as in `restore_changed`.
   [[nodiscard]] std::vector<std::string> restore(const Values& values, bool application);
 
  private:
@@ -40,7 +40,7 @@ class FoundValues {
   const Device& sheet_;
   Values changed_;            ///< values before this case
   Values configuration_;      ///< of the whole device, before the first reset
-  std::set<Key> unreadable_;  ///< written, but not readable: not put back
+  std::set<Key> unreadable_;  ///< written, but not readable: not restored
   bool configuration_known_ = false;
   bool was_reset_ = false;
 };

@@ -19,7 +19,7 @@ void decode_frames(std::span<const SeenFrame> frames, std::uint8_t node, const D
                    const std::function<void(const SeenFrame&, const Message&)>& use);
 
 /// The last of the frames, one per line, without line end: `12.003481 TX 705 05    HEART    node 5  operational`. If
-/// earlier frames are left out, the first line has their number.
+/// earlier frames are ignored, the first line has their number.
 [[nodiscard]] std::vector<std::string> frame_lines(std::span<const SeenFrame> frames, std::uint8_t node,
                                                    const Device& sheet, std::size_t max_frames);
 

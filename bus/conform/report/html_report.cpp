@@ -88,7 +88,7 @@ json case_view(const CaseResult& result, const RunReport& run, const Device& she
   const bool ran = result.verdict != Verdict::not_run;
   json tables = json::array();
   if (result.first_run) add_frames(tables, "first run", result.first_run->frames, run, sheet);
-  add_frames(tables, result.first_run ? "repetition" : "frames", result.judged_frames(), run, sheet);
+  add_frames(tables, result.first_run ? "repetition" : "frames", result.verdict_frames(), run, sheet);
   return {{"id", row.id},
           {"title", row.title},
           {"verdict", row_of(result.verdict).name},
@@ -101,7 +101,7 @@ json case_view(const CaseResult& result, const RunReport& run, const Device& she
           {"got", shown(result.got)},
           {"rule", shown(std::string{result.rule.text()})},
           {"warnings", result.warnings},
-          {"not_put_back", result.not_put_back},
+          {"not_restored", result.not_restored},
           {"lag", duration_text(result.lag)},
           {"repeat", repeat_command(run, row)},
           {"first_run", shown(result.first_run ? first_run_text(*result.first_run) : "")},

@@ -93,13 +93,13 @@ json case_object(const CaseResult& result, const RunReport& run, const Device& s
           {"deviation", text_or_null(result.deviation)},
           {"warnings", result.warnings},
           {"provokes", provoked_by(row.id)},
-          {"not_put_back", result.not_put_back},
+          {"not_restored", result.not_restored},
           {"began_us", result.began},
           {"took_us", result.took},
           {"lag_us", result.lag},
           {"repeat", repeat_command(run, row)},
           {"first_run", first_run_object(result, run, sheet)},
-          {"frames", frame_objects(result.judged_frames(), run.node, sheet)}};
+          {"frames", frame_objects(result.verdict_frames(), run.node, sheet)}};
 }
 
 /// Null for a device on a bus.
@@ -157,7 +157,7 @@ json run_object(const RunReport& run, const Device& sheet) {
                  {"interrupted", run.interrupted},
                  {"ended_early", text_or_null(run.lost)},
                  {"unused_deviations", run.unused_deviations},
-                 {"not_put_back", run.not_put_back},
+                 {"not_restored", run.not_restored},
                  {"verdicts", std::move(totals)},
                  {"causes", causes_array(run)},
                  {"missing_conditions", missing_conditions_array(run)},

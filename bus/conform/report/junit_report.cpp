@@ -38,7 +38,7 @@ void set_lines(pugi::xml_node node, const std::vector<std::string>& lines) {
 void add_remarks(pugi::xml_node test, const CaseResult& result, const RunReport& run, const Device& sheet) {
   std::vector<std::string> lines;
   for (const std::string& warning : result.warnings) lines.push_back("warning: " + warning);
-  for (const std::string& left : result.not_put_back) lines.push_back("not put back: " + left);
+  for (const std::string& left : result.not_restored) lines.push_back("not restored: " + left);
   if (result.first_run) {
     lines.push_back("first run: " + first_run_text(*result.first_run));
     const std::vector<std::string> frames = frame_lines(result.first_run->frames, run.node, sheet, max_junit_frames);
@@ -53,7 +53,7 @@ void add_failure(pugi::xml_node test, const CaseResult& result, const RunReport&
   set(failure, "type", result.row->clause);
   std::vector<std::string> lines = {fmt::format("clause: {}", result.row->clause),
                                     fmt::format("expected: {}", result.expected), fmt::format("got: {}", result.got)};
-  const std::vector<std::string> frames = frame_lines(result.judged_frames(), run.node, sheet, max_junit_frames);
+  const std::vector<std::string> frames = frame_lines(result.verdict_frames(), run.node, sheet, max_junit_frames);
   lines.insert(lines.end(), frames.begin(), frames.end());
   lines.push_back(fmt::format("repeat with: {}", repeat_command(run, *result.row)));
   set_lines(failure, lines);
@@ -157,7 +157,7 @@ struct RunCheck {
 };
 
 std::vector<RunCheck> run_checks(const RunReport& run) {
-  std::vector<RunCheck> checks = {{"all changed values are put back", run.not_put_back},
+  std::vector<RunCheck> checks = {{"all changed values are restored", run.not_restored},
                                   {"each declared deviation occurs", run.unused_deviations},
                                   {"the run is complete", {}}};
   if (run.interrupted) checks.back().problems.emplace_back("interrupted");

@@ -10,7 +10,7 @@ namespace edsc::conform {
 
 /// One testsuite per area. Cases that are not applicable, deviate as declared, are inconclusive or were not run are
 /// skipped tests with the reason. The testsuite "run" has the failures of the run as a whole: an unused deviation,
-/// values that could not be put back, an early end.
+/// values that could not be restored, an early end.
 [[nodiscard]] std::string junit_report(const RunReport& run, const Device& sheet);
 
 }  // namespace edsc::conform

@@ -56,7 +56,7 @@ std::vector<std::string> run_problems(const RunReport& run) {
   std::vector<std::string> problems;
   for (const std::string& unused : run.unused_deviations)
     problems.push_back(fmt::format("unused deviation: {}", unused));
-  for (const std::string& left : run.not_put_back) problems.push_back(fmt::format("not put back: {}", left));
+  for (const std::string& left : run.not_restored) problems.push_back(fmt::format("not restored: {}", left));
   if (run.interrupted) problems.emplace_back("the run was interrupted");
   if (!run.lost.empty()) problems.push_back(fmt::format("the run ended early: {}", run.lost));
   return problems;

@@ -40,7 +40,7 @@ namespace edsc::conform {
 /// the program, without LSS, storage`. Empty for a device on a bus.
 [[nodiscard]] std::string composition_text(const RunReport& run);
 
-/// Other reasons for which a run does not pass: unused deviations, values that could not be put back, an early end.
+/// Other reasons for which a run does not pass: unused deviations, values that could not be restored, an early end.
 [[nodiscard]] std::vector<std::string> run_problems(const RunReport& run);
 
 /// The number of cases of an area by verdict, in the order of `verdicts`.

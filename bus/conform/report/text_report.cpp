@@ -96,7 +96,7 @@ std::string TextReport::of(const CaseResult& result) const {
   out += '\n';
   append_detail(out, "reason", result.deviation);
   for (const std::string& warning : result.warnings) append_detail(out, "warning", warning);
-  for (const std::string& left : result.not_put_back) append_detail(out, "not put back", left);
+  for (const std::string& left : result.not_restored) append_detail(out, "not restored", left);
   if (result.first_run) append_frames(out, "first run", first_run_text(*result.first_run), result.first_run->frames);
   if (result.verdict != Verdict::failed) return out;
   append_detail(out, "clause", row.clause);
@@ -104,7 +104,7 @@ std::string TextReport::of(const CaseResult& result) const {
   append_detail(out, "got", result.got);
   if (!result.rule.text().empty())
     append_detail(out, "EDS", fmt::format("rule {} of edsc check reports it", result.rule.text()));
-  append_frames(out, "", "", result.judged_frames());
+  append_frames(out, "", "", result.verdict_frames());
   append_detail(out, "repeat with", repeat_command(run_, row));
   return out;
 }

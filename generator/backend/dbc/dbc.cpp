@@ -100,7 +100,7 @@ class DbcWriter {
         case LeftOut::disabled: return "disabled by default";
         case LeftOut::of_another_pdo: break;
       }
-      return fmt::format("CAN-ID {:03X}h is that of another PDO", can_id);
+      return fmt::format("CAN-ID {:03X}h is used by another PDO", can_id);
     }
   };
 

@@ -10,7 +10,7 @@ namespace edsc {
 
 struct Dbc {
   std::string text;                ///< in code page 1252, which tools expect; other characters are `?`
-  std::vector<std::string> notes;  ///< PDOs that are left out, and why: `TPDO 3 to TPDO 8: disabled by default`
+  std::vector<std::string> notes;  ///< PDOs that are ignored, and why: `TPDO 3 to TPDO 8: disabled by default`
 };
 
 /// A device of a network, which has a node-ID and the identifiers of its objects.
@@ -29,7 +29,7 @@ struct DbcNode {
 /// SystemSignalLongSymbol. GenMsgCycleTime is the event timer of a TPDO with transmission type 254 or 255, in
 /// milliseconds.
 ///
-/// MPDOs and PDOs with an invalid mapping are left out, and those whose CAN-ID another PDO of the device already has.
+/// MPDOs and PDOs with an invalid mapping are ignored, and those whose CAN-ID another PDO of the device already has.
 [[nodiscard]] Dbc dbc_of(const Device& device, const Identifiers& names);
 
 /// The same for several devices. The RPDOs with the CAN-ID of a TPDO are not messages; their nodes receive the signals

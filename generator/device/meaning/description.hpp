@@ -40,7 +40,7 @@ struct MeaningDescriptions {
   std::vector<ErrorCodeName> error_codes;   ///< ascending by code
 };
 
-/// Reads the value of "meaning". Reports each fault; what is wrong is left out. `path` is the name of the member for
+/// Reads the value of "meaning". Reports each fault; invalid objects are skipped. `path` is the name of the member for
 /// the messages. Ranges of objects are allowed in profiles only.
 [[nodiscard]] MeaningDescriptions read_meaning(const nlohmann::json& value, std::string_view path, MeaningSource source,
                                                OptionFile& file);

@@ -161,7 +161,7 @@ class ScaleFormula {
     return upper == 1 ? Rational::of(a, b) : Rational::of(b, a);
   }
 
-  /// The same for objects that a drive can leave out.
+  /// The same for objects that a drive can omit.
   std::optional<Rational> ratio_or_one(std::uint16_t index, std::uint8_t upper) {
     return has(index) ? ratio(index, upper) : Rational{1};
   }

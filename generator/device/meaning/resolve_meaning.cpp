@@ -269,7 +269,7 @@ class Resolver {
                             std::string_view in_eds) {
       if (!contradictions_.insert(position).second) return;
       diagnostics_.warning("meaning-contradicts-eds", position,
-                           fmt::format("{} {} of {} is not that of the EDS, {}; the options are used", key,
+                           fmt::format("{} {} of {} differs from the EDS, {}; using the options", key,
                                        quote(in_options), entry_label(entry.index, entry.sub_index), quote(in_eds)),
                            {{entry.position, "in the EDS"}});
     };
@@ -420,7 +420,7 @@ std::optional<Enumeration> names_of_values(const EntryDescription& description, 
     if ((is_signed ? sign_extended(bits, type.bits) : static_cast<std::int64_t>(bits)) != named.value) {
       diagnostics.warning(
           "meaning-value", named.position,
-          fmt::format("{} = {} is not a value of {}; it is left out", quote(named.name), named.value, type.name));
+          fmt::format("{} = {} is not a value of {}; ignored", quote(named.name), named.value, type.name));
       continue;
     }
     const bool is_new = std::ranges::none_of(

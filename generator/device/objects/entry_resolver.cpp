@@ -54,7 +54,7 @@ const DataTypeRow* standard_type_named(std::string_view name) {
 }
 
 /// Whether an entry of unknown type becomes a DOMAIN, bytes that are not interpreted. Entries of the communication
-/// profile and sub-index 0 need their type and are left out.
+/// profile and sub-index 0 need their type and are ignored.
 bool may_be_opaque(const EntryPlace& place) {
   constexpr std::uint16_t first_application_index = 0x2000;
   return place.index >= first_application_index && !(place.in_object_with_sub_indices && place.sub_index == 0);
@@ -181,8 +181,8 @@ std::optional<ValueType> EntryResolver::data_type(const EntryDescription& descri
   if (types_.is_complex(*code)) {
     diagnostics_.warning(
         "complex-data-type", field.position,
-        fmt::format("DataType 0x{:04X} is the data type of a RECORD, not of a value; the entry is left out", *code), {},
-        "left out");
+        fmt::format("DataType 0x{:04X} is the data type of a RECORD, not of a value; the entry is ignored", *code), {},
+        "skipped");
     return std::nullopt;
   }
   diagnostics_.error(

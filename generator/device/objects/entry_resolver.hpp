@@ -31,7 +31,7 @@ class EntryResolver {
 
  private:
   void check_sub_object_type(const EntryDescription& description);
-  /// Returns nothing for an entry that is left out; no row for an unknown type.
+  /// Returns nothing for an entry that is ignored; no row for an unknown type.
   std::optional<ValueType> data_type(const EntryDescription& description, const EntryPlace& place);
   std::optional<ValueType> missing_data_type(const EntryDescription& description, const EntryPlace& place);
   /// The type that the service of a communication parameter needs; nothing if the entry may have its type.

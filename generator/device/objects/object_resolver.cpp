@@ -155,7 +155,7 @@ void ObjectResolver::report_stray_sub_objects(const ObjectDescription& descripti
   for (const SubObjectDescription& sub : description.sub_objects) {
     diagnostics_.warning(
         "sub-object-without-object", sub.position,
-        fmt::format("{} is a {} and cannot have sub-objects; {} {} is left out", index_label(description.index),
+        fmt::format("{} is a {} and cannot have sub-objects; {} {} is ignored", index_label(description.index),
                     to_string(type), entry_label(description.index, sub.sub_index), quote(sub.parameter_name.text)));
   }
 }
@@ -185,7 +185,7 @@ void ObjectResolver::resolve_sub_objects(const ObjectDescription& description, O
   if (object.entries.empty()) {
     diagnostics_.warning(
         "no-sub-objects", description.position,
-        fmt::format("{} {} has no sub-objects and is left out", to_string(object.type), index_label(object.index)));
+        fmt::format("{} {} has no sub-objects and is ignored", to_string(object.type), index_label(object.index)));
     return;
   }
   check_sub_number(description);

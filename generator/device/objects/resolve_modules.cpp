@@ -93,7 +93,7 @@ class ModuleResolver {
       if (!has_room_) return;
       if (find(description.index) != nullptr) {
         diagnostics_.warning("module-object", description.position,
-                             fmt::format("{} already exists; that of module {} is left out",
+                             fmt::format("{} already exists; that of module {} is ignored",
                                          index_label(description.index), module.number));
       } else if (auto object = objects_.resolve(description)) {
         const std::size_t entries = object->entries.size();
@@ -174,9 +174,8 @@ class ModuleResolver {
     number_of_entries_ += added;
     if (number_of_entries_ <= max_entries || !has_room_) return;
     has_room_ = false;
-    diagnostics_.error(
-        "dictionary-size", position,
-        fmt::format("a device can have at most {} entries; the other modules are left out", max_entries));
+    diagnostics_.error("dictionary-size", position,
+                       fmt::format("a device can have at most {} entries; the other modules are ignored", max_entries));
   }
 
   /// ObjExtend: the highest sub-index of an object before the next index is used; 0: no next index.

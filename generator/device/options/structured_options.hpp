@@ -11,7 +11,7 @@
 namespace edsc {
 
 /// Reads the value of an option whose row has the form `structured`; `path` is where the file has it. Reports invalid
-/// values, which are left out.
+/// values, which are ignored.
 void read_structured_option(const OptionRow& row, const std::string& path, const nlohmann::json& value,
                             NameCheck is_name, OptionFile& file, Options& options);
 

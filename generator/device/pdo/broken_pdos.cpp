@@ -97,9 +97,8 @@ void report_broken(Pdo& pdo, BrokenPdo finding, const Position& place, Diagnosti
   if (on_by_default(pdo)) {
     diagnostics.error(rule_of(finding.fault), place, std::move(finding.message), {}, std::move(finding.cause));
   } else {
-    diagnostics.warning(rule_of(finding.fault), place,
-                        finding.message + "; the PDO is disabled by default and left out", {},
-                        std::move(finding.cause));
+    diagnostics.warning(rule_of(finding.fault), place, finding.message + "; the PDO is disabled by default and ignored",
+                        {}, std::move(finding.cause));
   }
 }
 

@@ -73,8 +73,8 @@ void report_unknown_key(const SourceFile& source, const IniSection& section, con
                         std::span<const std::string_view> known, Diagnostics& diagnostics) {
   const bool is_listed = !diagnostics.counts_only("unknown-key", Severity::warning, &source);
   diagnostics.warning("unknown-key", key_position(source, entry),
-                      fmt::format("unknown key {} in section {}; it is left out{}", quote(entry.key),
-                                  quote(section.name), is_listed ? did_you_mean(entry.key, known) : ""));
+                      fmt::format("unknown key {} in section {}; ignored{}", quote(entry.key), quote(section.name),
+                                  is_listed ? did_you_mean(entry.key, known) : ""));
 }
 
 }  // namespace edsc

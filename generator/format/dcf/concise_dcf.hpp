@@ -16,7 +16,7 @@ namespace edsc {
 /// entries whose ParameterValue differs from their default value, in an order in which a device with its default values
 /// accepts them (`order_writes`): a PDO is disabled before its mapping changes, so that its COB-ID and the number of
 /// mapped objects occur twice. `device` is that of `sheet`, with the node-ID. A formula without node-ID and an invalid
-/// value are reported and left out.
+/// value are reported and ignored.
 [[nodiscard]] std::string concise_dcf(const DataSheet& sheet, const Device& device, Diagnostics& diagnostics);
 
 struct ConciseEntry {

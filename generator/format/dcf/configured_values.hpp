@@ -17,7 +17,7 @@ struct ConfiguredValue {
 };
 
 /// The writable entries that have a ParameterValue, ascending, except DOMAINs. `device` is that of `sheet`, with the
-/// node-ID. A formula without node-ID and an invalid value are reported and left out.
+/// node-ID. A formula without node-ID and an invalid value are reported and ignored.
 [[nodiscard]] std::vector<ConfiguredValue> configured_values(const DataSheet& sheet, const Device& device,
                                                              Diagnostics& diagnostics);
 

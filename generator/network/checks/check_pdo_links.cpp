@@ -95,7 +95,7 @@ class MissingPartners {
 
   void add(const CobIdUse& use) {
     if (use.transmits) {
-      add(use, "network-pdo-unheard", "receiver", unheard_);
+      add(use, "network-pdo-unreceived", "receiver", unreceived_);
     } else {
       add(use, "network-pdo-unsent", "transmitter", unsent_);
     }
@@ -103,7 +103,7 @@ class MissingPartners {
 
   void report_notes() {
     unsent_.report(context_.diagnostics);
-    unheard_.report(context_.diagnostics);
+    unreceived_.report(context_.diagnostics);
   }
 
  private:
@@ -119,7 +119,7 @@ class MissingPartners {
 
   const NetworkContext& context_;
   bool are_notes_;
-  MergedNote unsent_, unheard_;
+  MergedNote unsent_, unreceived_;
 };
 
 bool is_link(const CobIdUse& sender, const CobIdUse& receiver) {

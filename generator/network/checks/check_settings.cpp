@@ -7,8 +7,8 @@
 namespace edsc {
 namespace {
 
-/// Rules of a single device that also judge the values of the network file. The other rules of these groups are about
-/// the EDS alone, or a rule of the network reports the same.
+/// Rules of a single device that also apply to the values of the network file. The other rules of these groups are
+/// about the EDS alone, or a rule of the network reports the same.
 constexpr AnyRule rules_of_values[] = {"heartbeat-consumer", "pdo-inhibit-time", "pdo-mapping-count",
                                        "pdo-mapping-gap",    "pdo-remote",       "pdo-sync",
                                        "pdo-sync-start",     "pdo-time-unused"};

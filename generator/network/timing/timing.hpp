@@ -26,7 +26,7 @@ struct NetworkTiming {
   BusLoad load;
 };
 
-/// Computes load and response times. A PDO is as long as its mapping; RTR-only PDOs are left out. One SDO request and
+/// Computes load and response times. A PDO is as long as its mapping; RTR-only PDOs are ignored. One SDO request and
 /// one response are counted for the whole network. Empty if the network does not have a valid bit rate.
 [[nodiscard]] NetworkTiming network_timing(const Network& network, const std::vector<CobIdUse>& uses);
 

@@ -156,7 +156,7 @@ class Behaviour(Audits):
         rules = {one["rule"] for one in self.report(Broken(lambda log: [one for one in slower(log) if one.ms < 1100 or one.can_id != 0x605]))["findings"]}
         self.assertIn("heartbeat-late", rules)
 
-    def test_a_log_without_times_is_judged_by_its_sequence(self) -> None:
+    def test_a_log_without_times_is_checked_by_its_sequence(self) -> None:
         (self.folder / "axis.eds").write_text(eds_of(axis()))
         lines = re.sub(r"(?m)^\(\S+\) can0 ", "", log_of(in_order(clean())))
         arguments = ("--node", "5=axis.eds", "--silence", "node-unknown", "--format", "json")
@@ -272,7 +272,7 @@ class Reports(Audits):
 
 
 def table(rules: list[dict]) -> str:
-    rows = ["| rule | | meaning | source | how it is judged |", "|---|---|---|---|---|"]
+    rows = ["| rule | | meaning | source | how it is checked |", "|---|---|---|---|---|"]
     rows += [f"| {rule['id']} | {rule['severity']} | {rule['meaning']} | {rule['source']} | {rule['advice']} |" for rule in rules]
     return "\n".join(rows) + "\n"
 

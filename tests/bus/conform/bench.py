@@ -84,7 +84,7 @@ def is_late(case: dict) -> bool:
 
 def run_problems(report: dict) -> list[str]:
     """Returns the problems of the whole run."""
-    problems = [f"not put back: {text}" for text in report["not_put_back"]]
+    problems = [f"not restored: {text}" for text in report["not_restored"]]
     if report["ended_early"]:
         problems.append(report["ended_early"])
     return problems

@@ -37,7 +37,7 @@ def run(arguments: argparse.Namespace, folder: Path, number: int) -> dict:
 def problems_of(report: dict) -> list[str]:
     problems = [f"{case['id']} failed: expected {case['expected']}; got {case['got']}"
                 for case in report["cases"] if case["verdict"] == "failed"]
-    problems += [f"not put back: {text}" for text in report["not_put_back"]]
+    problems += [f"not restored: {text}" for text in report["not_restored"]]
     return [*problems, report["ended_early"]] if report["ended_early"] else problems
 
 

@@ -43,7 +43,7 @@ TEST(ConformRun, PassesWithoutFailureAndProblem) {
   EXPECT_TRUE(run.passed());
   EXPECT_FALSE(RunReport{}.passed()) << "no case ran";
   for (auto spoil : {+[](RunReport& r) { r.unused_deviations.emplace_back("3.7"); },
-                     +[](RunReport& r) { r.not_put_back.emplace_back("1017h:00"); },
+                     +[](RunReport& r) { r.not_restored.emplace_back("1017h:00"); },
                      +[](RunReport& r) { r.interrupted = true; }, +[](RunReport& r) { r.lost = "the bus is lost"; }}) {
     RunReport spoiled = run;
     spoil(spoiled);

@@ -4,7 +4,7 @@ fails its cases and no other. foreign/behaviours.py has the table.
 
     foreign_behaviour_test.py SOURCE_DIR EDSC [--only NAME]... [--all-cases] [--keep FOLDER]
 
-Without Node.js its slave is left out, with a message. Each unexpected failure is an error, however busy the computer is. Another
+Without Node.js its slave is ignored, with a message. Each unexpected failure is an error, however busy the computer is. Another
 unexpected result can be due to the computer: the case runs again, at most `TRIES` times.
 """
 
@@ -96,7 +96,7 @@ def problems_of_run(report: dict, behaviour: Behaviour) -> list[str]:
     if bool(ended) != bool(behaviour.ended) or not re.search(behaviour.ended, ended):
         problems.append(f"ended early: {ended!r}; expected {behaviour.ended!r}")
     if not ended:
-        problems += [f"not put back: {text}" for text in report["not_put_back"]]
+        problems += [f"not restored: {text}" for text in report["not_restored"]]
     texts = [text for case in report["cases"] for text in [case["reason"] or "", *case["warnings"]]]
     problems += [f"not named: {text}" for text in behaviour.named if not any(re.search(text, found) for found in texts)]
     if behaviour.causes and len(report["causes"]) != behaviour.causes:
@@ -154,7 +154,7 @@ def main() -> int:
     began = time.monotonic()
     rows = [row for row in BEHAVIOURS if not arguments.only or row.name in arguments.only]
     if shutil.which("node") is None:
-        print("left out: slave.js: there is no Node.js")
+        print("skipped: slave.js: there is no Node.js")
         rows = [row for row in rows if row.program != NODE_JS]
     folder = arguments.keep or Path(tempfile.mkdtemp(prefix="edsc-conform-"))
     edsc = arguments.edsc.resolve()

@@ -128,7 +128,7 @@ def main() -> int:
             program = install_node_canopen(arguments.node_canopen).with_name("slave.js")
             tests.append((edsc, folder / "npm's canopen", ["node", program], [SHEET], NODE_CANOPEN))
         except Skipped as reason:
-            print(f"left out: npm's canopen: {reason}")
+            print(f"skipped: npm's canopen: {reason}")
     try:
         with ThreadPoolExecutor(len(tests)) as pool:
             problems = [text for found in pool.map(lambda test: test_slave(*test), tests) for text in found]

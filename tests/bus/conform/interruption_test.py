@@ -78,7 +78,7 @@ class Interruption(unittest.TestCase):
         report = json.loads(self.report.read_text(encoding="utf-8"))
         self.assertTrue(report["interrupted"])
         self.assertFalse(report["passed"])
-        self.assertEqual(report["not_put_back"], [])
+        self.assertEqual(report["not_restored"], [])
 
     def state(self) -> str:
         """Returns the next heartbeat."""
@@ -108,7 +108,7 @@ class Interruption(unittest.TestCase):
         text = "1017h:00 Producer Heartbeat Time: the device does not answer"
         self.assertIn(text.lower(), stdout.lower())
         report = json.loads(self.report.read_text(encoding="utf-8"))
-        self.assertEqual([left.lower() for left in report["not_put_back"]], [text.lower()])
+        self.assertEqual([left.lower() for left in report["not_restored"]], [text.lower()])
 
     def test_the_second_signal_ends_at_once(self) -> None:
         process = self.start("7.102", IN_7_102, timeout_ms=600_000)

@@ -44,7 +44,7 @@ int show(const Mutant& mutant, const std::vector<std::string>& only) {
       if (!text.empty()) std::printf("         %s\n", text.c_str());
     }
     for (const std::string& text : result.warnings) std::printf("         warning: %s\n", text.c_str());
-    for (const std::string& text : result.not_put_back) std::printf("         not put back: %s\n", text.c_str());
+    for (const std::string& text : result.not_restored) std::printf("         not restored: %s\n", text.c_str());
     if (result.verdict != Verdict::failed) continue;
     for (const SeenFrame& seen : result.frames) {
       std::printf("         %10.6f %c %03X%s", static_cast<double>(seen.at) / 1e6, seen.sent ? '>' : '<',
@@ -84,7 +84,7 @@ std::vector<std::string> failures_of_good_device() {
     const bool fine = result.verdict == Verdict::passed || result.verdict == Verdict::not_applicable;
     if (!fine) problems.push_back("case " + std::string{result.row->id} + ": the good device does not pass");
   }
-  problems.insert(problems.end(), report.not_put_back.begin(), report.not_put_back.end());
+  problems.insert(problems.end(), report.not_restored.begin(), report.not_restored.end());
   if (!report.lost.empty()) problems.push_back(report.lost);
   std::printf("the good device: %zu passed, %zu not applicable\n", report.count(Verdict::passed),
               report.count(Verdict::not_applicable));

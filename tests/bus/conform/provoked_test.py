@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""edsc audit judges the log of edsc conform: what the cases provoke on purpose is listed by case, and nothing else is found.
+"""edsc audit checks the log of edsc conform: what the cases provoke on purpose is listed by case, and nothing else is found.
 
     provoked_test.py SOURCE_DIR EDSC EVERY_SERVICE
 

@@ -102,13 +102,13 @@ inline RunReport hostile_run() {
   }
   for (CaseResult& result : run.cases) {
     result.reason = result.expected = result.got = result.deviation = hostile;
-    result.warnings = result.not_put_back = {hostile};
+    result.warnings = result.not_restored = {hostile};
     result.first_run = FirstRun{hostile, hostile, {}};
   }
   // An SDO download of these bytes that the server has accepted.
   run.cases.front().frames = {seen(1, true, 0x605, {0x23, 0x08, 0x10, 0, '<', 0x1B, '&', 0xFF}),
                               seen(2, false, 0x585, {0x60, 0x08, 0x10, 0, 0, 0, 0, 0})};
-  run.unused_deviations = run.not_put_back = {hostile};
+  run.unused_deviations = run.not_restored = {hostile};
   return run;
 }
 

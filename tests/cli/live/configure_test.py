@@ -46,7 +46,7 @@ class Configure(LiveTest):
         self.expect(self.edsc("configure", 5, "axis.dcf", "--store"), FINE, """\
 1017h:00 Producer heartbeat time: 0 ms -> 250 ms
 2004h:00 Speed: 1000 rpm -> 1200 rpm
-node 5: 2 of 25 values differ; 2 of 2 values written, 2 verified, LEFT left out, 1020h written, stored
+node 5: 2 of 25 values differ; 2 of 2 values written, 2 verified, LEFT skipped, 1020h written, stored
 """.replace("LEFT", self.left_out))
         self.expect(self.edsc("read", 5, "2004h", "1017h", "1020h:01", "1020h:02", "--eds", "device.eds"), FINE, """\
 2004h:00 Speed = 1200 rpm
@@ -55,7 +55,7 @@ node 5: 2 of 25 values differ; 2 of 2 values written, 2 verified, LEFT left out,
 1020h:02 Verify configuration, Configuration time = 52200000 ms
 """)
         self.expect(self.edsc("configure", 5, "axis.dcf"), FINE,
-                    f"node 5: 0 of 25 values differ, {self.left_out} left out\n")
+                    f"node 5: 0 of 25 values differ, {self.left_out} skipped\n")
         frames = self.network.frames("605")
         self.assertIn("605 23 10 10 01 73 61 76 65", frames)
         self.assertEqual([frame for frame in frames if frame[4] == "2" and frame[7:12] not in ("20 10", "10 10")],
@@ -74,7 +74,7 @@ node 5: 2 of 25 values differ; 2 of 2 values written, 2 verified, LEFT left out,
     def test_all_values(self) -> None:
         self.dcf(x2004="1200", x1017="250")
         self.expect(self.edsc("configure", 5, "axis.dcf", "--all"), FINE,
-                    f"node 5: 25 of 25 values written, 25 verified, {self.left_out} left out, 1020h written\n")
+                    f"node 5: 25 of 25 values written, 25 verified, {self.left_out} skipped, 1020h written\n")
 
     def test_a_dry_run_writes_nothing(self) -> None:
         self.only(x2004="1200", x1017="0", x1A00sub0="1", x1A00sub1="0x60640020")
@@ -147,7 +147,7 @@ node 5: 3 of 4 values differ; nothing written
             network.device(answer)
             result = self.edsc("configure", 5, "axis.dcf", "--force", "--store", "--start")
             self.assertEqual(result.returncode, FAILED)
-            self.assertIn("edsc: node 5 restarted meanwhile: it may have lost what was written before", result.stderr)
+            self.assertIn("edsc: node 5 restarted during the configuration: values written before may be lost", result.stderr)
             frames = network.frames("605", "000")
             self.assertFalse([frame for frame in frames if frame.startswith(("605 23 10 10", "000 01"))])
 
@@ -264,7 +264,7 @@ node 5: 2 of 2 values differ; 2 of 2 values written, 2 verified, 1020h written
                                    for value in ("4000", "0x20020008", "7"))
         self.expect(self.edsc("configure", 5, "axis.dcf", "--all", "--store"), FAILED,
                     "node 5: 2 of 5 values written, 1 verified, 3 failed\n", f"""\
-edsc: axis.dcf: 1 error; what is wrong is left out ("edsc check --keep-going" lists it)
+edsc: axis.dcf: 1 error; invalid objects are skipped ("edsc check --keep-going" lists them)
 axis.dcf:{mapping}:16: error: 1A00h:02 TPDO mapping parameter 1, Mapping entry 2 = 20020008h: refused by the device: 0604 0041h, object cannot be mapped to the PDO; the related entries are not changed, but 1800h:01 remains disabled
 axis.dcf:{speed}:16: error: 2004h:00 Speed = 4000 rpm: refused by the device: 0609 0031h, value too high
 axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0

@@ -47,7 +47,7 @@ class Save(LiveTest):
     def test_it_saves_what_differs_from_the_eds(self) -> None:
         self.set_values()
         result = self.edsc("save", 5, "device.eds", "-o", "axis.dcf", "--bit-rate", 250)
-        self.assertRegex(result.stdout, r"^node 5: \d+ entries read, 4 values saved to axis.dcf, 2 left out \(process data\)\n$")
+        self.assertRegex(result.stdout, r"^node 5: \d+ entries read, 4 values saved to axis.dcf, 2 skipped \(process data\)\n$")
         self.assertEqual((result.stderr, result.returncode), ("", FINE))
         self.assertEqual(self.values_of("axis.dcf"), {"1017": "250", "2002": "left axis", "2003": "-0.25", "2008sub2": "21"})
         self.assertIn("NodeID=5\n", self.commissioning("axis.dcf"))
@@ -61,7 +61,7 @@ class Save(LiveTest):
     def test_on_standard_output(self) -> None:
         result = self.edsc("save", 5, "device.eds")
         self.assertTrue(result.stdout.startswith("[FileInfo]\n"))
-        self.assertRegex(result.stderr, r"^node 5: \d+ entries read, 0 values saved, 2 left out \(process data\)\n$")
+        self.assertRegex(result.stderr, r"^node 5: \d+ entries read, 0 values saved, 2 skipped \(process data\)\n$")
 
     def test_all_values(self) -> None:
         found = self.expect_json(self.edsc("save", 5, "device.eds", "-o", "all.dcf", "--all", "--format", "json"),

@@ -72,8 +72,8 @@ node  state  vendor-ID  product    revision   serial     device type            
     def test_it_says_that_a_file_has_errors(self) -> None:
         (self.folder / "broken.eds").write_text(SHEET.read_text().replace("DefaultValue=1000", "DefaultValue=fast"))
         result = self.edsc("scan", "--nodes", "5", *self.fast, "--eds", "broken.eds")
-        self.assertEqual(result.stderr, 'edsc: broken.eds: 1 error; what is wrong is left out ("edsc check --keep-going" '
-                         "lists it)\n")
+        self.assertEqual(result.stderr, 'edsc: broken.eds: 1 error; invalid objects are skipped ("edsc check --keep-going" '
+                         "lists them)\n")
         self.assertEqual(result.returncode, FINE)
 
     def test_it_asks_only_the_nodes_that_it_is_told(self) -> None:

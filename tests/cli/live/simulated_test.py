@@ -26,7 +26,7 @@ SHEET = SOURCE_DIR / "tests/fixtures/live_device.eds"
 SCALED_SHEET = SOURCE_DIR / "tests/fixtures/scaled_drive.eds"
 FINE, FAILED, WRONG_USAGE, INTERRUPTED = 0, 1, 2, 130
 INCREMENTS_DIFFER = ("edsc: 608Fh:01 Position encoder resolution, Encoder increments = 4000 (00000FA0h) "
-                     "(EDS: 2000 (000007D0h)); units are those of the device\n")
+                     "(EDS: 2000 (000007D0h)); units are as in the device\n")
 
 
 class Protocol(unittest.TestCase):
@@ -177,7 +177,7 @@ class Commands(unittest.TestCase):
                   "6083h:00 Profile acceleration = 250 rev/s²\n")
         self.expect(self.edsc("read", bus, 5, *entries, "--eds", SCALED_SHEET), FINE, values)
         other = self.scaled_sheet(("DefaultValue=4000", "DefaultValue=2000"), ("0x00B44700", "0xFFB44700"))
-        differences = (INCREMENTS_DIFFER + "edsc: 60A9h:00 SI unit velocity = 11814656 (00B44700h) (EDS: 4290004736 (FFB44700h)); units are those of the device\n")
+        differences = (INCREMENTS_DIFFER + "edsc: 60A9h:00 SI unit velocity = 11814656 (00B44700h) (EDS: 4290004736 (FFB44700h)); units are as in the device\n")
         self.expect(self.edsc("read", bus, 5, *entries, "--eds", other), FINE, values, differences)
         json_result = json.loads(self.edsc("read", bus, 5, "6064h", "--eds", other, "--format", "json").stdout)
         entry = json_result["entries"][0]

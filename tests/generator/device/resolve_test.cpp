@@ -42,7 +42,7 @@ TEST(Resolve, KeepsAVarThatASubObjectOfAnotherIndexStraysInto) {
   EXPECT_EQ(text.device.find(0x1017)->entries.size(), 1U);
   EXPECT_EQ(rules_of(text.diagnostics), Rules{"sub-object-without-object"});
   EXPECT_EQ(text.line_of("sub-object-without-object"), "[1017sub4]");
-  EXPECT_NE(text.finding("sub-object-without-object").message.find("1017h:04 \"Serial number\" is left out"),
+  EXPECT_NE(text.finding("sub-object-without-object").message.find("1017h:04 \"Serial number\" is ignored"),
             std::string::npos);
 }
 

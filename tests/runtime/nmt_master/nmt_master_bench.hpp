@@ -93,7 +93,7 @@ class Slave {
 };
 
 /// A master, its slaves, and everything that happens, in order: frames as in a candump log, events of the master in
-/// brackets. PDOs are left out; so are heartbeats and guarding unless they are requested.
+/// brackets. PDOs are ignored; so are heartbeats and guarding unless they are requested.
 struct Network {
   Network(std::vector<canopen::NmtSlave> list, canopen::NmtStartUp how)
       : slaves{std::move(list)}, master{end, slaves, how, std::chrono::milliseconds{100}, Host{&log}} {

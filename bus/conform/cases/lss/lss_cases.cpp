@@ -17,10 +17,10 @@ void select(Dut& dut) {
   for (std::uint8_t i = 0; i < 4; ++i) {
     auto other = slave.numbers();
     other[i] ^= 1;
-    dut.expect(
-        !slave.try_select(other),
-        fmt::format("no answer to a number other than that of {}", label(identity, static_cast<std::uint8_t>(i + 1))),
-        "one");
+    dut.expect(!slave.try_select(other),
+               fmt::format("no answer to a number other than the number of {}",
+                           label(identity, static_cast<std::uint8_t>(i + 1))),
+               "one");
     dut.expect(!slave.ask(Command::inquire_node_id), "no answer to inquire node-ID in the waiting state", "one");
   }
   with_slave(dut, [&dut](const Slave& selected) {
@@ -219,7 +219,7 @@ void wrong_node_id(Dut& dut) {
   });
 }
 
-/// A new node-ID takes effect with the next reset communication. The old one is put back in the same way.
+/// A new node-ID takes effect with the next reset communication. The old one is restored in the same way.
 void new_node_id(Dut& dut) {
   const NodeId own = dut.node(), other = free_node_id(dut);
   const Slave slave{dut};

@@ -85,7 +85,7 @@ void expect_sent_as_mapped(Dut& dut, const Remapping& remapping) {
   const auto seen = make_sent(dut, *tpdo);
   if (seen) expect_present_data(dut, *tpdo, *seen, before);
   dut.enter(NmtState::pre_operational);
-  put_back(dut, *tpdo);
+  restore(dut, *tpdo);
 }
 
 /// A value that differs from the present one and that the device accepts by SDO: some objects, such as a mode of
@@ -116,7 +116,7 @@ void expect_received_as_mapped(Dut& dut, Remapping& remapping, const std::vector
     if (mapped.index < 0x2000 || !dut.is_readable(mapped.index, mapped.sub_index)) return;
     if (!dut.is_writable(mapped.index, mapped.sub_index)) return;
     const std::uint64_t present = dut.read_number(mapped.index, mapped.sub_index);
-    dut.write(mapped.index, mapped.sub_index, present);  // records the value to put back
+    dut.write(mapped.index, mapped.sub_index, present);  // records the value to restore
     values.push_back(value_taken(dut, mapped, present, ++salt));
   }
   const std::uint64_t data = pack(mapping, values);
@@ -173,7 +173,7 @@ void takes_new_mapping(Dut& dut) {
         expect_received_as_mapped(dut, remapping, mapping);
       }
     }
-    remapping.put_back();
+    remapping.restore();
   }
   if (!any) dut.not_applicable("the EDS has no object for a PDO whose mapping is rw");
 }

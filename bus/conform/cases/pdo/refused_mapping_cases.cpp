@@ -36,7 +36,7 @@ void for_each_active(Dut& dut, Check check) {
     any = true;
     if (!remapping.is_valid()) remapping.enable();
     check(remapping, mapping);
-    remapping.put_back();
+    remapping.restore();
   }
   if (!any) dut.not_applicable("no PDO whose mapping is rw maps an object and has a usable CAN-ID");
 }
@@ -100,7 +100,7 @@ void takes_objects(Dut& dut, PdoDirection direction, const ObjectSet* set) {
   if (objects.empty()) dut.not_applicable(set->none);
   for (Remapping& remapping : all) {
     for (const MappingValue& mapped : some_of(dut, objects)) remapping.remap({mapped});
-    remapping.put_back();
+    remapping.restore();
   }
 }
 
@@ -121,7 +121,7 @@ void refuses_objects(Dut& dut, PdoDirection direction, const ObjectSet* set) {
       }
       remapping.expect_unchanged(0, 0);
     }
-    remapping.put_back();
+    remapping.restore();
   }
 }
 
@@ -162,7 +162,7 @@ void refuses_too_many_objects(Dut& dut) {
         remapping.set_count(count), wrong_count,
         fmt::format("{} written to {}, which has {} entries", count, remapping.entry_name(0), remapping.capacity()));
     remapping.expect_unchanged(0, 0);
-    remapping.put_back();
+    remapping.restore();
   }
 }
 
@@ -191,7 +191,7 @@ void refuses_too_many_bits(Dut& dut) {
       remapping.expect_unchanged(0, 0);
       any = true;
     }
-    remapping.put_back();
+    remapping.restore();
   }
   if (!any) dut.not_applicable(reason);
 }

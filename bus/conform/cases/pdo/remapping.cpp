@@ -72,7 +72,7 @@ void Remapping::remap(const std::vector<MappingValue>& mapping) {
   }
 }
 
-void Remapping::put_back() {
+void Remapping::restore() {
   begin();
   for (std::uint8_t i = 1; i <= capacity_; ++i) {
     if (dut_.read_number(mapping_, i) != found_[i - 1U]) dut_.write(mapping_, i, found_[i - 1U]);

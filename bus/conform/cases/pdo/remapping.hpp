@@ -12,7 +12,7 @@
 
 namespace edsc::conform {
 
-/// A PDO whose mapping can be changed according to the EDS, and the procedure. `put_back` restores what was found.
+/// A PDO whose mapping can be changed according to the EDS, and the procedure. `restore` restores what was found.
 class Remapping {
  public:
   Remapping(Dut& dut, const Pdo& pdo, std::uint8_t capacity);
@@ -45,7 +45,7 @@ class Remapping {
 
   /// Steps 1 to 4. The device must accept them, and reads must return the new mapping.
   void remap(const std::vector<MappingValue>& mapping);
-  void put_back();
+  void restore();
 
   [[nodiscard]] std::string mapping_text(std::uint8_t position, const MappingValue& mapped) const;
   void expect_unchanged(std::uint8_t sub_index, std::uint64_t value);
@@ -60,7 +60,7 @@ class Remapping {
   std::vector<std::uint64_t> found_;  ///< sub-indices 1 to capacity
 };
 
-/// PDOs whose mapping can be changed and put back. Not applicable without one.
+/// PDOs whose mapping can be changed and restored. Not applicable without one.
 [[nodiscard]] std::vector<Remapping> remappings(Dut& dut, std::initializer_list<PdoDirection> directions);
 [[nodiscard]] std::vector<Remapping> all_remappings(Dut& dut);
 

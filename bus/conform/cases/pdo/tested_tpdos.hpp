@@ -48,7 +48,7 @@ void for_each_tpdo(Dut& dut, const std::vector<Transmission>& transmissions, Che
       dut.enter(NmtState::operational);
       check(tpdo, wanted);
       dut.enter(NmtState::pre_operational);
-      put_back(dut, tpdo);
+      restore(dut, tpdo);
     }
   }
   tested.need_one();

@@ -152,11 +152,11 @@ std::optional<std::string> configure(Dut& dut, const Tpdo& tpdo, const Transmiss
   if (is_disabled) dut.write(tpdo.index, cob_id_parameter, tpdo.cob_id | CobId::invalid_bit);
   std::optional<std::string> why = set_parameters(dut, tpdo, wanted, is_disabled);
   if (!why) why = enable(dut, tpdo, wanted.remote_frames);
-  if (why) put_back(dut, tpdo);
+  if (why) restore(dut, tpdo);
   return why;
 }
 
-void put_back(Dut& dut, const Tpdo& tpdo) {
+void restore(Dut& dut, const Tpdo& tpdo) {
   const bool has_writable_cob_id = dut.is_writable(tpdo.index, cob_id_parameter);
   if (has_writable_cob_id) dut.write(tpdo.index, cob_id_parameter, tpdo.cob_id | CobId::invalid_bit);
   for (const auto& [sub_index, value] : tpdo.found) {

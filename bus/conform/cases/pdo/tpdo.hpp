@@ -55,7 +55,7 @@ struct Transmission {
 /// reason, `1800h:05 does not exist in the EDS`, and puts the TPDO back as it was found.
 [[nodiscard]] std::optional<std::string> configure(Dut& dut, const Tpdo& tpdo, const Transmission& wanted);
 /// Puts the parameters back as they were found.
-void put_back(Dut& dut, const Tpdo& tpdo);
+void restore(Dut& dut, const Tpdo& tpdo);
 
 // ---- frames ----
 

@@ -196,7 +196,7 @@ void sends_by_event_timer(Dut& dut) {
       (void)changes_by_itself(dut, tpdo);
     }
     dut.enter(NmtState::pre_operational);
-    put_back(dut, tpdo);
+    restore(dut, tpdo);
   }
   tested.need_one();
 }

@@ -33,7 +33,7 @@ Bytes upload_by_segments(Dut& dut, std::uint16_t index, std::uint8_t sub_index);
 /// Sends the first segment of a download with toggle bit 1 and returns the answer.
 std::optional<SdoFrame> download_with_wrong_toggle(Dut& dut, std::uint16_t index, std::uint8_t sub_index,
                                                    std::span<const std::uint8_t> value);
-/// Downloads in segments, even a value that fits into one frame. The former value is put back when the case ends.
+/// Downloads in segments, even a value that fits into one frame. The former value is restored when the case ends.
 void download_by_segments(Dut& dut, std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> value);
 
 struct BlockTransfer {
@@ -54,7 +54,7 @@ struct BlockValue {
 BlockValue upload_by_blocks(Dut& dut, std::uint16_t index, std::uint8_t sub_index, BlockTransfer how);
 
 enum class SentCrc : std::uint8_t { absent, right, wrong };
-/// Downloads in one block of at most 127 segments and returns the answer to its end. The former value is put back when
+/// Downloads in one block of at most 127 segments and returns the answer to its end. The former value is restored when
 /// the case ends.
 std::optional<SdoFrame> download_by_block(Dut& dut, std::uint16_t index, std::uint8_t sub_index,
                                           std::span<const std::uint8_t> value, SentCrc crc);

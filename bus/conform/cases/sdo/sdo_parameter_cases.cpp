@@ -112,7 +112,7 @@ void save_clients(Dut& dut) {
 }
 
 constexpr CaseRow sdo_parameter_rows[] = {
-    {"2.28", "The objects 1201h to 127Fh are those of the EDS", "CiA 301, 7.5.2.33", Level::read, none, read_servers},
+    {"2.28", "The objects 1201h to 127Fh are as in the EDS", "CiA 301, 7.5.2.33", Level::read, none, read_servers},
     {"2.29", "Reset communication restores the values of 1201h to 127Fh", "CiA 301, 7.5.2.33", Level::communication,
      none, read_servers_after_reset, Condition::none, "9.1"},
     {"2.30", "Reset communication keeps stored values of 1280h to 12FFh", "CiA 301, 7.5.2.34", Level::communication,

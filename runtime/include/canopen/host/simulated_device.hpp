@@ -87,7 +87,7 @@ class Simulation final : public SimulatedBus {
 
   void send_to_device(const Frame& frame) { static_cast<void>(tester_.send(frame)); }
 
-  /// The frame that the device has sent meanwhile, at `elapsed()`.
+  /// The frame that the device has sent in this time, at `elapsed()`.
   [[nodiscard]] std::optional<Frame> run(Duration span) {
     sent_.reset();
     bus_.run_until([this] { return sent_.has_value(); }, span);

@@ -90,7 +90,7 @@ class StreamPort {
         if (frame) return PortEvent{frame, present_, reported_};
         if (const auto changed = status_event()) return changed;
       }
-      // A stream may contain bytes continuously without a frame: time must pass meanwhile.
+      // A stream may contain bytes continuously without a frame: time must pass all the same.
       if (reads == reads_at_once || !read_some()) break;
     }
     protocol_.on_time(pass_time());

@@ -102,7 +102,7 @@ class VirtualBus {
       return std::upper_bound(waiting_.begin(), waiting_.end(), arbitration_value(frame), is_before);
     }
 
-    /// Makes a destroyed frame the next one again, after those that have become more dominant meanwhile.
+    /// Makes a destroyed frame the next one again, after those that are more dominant by now.
     void repeat(const Waiting& destroyed) {
       const auto is_before = [](const Waiting& one, std::uint64_t priority) {
         return arbitration_value(one.frame) < priority;

@@ -240,7 +240,7 @@ template <class Device, class Node, class ApplicationType, class Function>
 template <class Application, class Event, class Label, bool Fits, bool Single, bool Exists>
 struct ApplicationEvent {
   static constexpr bool is_good = true;
-  static_assert(Fits, "application: the parameters of this function are not those of its event");
+  static_assert(Fits, "application: the parameters of this function do not match its event");
   static_assert(!Fits || Single, "application: a second function of this name can never be called");
   static_assert(Exists, "application: this device does not have the object that this event needs");
 };

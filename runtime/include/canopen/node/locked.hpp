@@ -79,7 +79,7 @@ class Locked : public ObjectSetters<Locked<Node, LockType>> {
     return with([](Node& node) { return node.template get<Object>(); });
   }
   using ObjectSetters<Locked>::set;
-  /// Changes the value of an object while the lock is held, so that no other context changes it meanwhile.
+  /// Changes the value of an object while the lock is held, so that no other context changes it.
   template <DictionaryObject Object, class Change>
   requires(!can_be_refused<Object>) AbortCode modify(Object object, Change change) {
     return with([&](Node& node) { return node.modify(object, change); });

@@ -225,7 +225,7 @@ class Fdcan {
   }
 
   /// Accepts only frames with these identifiers; the filters do not distinguish data and remote frames. All frames if
-  /// there are more than the filters can hold. No frame is lost meanwhile: the last filters accept all frames until the
+  /// there are more than the filters can hold. No frame is lost: the last filters accept all frames until the
   /// others have been set.
   void accept(std::span<const AcceptedFrame> frames) {
     accept_all();

@@ -110,7 +110,7 @@ class Drive {
     signal_fault(node, bits);
   }
 
-  /// Sets whether errors are still present: a fault reset (transition 15) is not possible meanwhile.
+  /// Sets whether errors are still present: a fault reset (transition 15) is not possible then.
   void keep_fault(bool there) { fault_is_there_ = there; }
 
   /// Stops the drive like the command quick stop: transition 11.

@@ -22,7 +22,7 @@ struct NoWatchdog {
 
 /// Copies a new image to RAM, up to `Capacity` bytes, and then writes it to another storage: one step begins it, which
 /// for flash is the erase of a page, each further one writes up to `StepSize` bytes, and the last one completes it. The
-/// image has the values at the time of "save", whatever changes meanwhile. The node executes one step in each
+/// image has the values at the time of "save", whatever changes later. The node executes one step in each
 /// `on_time`; the SDO response is sent after the last one (CiA 301, 7.5.2.13). `Watchdog` is called before each step.
 /// If the other storage has a function `ready`, a step waits until it returns true: it may start an erase in `begin`
 /// and return.

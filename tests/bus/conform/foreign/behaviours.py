@@ -97,7 +97,7 @@ BEHAVIOURS = (
               only=("3.4", "3.5", "6.2", "6.3", "7.102", "7.106", "7.204"), named=("late",)),
     Behaviour("restarts", "its power fails for a moment", (Switches(restarts_after=150),), only=("2.*", "3.*"),
               also=("failed, and the repetition has the verdict",)),
-    # What a run cannot judge.
+    # What a run cannot decide.
     Behaviour("vanishes", "it vanishes after 150 requests", (Switches(vanishes_after=150),), only=("2.*",),
               ended=NO_LONGER.format(r"2\.\d+")),
     Behaviour("twins", "two devices with one node-ID", (GOOD, Switches(answer_delay=0.003)), ended=TWINS),
