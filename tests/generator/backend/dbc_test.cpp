@@ -175,7 +175,7 @@ TEST(Dbc, NamesThePdosThatItDoesNotHave) {
                            pdo("1801", "1A01", "$NODEID+0x180", {"0x60410010"}) +
                            pdo("1802", "1A02", "$NODEID+0x80000380", {"0x60410010"}) +
                            pdo("1803", "1A03", "$NODEID+0x80000480", {"0x60410010"}));
-  EXPECT_EQ(dbc.notes, (std::vector<std::string>{"TPDO 2: CAN-ID 185h is that of another PDO",
+  EXPECT_EQ(dbc.notes, (std::vector<std::string>{"TPDO 2: CAN-ID 185h is used by another PDO",
                                                  "TPDO 3 to TPDO 4: disabled by default"}));
 }
 
