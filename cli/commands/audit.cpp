@@ -11,6 +11,7 @@
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/log_options.hpp"
+#include "shared/node_names.hpp"
 #include "shared/output.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
@@ -32,6 +33,7 @@ struct Settings : LogSettings {
   audit::Limits limits;
   unsigned timeout_ms = 1000;
   std::uint32_t bit_rate_kbit = 0;
+  std::string written_master;  ///< node-ID or name
   std::uint8_t nmt_master = 0;
   std::vector<std::string> silence;
   std::string conform;  ///< path of a report of edsc conform; empty: none
@@ -39,6 +41,10 @@ struct Settings : LogSettings {
   std::string output;
   bool cycles = false;
   bool list_rules = false;
+
+  void resolve() {
+    if (!written_master.empty()) nmt_master = find_node_id("--master", written_master, network);
+  }
 };
 
 int list_rules(const Settings& settings) {
@@ -76,10 +82,12 @@ std::string report_text(const audit::Report& report, const Settings& settings) {
 int audit_log(const Settings& given) {
   if (given.list_rules) return list_rules(given);
   Settings settings = given;
-  if (settings.nodes.empty()) fail("--node ID=FILE is missing; the EDS states how the node must behave");
+  if (!settings.describe_nodes()) {
+    fail("--node ID=FILE or --network FILE is missing; the EDS states how the node must behave");
+  }
   settings.limits.sdo_timeout_us = std::int64_t{settings.timeout_ms} * 1000;
   settings.limits.bit_rate = settings.bit_rate_kbit * 1000;
-  const LogNodes nodes = load_log_nodes(settings);
+  const GivenNodes nodes = load_given_nodes(settings, settings.color);
   LogDecoder decoder{
       nodes.known(), nodes.labels, {settings.log_name(), settings.interface, LogOutput::text, false, {}}};
   audit::Auditor auditor{decoder.decoder(), settings.limits};
@@ -132,7 +140,7 @@ void add_audit_options(Command command, int& exit_code) {
   add_log_options(command, settings);
   command.add_option("--tolerance", settings.limits.tolerance).range(0, 1000).show_default();
   command.add_milliseconds("--timeout", settings.timeout_ms, 1, 3'600'000, "to an SDO request");
-  command.add_option("--master", settings.nmt_master).range(1, 127);
+  command.add_option("--master", settings.written_master);
   command.add_option("--bit-rate", settings.bit_rate_kbit, "to compute the bus load").range(1, 1000);
   command.add_option("--max-load", settings.limits.max_load).range(1, 100).show_default();
   command.add_option("--silence", settings.silence)

@@ -55,7 +55,7 @@ std::string buses() {
 
 std::string nodes() {
   std::string text;
-  for (const NamedNode& node : named_nodes(default_network())) text += fmt::format("{}\n", node.node_id);
+  for (const NamedNode& node : named_nodes(network_or_default(""))) text += node.name + "\n";
   return text;
 }
 
@@ -82,7 +82,7 @@ std::string objects(const std::vector<std::string>& files) {
   std::string text;
   for (const std::string& path : files) text += objects_of(path);
   if (!files.empty()) return text;
-  for (const NamedNode& node : named_nodes(default_network())) {
+  for (const NamedNode& node : named_nodes(network_or_default(""))) {
     if (!node.sheet.empty()) text += objects_of(node.sheet);
   }
   return text;

@@ -16,6 +16,7 @@
 #include "shared/exit_code.hpp"
 #include "shared/live_device.hpp"
 #include "shared/live_options.hpp"
+#include "shared/node_names.hpp"
 #include "shared/with_bus.hpp"
 #include "text/printable.hpp"
 
@@ -32,7 +33,6 @@ constexpr const char* examples = R"(Examples:
 
 struct Settings : NodeSettings {
   std::string path;
-  std::string sheet;  ///< of a concise DCF
   bool concise = false;
   bool keep_state = false;
   bool start = false;
@@ -43,6 +43,14 @@ struct Settings : NodeSettings {
   bool dry_run = false;
   std::string format = "text";
 
+  /// Only a concise DCF needs the EDS of the network file.
+  void resolve() {
+    if (concise) {
+      NodeSettings::resolve();
+    } else {
+      node = find_node_id("NODE", written_node, network);
+    }
+  }
   /// The file that states the device.
   [[nodiscard]] const std::string& described_by() const { return concise ? sheet : path; }
 };

@@ -59,7 +59,7 @@ LogDecoderSettings decoder_settings(const Settings& settings) {
 
 int decode(const Settings& settings) {
   constexpr std::size_t output_bytes = std::size_t{64} * 1024;
-  const LogNodes nodes = load_log_nodes(settings);
+  const GivenNodes nodes = load_given_nodes(settings, settings.color);
   LogDecoder decoder{nodes.known(), nodes.labels, decoder_settings(settings)};
   report_closed_pipes();
   std::string out, complaints;

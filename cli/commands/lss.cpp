@@ -14,6 +14,7 @@
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_options.hpp"
+#include "shared/node_names.hpp"
 #include "shared/output.hpp"
 #include "shared/with_bus.hpp"
 #include "text/printable.hpp"
@@ -44,12 +45,19 @@ struct Settings {
   unsigned step_ms = 20;
   std::string format = "text";
   std::optional<std::uint32_t> vendor, product, revision, serial;
+  std::string written_node;
+  std::string network;
   std::uint8_t node_id = 0;
   std::optional<unsigned> kbit;
   bool store = false;
   unsigned delay_ms = 500;
   LssState state = LssState::waiting;
   std::string (*service)(LssSession&, const Settings&) = nullptr;  ///< the subcommand; see ServiceRow
+
+  void resolve() {
+    if (written_node.empty()) return;
+    node_id = parse_count(written_node) == 255 ? std::uint8_t{255} : find_node_id("NODE", written_node, network);
+  }
 };
 
 using Json = nlohmann::ordered_json;
@@ -258,18 +266,23 @@ void add_bit_rate(Command command, const std::string& name, Settings& settings, 
       .required(required);
 }
 
-void add_new_node_id(Command command, const std::string& name, Settings& settings) {
+void add_node_id_arguments(Command command, Settings& settings) {
+  add_node_argument(command, settings.written_node,
+                    "the new node-ID: 1..127, a name from the network file, or 255 to remove it");
+  add_network_option(command, settings.network);
+}
+
+void add_new_node_id(Command command, Settings& settings) {
   const auto parse = [](const std::string& text) {
     return parse_count(text) == 255 ? std::optional<std::uint8_t>{255} : parse_node(text);
   };
-  add_parsed(command, name, settings.node_id, parse, "a node-ID from 1 to 127 or 255",
-             name.starts_with("--") ? "255 removes it" : "the new node-ID: 1..127, or 255 to remove it")
+  add_parsed(command, "--node-id", settings.node_id, parse, "a node-ID from 1 to 127 or 255", "255 removes it")
       .required();
 }
 
 void add_assign_options(Command command, Settings& settings) {
   add_address_options(command, settings, false);
-  add_new_node_id(command, "--node-id", settings);
+  add_new_node_id(command, settings);
   add_bit_rate(command, "--bit-rate", settings, false);
   command.add_flag("--store", settings.store);
   add_format_option(command, settings.format);
@@ -307,8 +320,7 @@ constexpr ServiceRow services[] = {
     {"state", "switch all devices to a state", switch_state, add_state_argument},
     {"inquire", "inquire the LSS address and node-ID of the device in configuration state", inquire,
      [](Command command, Settings& settings) { add_format_option(command, settings.format); }},
-    {"node-id", "configure the node-ID of the device in configuration state", configure_node_id,
-     [](Command command, Settings& settings) { add_new_node_id(command, "NODE", settings); }},
+    {"node-id", "configure the node-ID of the device in configuration state", configure_node_id, add_node_id_arguments},
     {"bit-rate", "configure the bit rate of the device in configuration state", configure_bit_rate,
      [](Command command, Settings& settings) { add_bit_rate(command, "KBIT", settings, true); }},
     {"store", "store node-ID and bit rate in the device in configuration state", store, nullptr},

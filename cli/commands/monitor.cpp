@@ -10,10 +10,9 @@
 #include "online/live_bus.hpp"
 #include "server/listen_address.hpp"
 #include "shared/common_options.hpp"
-#include "shared/default_scales.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
-#include "shared/live_device.hpp"
+#include "shared/given_nodes.hpp"
 #include "shared/live_options.hpp"
 #include "shared/output.hpp"
 #include "shared/with_bus.hpp"
@@ -35,9 +34,8 @@ constexpr const char* examples = R"(Examples:
   edsc monitor socketcan:can0 --once 10s --format json            for a program
   edsc monitor socketcan:can0 --node 5=drive.eds --web            values and plots in the browser)";
 
-struct Settings {
+struct Settings : NodesSettings {
   std::string bus;
-  std::vector<std::string> nodes;
   std::optional<std::uint64_t> once_us;
   std::optional<unsigned> bit_rate;
   std::optional<ListenAddress> web;
@@ -177,17 +175,8 @@ int serve(Monitor& monitor, const ListenAddress& address) {
 
 int run_monitor(const Settings& settings) {
   if (settings.format == "json" && !settings.once_us) throw_requires("--format json", "--once");
-  std::vector<std::unique_ptr<LoadedDevice>> devices;
-  std::vector<KnownNode> known;
-  for (const std::string& text : settings.nodes) {
-    const auto node = parse_node_file(text);
-    if (std::ranges::count(known, node->node_id, &KnownNode::node_id) != 0) {
-      fail(fmt::format("--node {}: node {} is given twice", text, node->node_id));
-    }
-    devices.push_back(load_live_device(node->path, node->node_id));
-    report_default_scales(node->node_id, *devices.back()->device);
-    known.push_back({node->node_id, &*devices.back()->device});
-  }
+  const GivenNodes nodes = load_given_nodes(settings, settings.color);
+  const std::vector<KnownNode> known = nodes.known();
   return with_bus(settings.bus, [&](LiveBus& bus) {
     Monitor monitor{bus, settings, known};
     if (settings.web) return serve(monitor, *settings.web);
@@ -201,9 +190,7 @@ int run_monitor(const Settings& settings) {
 void add_monitor_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_monitor, exit_code);
   add_bus_argument(command, settings.bus);
-  command.add_option("--node", settings.nodes).one_value_each().check([](const std::string& text) {
-    return parse_node_file(text) ? std::string{} : "\"" + text + "\" is not of the form NODE-ID=FILE";
-  });
+  add_nodes_options(command, settings);
   command.add_duration("--once", 10'000, 86'400'000'000, [&settings](std::uint64_t us) { settings.once_us = us; });
   command.add_option("--bit-rate", settings.bit_rate, "to compute the bus load, without stuff bits").range(5, 1000);
   command.add_text_option("--web", [&settings](const std::string& text) { settings.web = parse_listen_address(text); })

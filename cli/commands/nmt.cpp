@@ -9,6 +9,7 @@
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/live_options.hpp"
+#include "shared/node_names.hpp"
 #include "shared/with_bus.hpp"
 #include "text/duration.hpp"
 #include "values/nmt_text.hpp"
@@ -24,8 +25,14 @@ constexpr const char* examples = R"(Examples:
 struct Settings {
   std::string bus;
   const NmtCommandText* command = nullptr;
+  std::string written_node;
+  std::string network;
   std::uint8_t node = 0;  ///< 0: all
   std::uint32_t wait_us = 0;
+
+  void resolve() {
+    if (written_node != "all") node = find_node_id("NODE", written_node, network);
+  }
 };
 
 /// What the node has reported since the command.
@@ -86,11 +93,8 @@ void add_nmt_options(Command command, int& exit_code) {
           "start, stop, pre-operational, reset-node or reset-communication")
       .required()
       .one_of(names);
-  const auto parse = [](const std::string& text) {
-    return text == "all" ? std::optional<std::uint8_t>{0} : parse_node(text);
-  };
-  add_parsed(command, "NODE", settings.node, parse, "a node-ID from 1 to 127 or \"all\"", "node-ID, 1..127, or all")
-      .required();
+  add_node_argument(command, settings.written_node, "node-ID, 1..127, a name from the network file, or all");
+  add_network_option(command, settings.network);
   command.add_duration("--wait", 1000, 600'000'000,
                        [&settings](std::uint64_t us) { settings.wait_us = static_cast<std::uint32_t>(us); });
 }

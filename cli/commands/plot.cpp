@@ -119,18 +119,18 @@ void add_lines(std::uint8_t node_id, const NodeLabels& labels, const Object& obj
 }
 
 /// `6064h`, of all nodes that have it, or `5/6064h`.
-void add_object(const std::string& text, const LogNodes& nodes, std::vector<Wanted>& wanted) {
+void add_object(const std::string& text, const GivenNodes& nodes, std::vector<Wanted>& wanted) {
   const std::size_t slash = text.find('/');
   const auto node_id =
       slash == std::string::npos ? std::nullopt : parse_whole<std::uint8_t>(std::string_view{text}.substr(0, slash));
   const std::string name = node_id ? text.substr(slash + 1) : text;
-  if (node_id && !nodes.loaded.contains(*node_id))
-    fail(fmt::format("{}: node {} is not one of --node", text, *node_id));
+  if (node_id && !nodes.devices.contains(*node_id))
+    fail(fmt::format("{}: node {} is not one of --node and --network", text, *node_id));
   std::string problem;
   const std::size_t before = wanted.size();
-  for (const auto& [id, loaded] : nodes.loaded) {
+  for (const auto& [id, node] : nodes.devices) {
     if (node_id && id != *node_id) continue;
-    const FoundEntry found = find_one_entry(loaded->named(), name);
+    const FoundEntry found = find_one_entry(node.named, name);
     if (!found.ok()) {
       problem = found.problem;
       continue;
@@ -191,8 +191,8 @@ void take_values(const LogLine& line, const Message& message, std::vector<Wanted
 }
 
 int plot(const Settings& settings) {
-  if (settings.nodes.empty()) fail("--node ID=FILE is missing; the EDS has the objects");
-  const LogNodes nodes = load_log_nodes(settings);
+  if (!settings.describe_nodes()) fail("--node ID=FILE or --network FILE is missing; the EDS has the objects");
+  const GivenNodes nodes = load_given_nodes(settings, settings.color);
   std::vector<Wanted> wanted;
   for (const std::string& text : settings.objects) add_object(text, nodes, wanted);
 

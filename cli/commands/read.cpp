@@ -31,7 +31,6 @@ constexpr const char* examples = R"(Examples:
 
 struct Settings : NodeSettings {
   std::vector<std::string> objects;
-  std::string sheet;
   const canopen::DataTypeRow* type = nullptr;
   std::string format = "text";
   std::string file;
@@ -208,6 +207,7 @@ int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chose
 
 int run_read(const Settings& settings) {
   if (!settings.all && settings.objects.empty()) throw_required("OBJECT or --all");
+  if (settings.all && settings.sheet.empty()) throw_requires("--all", "--eds");
   const auto loaded = settings.sheet.empty() ? nullptr : load_live_device(settings.sheet, settings.node);
   const std::vector<Chosen> entries = choose_entries(settings, loaded.get());
   if (!settings.file.empty() && entries.size() != 1) {
@@ -222,9 +222,9 @@ void add_read_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_read, exit_code);
   add_node_arguments(command, settings);
   const Option objects = command.add_option("OBJECT", settings.objects, "6064h, 1018h:02, or a name from the EDS");
-  const Option sheet = command.add_option("--eds", settings.sheet);
+  command.add_option("--eds", settings.sheet);
   const Option all = command.add_flag("--all", settings.all, "except DOMAINs; needs --eds");
-  all.needs(sheet).excludes(objects);
+  all.excludes(objects);
   add_type_option(command, settings.type);
   add_format_option(command, settings.format);
   const Option raw = command.add_flag("--raw", settings.raw, "print values like this");

@@ -27,7 +27,6 @@ constexpr const char* examples = R"(Examples:
   edsc configure socketcan:can0 5 axis1.dcf --store                  write them to a node of this kind)";
 
 struct Settings : NodeSettings {
-  std::string path;
   std::string output;
   std::string format = "text";
   std::optional<unsigned> bit_rate;
@@ -88,7 +87,7 @@ int save(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded) {
   if (node.upload(0x1000, 0).end == SdoEnd::no_answer) {
     fail(fmt::format("node {} does not answer", settings.node), exit_device_failed);
   }
-  if (!settings.force) check_node(node, *loaded.device, settings.path, "--force saves anyway");
+  if (!settings.force) check_node(node, *loaded.device, settings.sheet, "--force saves anyway");
   const NodeConfiguration found = read_node(node, settings, *loaded.device);
   if (found.lost) fail(fmt::format("node {} no longer answers; nothing saved", settings.node), exit_device_failed);
   if (found.restarted) {
@@ -107,10 +106,11 @@ int save(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded) {
 
 int run_save(const Settings& settings) {
   if (settings.format == "json" && settings.output.empty()) throw_requires("--format json", "--output");
-  const auto loaded = load_live_device(settings.path, settings.node);
+  if (settings.sheet.empty()) throw_required("FILE");
+  const auto loaded = load_live_device(settings.sheet, settings.node);
   Diagnostics ignored;
   if (parse_ini(*loaded->source, ignored).sections.empty()) {
-    fail(settings.path + " is not an EDS or DCF; a DCF is made from one of them");
+    fail(settings.sheet + " is not an EDS or DCF; a DCF is made from one of them");
   }
   return with_bus(settings.bus, [&](LiveBus& bus) { return save(bus, settings, *loaded); });
 }
@@ -120,7 +120,7 @@ int run_save(const Settings& settings) {
 void add_save_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_save, exit_code);
   add_node_arguments(command, settings);
-  command.add_option("FILE", settings.path, "EDS of the node, or a DCF").required();
+  command.add_option("FILE", settings.sheet, "EDS of the node, or a DCF (default: that of the network file)");
   command.add_option("--output", settings.output, "the DCF (default: standard output)").check(xdd_name_problem);
   command.add_flag("--all", settings.all);
   command.add_option("--bit-rate", settings.bit_rate, "for [DeviceComissioning]").range(5, 1000);

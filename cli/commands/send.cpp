@@ -38,14 +38,28 @@ struct Settings {
   std::optional<std::uint32_t> can_id;
   std::optional<std::uint32_t> overflow;
   std::optional<std::vector<std::uint8_t>> time;
-  NodeFile node;
-  std::string sheet;
+  NodeSettings node;
   std::uint32_t number = 0;
   std::vector<std::string> values;
   bool transmit = false;
   canopen::Frame frame;
 
   canopen::Frame (*compose)(const Settings&, std::uint32_t sent) = nullptr;  ///< the subcommand; see KindRow
+
+  void resolve() {
+    take_old_form();
+    node.resolve();
+  }
+
+ private:
+  /// `5=drive.eds` of previous versions.
+  void take_old_form() {
+    const auto old = parse_node_file(node.written_node);
+    if (!old) return;
+    print_to_stderr("edsc: note: \"{0}={1}\" is written \"{0} --eds {1}\" now\n", old->node_id, old->path);
+    node.written_node = fmt::format("{}", old->node_id);
+    if (node.sheet.empty()) node.sheet = old->path;
+  }
 };
 
 canopen::Frame frame_with(std::uint32_t can_id, std::span<const std::uint8_t> bytes) {
@@ -86,14 +100,10 @@ PdoValue pdo_value(const LoadedDevice& loaded, const std::string& text) {
 }
 
 canopen::Frame compose_pdo_of_file(const Settings& settings, std::uint32_t /*sent*/) {
-  if (!settings.node.path.empty()) {
-    print_to_stderr("edsc: note: \"{0}={1}\" is written \"{0} --eds {1}\" now\n", settings.node.node_id,
-                    settings.node.path);
-  }
-  const std::string& path = settings.sheet.empty() ? settings.node.path : settings.sheet;
+  const std::string& path = settings.node.sheet;
   if (path.empty()) throw_required("--eds");
-  const auto loaded = load_live_device(path, settings.node.node_id);
-  const NodeModel model{settings.node.node_id, *loaded->device};
+  const auto loaded = load_live_device(path, settings.node.node);
+  const NodeModel model{settings.node.node, *loaded->device};
   const PdoDirection direction = settings.transmit ? PdoDirection::transmit : PdoDirection::receive;
   const auto pdo = std::ranges::find_if(
       model.pdos(), [&](const PdoLayout& one) { return one.direction == direction && one.number == settings.number; });
@@ -107,7 +117,7 @@ canopen::Frame compose_pdo_of_file(const Settings& settings, std::uint32_t /*sen
     const Quantity* const quantity = entry != nullptr ? quantity_of(*entry) : nullptr;
     return quantity != nullptr && !quantity->stated_by.empty();
   });
-  if (has_default_scale) report_default_scales(settings.node.node_id, *loaded->device);
+  if (has_default_scale) report_default_scales(settings.node.node, *loaded->device);
   const ComposedPdo composed = compose_pdo(*pdo, values);
   if (!composed.ok()) fail(composed.problem);
   return composed.frame;
@@ -169,13 +179,9 @@ void add_time_options(Command command, Settings& settings) {
 }
 
 void add_pdo_options(Command command, Settings& settings) {
-  // The form `5=drive.eds` is that of previous versions.
-  const auto parse = [](const std::string& text) -> std::optional<NodeFile> {
-    if (const auto node = parse_node(text)) return NodeFile{*node, {}};
-    return parse_node_file(text);
-  };
-  add_parsed(command, "NODE", settings.node, parse, "a node-ID from 1 to 127", "node-ID, 1..127").required();
-  command.add_option("--eds", settings.sheet);
+  add_node_argument(command, settings.node.written_node);
+  add_network_option(command, settings.node.network);
+  command.add_option("--eds", settings.node.sheet);
   add_parsed(
       command, "NUMBER", settings.number, [](const std::string& text) { return parse_count(text, classical_can.pdos); },
       fmt::format("a number from 1 to {}", classical_can.pdos), "number of the RPDO: 1 is 1400h")

@@ -28,7 +28,6 @@ constexpr const char* examples = R"(Examples:
 struct Settings : NodeSettings {
   std::string object;
   std::vector<std::string> value;
-  std::string sheet;
   const canopen::DataTypeRow* type = nullptr;
   std::string file;
   bool raw = false;

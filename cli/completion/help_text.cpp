@@ -128,7 +128,7 @@ std::string help_text(const CommandParts& command) {
   append_examples(out, command.example_lines);
   if (command.path.empty()) {
     out += "\n\"edsc help COMMAND\" shows the options of a command, with examples.\n";
-    out += "EDSC_BUS is the default of BUS.\n";
+    out += "EDSC_BUS is the default of BUS, EDSC_NETWORK that of --network.\n";
   }
   return out;
 }

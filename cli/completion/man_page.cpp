@@ -30,7 +30,7 @@ interrupted by Ctrl\-C or SIGTERM
 the bus of commands that are called without BUS, such as socketcan:can0
 .TP
 .B EDSC_NETWORK
-a network file, of which completion offers node\-IDs and objects
+the network file of commands that are called without \-\-network; completion offers its nodes and objects
 .TP
 .B NO_COLOR
 if set, output is not coloured unless

@@ -131,7 +131,14 @@ bool load_deviations(const ConformanceSettings& settings, DeclaredDeviations& de
 
 }  // namespace
 
+void ConformanceSettings::resolve() {
+  const bool has_sheet = !sheet.empty();
+  const NamedNode found = NodeSettings::resolve();
+  if (!has_sheet && options.empty()) options = found.options;
+}
+
 std::unique_ptr<ConformanceTest> prepare_conformance_test(const ConformanceSettings& settings) {
+  if (settings.sheet.empty()) throw_required("FILE");
   auto test = std::make_unique<ConformanceTest>();
   const bool has_sheet = load_sheet(settings, *test);
   if (!load_deviations(settings, test->deviations) || !has_sheet) return nullptr;
@@ -193,8 +200,10 @@ void run_conformance_test(LiveBus& bus, const ConformanceSettings& settings, Con
 }
 
 std::vector<Option> add_conformance_arguments(Command command, ConformanceSettings& settings) {
-  return {add_bus_argument(command, settings.bus), add_node_argument(command, settings.node),
-          command.add_option("FILE", settings.sheet, "description of the node: EDS, DCF, XDD or XDC").required()};
+  std::vector<Option> arguments = add_node_arguments(command, settings);
+  command.add_option("FILE", settings.sheet,
+                     "description of the node: EDS, DCF, XDD or XDC (default: that of the network file)");
+  return arguments;
 }
 
 void add_conformance_options(Command command, ConformanceSettings& settings) {

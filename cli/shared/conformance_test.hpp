@@ -19,7 +19,6 @@
 namespace edsc {
 
 struct ConformanceSettings : NodeSettings {
-  std::string sheet;
   std::string options;
   std::string level = "read";
   bool store = false, application = false, outputs = false;
@@ -30,9 +29,12 @@ struct ConformanceSettings : NodeSettings {
   bool quiet = false;
   std::uint32_t seed = 1;
   ColorOption color;
+
+  /// The EDS of the network file comes with its options file.
+  void resolve();
 };
 
-/// `BUS NODE FILE`.
+/// `BUS NODE FILE` and `--network`.
 std::vector<Option> add_conformance_arguments(Command command, ConformanceSettings& settings);
 /// What the test may do, which cases run, and what a report says about it. Other options of the command follow.
 void add_conformance_options(Command command, ConformanceSettings& settings);

@@ -17,13 +17,24 @@ Option add_bus_argument(Command command, std::string& bus) {
       .required();
 }
 
-Option add_node_argument(Command command, std::uint8_t& node) {
-  return add_parsed(command, "NODE", node, parse_node, "a node-ID from 1 to 127", "node-ID, 1..127").required();
+Option add_node_argument(Command command, std::string& node, const std::string& detail) {
+  const std::string forms = "node-ID, 1..127, or a name from the network file";
+  return command.add_option("NODE", node, detail.empty() ? forms : detail).required();
 }
 
-void add_node_arguments(Command command, NodeSettings& settings) {
-  add_bus_argument(command, settings.bus);
-  add_node_argument(command, settings.node);
+NamedNode NodeSettings::resolve() {
+  if (written_node.empty()) return {};
+  NamedNode found = find_node("NODE", written_node, network, sheet.empty());
+  node = found.node_id;
+  if (sheet.empty()) sheet = found.sheet;
+  return found;
+}
+
+std::vector<Option> add_node_arguments(Command command, NodeSettings& settings) {
+  std::vector<Option> arguments{add_bus_argument(command, settings.bus),
+                                add_node_argument(command, settings.written_node)};
+  add_network_option(command, settings.network);
+  return arguments;
 }
 
 Option add_timeout_option(Command command, unsigned& milliseconds) {

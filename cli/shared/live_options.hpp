@@ -10,24 +10,31 @@
 #include "online/scan.hpp"
 #include "online/sdo_access.hpp"
 #include "shared/command_line.hpp"
+#include "shared/node_names.hpp"
 
 namespace edsc {
 
 /// What the commands for one node have in common.
 struct NodeSettings {
   std::string bus;
-  std::uint8_t node = 0;
+  std::string written_node;  ///< NODE: a node-ID or a name
+  std::string network;
+  std::string sheet;      ///< EDS of the node; that of the network file if no other is given
+  std::uint8_t node = 0;  ///< by resolve()
   SdoSettings sdo;
+
+  /// Finds the node. Returns what the network file states about it, if the EDS is not given.
+  NamedNode resolve();
 };
 
 /// `BUS`
 Option add_bus_argument(Command command, std::string& bus);
 
-/// `NODE`: 1..127.
-Option add_node_argument(Command command, std::uint8_t& node);
+/// `NODE`, as text for find_node().
+Option add_node_argument(Command command, std::string& node, const std::string& detail = "");
 
-/// `BUS NODE`
-void add_node_arguments(Command command, NodeSettings& settings);
+/// `BUS NODE` and `--network`
+std::vector<Option> add_node_arguments(Command command, NodeSettings& settings);
 
 /// `--timeout MS`
 Option add_timeout_option(Command command, unsigned& milliseconds);

@@ -1,0 +1,49 @@
+/// The nodes of a bus or log that the user describes: `--node ID=FILE` and `--network FILE`.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "decode/decoder.hpp"
+#include "decode/log/print_message.hpp"
+#include "load/load_device.hpp"
+#include "network/network.hpp"
+#include "shared/command_line.hpp"
+#include "shared/common_options.hpp"
+
+namespace edsc {
+
+struct NodesSettings {
+  std::vector<std::string> nodes;  ///< of --node
+  std::string network;
+
+  /// Whether a node is described, or may be by EDSC_NETWORK.
+  [[nodiscard]] bool describe_nodes() const;
+};
+
+/// `--node` and `--network`
+void add_nodes_options(Command command, NodesSettings& settings);
+
+/// A device and its names. Those of a network file are as the network configures them.
+struct GivenNode {
+  NamedDevice named;
+  std::uint32_t inhibit_time_unit = 0;  ///< of its PDOs, in microseconds
+};
+
+struct GivenNodes {
+  std::vector<std::unique_ptr<LoadedDevice>> files;  ///< of --node
+  std::unique_ptr<LoadedNetwork> network;            ///< null without a network file
+  std::map<std::uint8_t, GivenNode> devices;         ///< by node-ID
+  NodeLabels labels;
+
+  [[nodiscard]] std::vector<KnownNode> known() const;
+};
+
+/// The nodes of the network file, then those of --node, which replace nodes of the network file. Errors in their EDS
+/// are printed; ends the command if one cannot be used.
+[[nodiscard]] GivenNodes load_given_nodes(const NodesSettings& settings, const ColorOption& color);
+
+}  // namespace edsc
