@@ -7,6 +7,7 @@
 #include "audit/cycle_report.hpp"
 #include "backend/render.hpp"
 #include "backend/template_parts.hpp"
+#include "device/device.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
 #include "values/append.hpp"
@@ -126,8 +127,7 @@ json finding_object(const Finding& finding, const Report& report) {
   return {{"rule", rule.id},
           {"severity", to_string(rule.severity)},
           {"node_id", or_null(subject.node_id != 0, unsigned{subject.node_id})},
-          {"index", or_null(subject.index != 0, subject.index)},
-          {"sub_index", or_null(subject.index != 0, unsigned{subject.sub_index})},
+          {"index", or_null(subject.index != 0, entry_label(subject.index, subject.sub_index))},
           {"can_id", or_null(has_can_id, subject.can_id)},
           {"abort_code", or_null(subject.rule == AuditRule{"sdo-abort"}, subject.can_id)},
           {"subject", printable(subject_text(finding, report))},
@@ -181,7 +181,7 @@ std::string json_report(const Report& report) {
   const auto percent = [&](std::uint64_t tenths) {
     return has_load ? json(static_cast<double>(tenths) / 10) : json(nullptr);
   };
-  const json document = {{"version", 1},
+  const json document = {{"schema", 2},
                          {"log", printable(report.log)},
                          {"clean", report.is_clean()},
                          {"frames", totals.frames},

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "device/device.hpp"
 #include "text/printable.hpp"
 #include "text/text_table.hpp"
 #include "values/append.hpp"
@@ -107,8 +108,7 @@ json cycles_json(const CycleTimes& times, const NodeLabels& labels) {
                       {"subject", printable(subject_of(key, cycle, labels))},
                       {"frames", cycle.frames},
                       {"nominal_us", or_null(key.period_us.has_value(), key.period_us.value_or(0))},
-                      {"index", or_null(cycle.index != 0, cycle.index)},
-                      {"sub_index", or_null(cycle.index != 0, unsigned{cycle.sub_index})},
+                      {"index", or_null(cycle.index != 0, entry_label(cycle.index, cycle.sub_index))},
                       {"distance", spread_object(cycle.distance)},
                       {"after_sync", spread_object(cycle.after_sync)}});
   }

@@ -93,7 +93,7 @@ Json failures_json(const std::vector<ConfigurationFailure>& failures) {
 }  // namespace
 
 Json entry_json(const LiveEntry& entry, const ConfigurationValue* value) {
-  Json row{{"index", entry.index}, {"sub_index", entry.sub_index}};
+  Json row{{"index", entry_label(entry.index, entry.sub_index)}};
   row["name"] = entry.name.empty() ? Json(nullptr) : Json(entry.name);
   const bool placed = value != nullptr && value->position.file != nullptr;
   row["line"] = placed ? Json(origin_of(value->position).line) : Json(nullptr);
@@ -150,7 +150,7 @@ std::string summary_text(const ConfigurationRun& run) {
 }
 
 Json as_json(const ConfigurationRun& run) {
-  return {{"version", 1},
+  return {{"schema", 2},
           {"node_id", run.node},
           {"dry_run", run.dry_run},
           {"configured_already", !run.all && run.changes.empty() && run.withheld.empty()},

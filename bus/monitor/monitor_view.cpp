@@ -139,8 +139,8 @@ std::string cut_to_width(const std::string& line, std::size_t width) {
 
 Json monitor_json(const MonitorState& state, const MonitorView& view, std::int64_t now_us) {
   const auto rounded = [](double number) { return std::round(number * 10) / 10; };
-  Json json{{"version", 1},
-            {"seconds", rounded(seconds(now_us - state.start_us()))},
+  Json json{{"schema", 2},
+            {"duration_us", now_us - state.start_us()},
             {"frames", state.frames().total()},
             {"frames_per_second", rounded(state.frames().per_second())}};
   const auto percent = load(state, view);
@@ -153,7 +153,7 @@ Json monitor_json(const MonitorState& state, const MonitorView& view, std::int64
          {"state", state_or_null(node.state)},
          {"assumed_state", state_or_null(node.assumed)},
          {"heartbeats", node.heartbeats},
-         {"heard_ms_ago", node.heard_us ? Json((now_us - *node.heard_us) / 1000) : Json(nullptr)},
+         {"heard_ago_ms", node.heard_us ? Json((now_us - *node.heard_us) / 1000) : Json(nullptr)},
          {"late", node.is_late(now_us)},
          {"emergencies", node.emergencies},
          {"last_emergency",

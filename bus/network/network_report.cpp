@@ -104,7 +104,7 @@ std::string verify_summary(const std::vector<LiveNode>& nodes, const std::string
 }
 
 Json verify_json(const std::vector<LiveNode>& nodes) {
-  Json json{{"version", 1}, {"same", std::ranges::all_of(nodes, is_same)}, {"nodes", Json::array()}};
+  Json json{{"schema", 2}, {"same", std::ranges::all_of(nodes, is_same)}, {"nodes", Json::array()}};
   for (const LiveNode& live : nodes) {
     Json row = node_json(live);
     row["same"] = is_same(live);
@@ -131,7 +131,7 @@ std::string apply_summary(const std::vector<LiveNode>& nodes) {
 }
 
 Json apply_json(const std::vector<LiveNode>& nodes) {
-  Json json{{"version", 1},
+  Json json{{"schema", 2},
             {"succeeded", std::ranges::all_of(nodes, &LiveNode::succeeded)},
             {"started", std::ranges::all_of(nodes, &LiveNode::started)},
             {"nodes", Json::array()}};

@@ -185,7 +185,7 @@ std::string value_of(const LiveEntry& entry, std::span<const std::uint8_t> bytes
 }
 
 Json as_json(const LiveEntry& entry, const SdoOutcome& outcome, std::span<const std::uint8_t> bytes) {
-  Json json{{"index", entry.index}, {"sub_index", entry.sub_index}};
+  Json json{{"index", entry_label(entry.index, entry.sub_index)}};
   json["name"] = entry.name.empty() ? Json(nullptr) : Json(entry.name);
   json["type"] = entry.type == nullptr ? Json(nullptr) : Json(entry.type->name);
   json["result"] = result_names[static_cast<std::size_t>(outcome.end)];

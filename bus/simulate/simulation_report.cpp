@@ -235,7 +235,7 @@ std::vector<std::string> simulation_lines(const SimulatedNetwork& simulated) {
 
 Json simulation_json(const SimulatedNetwork& simulated) {
   const SimulationResult& result = simulated.result;
-  Json json{{"version", 1}, {"problems", simulation_problems(simulated)}, {"measured_us", result.measured_us}};
+  Json json{{"schema", 2}, {"problems", simulation_problems(simulated)}, {"measured_us", result.measured_us}};
   json["load"] = {{"seen", load_of(result.busy_us, result.measured_us)},
                   {"busiest_second", busiest_load(result)},
                   {"computed_min", simulated.timing.load.min * 100},

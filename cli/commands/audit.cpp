@@ -59,7 +59,8 @@ int list_rules(const Settings& settings) {
                     {"source", rule.source},
                     {"advice", rule.explanation}});
   }
-  if (settings.format != "text") fmt::print("{}\n", json_text(rows));
+  if (settings.format != "text")
+    fmt::print("{}\n", json_text(nlohmann::ordered_json{{"schema", 2}, {"rules", std::move(rows)}}));
   return exit_fine;
 }
 

@@ -102,7 +102,8 @@ int explain(const Rule& rule, const std::string& format) {
       print_example("Right", example.right);
     }
   } else {
-    nlohmann::ordered_json json = to_json(rule);
+    nlohmann::ordered_json json{{"schema", 2}};
+    json.update(to_json(rule));
     for (const RuleExample& example : of_rule) {
       json["examples"].push_back({{"wrong", example.wrong}, {"right", example.right}});
     }
@@ -134,13 +135,13 @@ std::string to_line(const OptionRow& row) {
 
 /// Lists a table, a row on each line, or as JSON.
 template <class Rows>
-int list(const Rows& table, const std::string& format) {
+int list(const Rows& table, const char* member, const std::string& format) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const auto& row : table) {
     if (format == "text") print_visibly(stdout, "{}\n", to_line(row));
     rows.push_back(to_json(row));
   }
-  if (format != "text") fmt::print("{}\n", json_text(rows));
+  if (format != "text") fmt::print("{}\n", json_text(nlohmann::ordered_json{{"schema", 2}, {member, std::move(rows)}}));
   return exit_fine;
 }
 
@@ -158,8 +159,8 @@ int check_and_repair(const Settings& settings) {
 }
 
 int check(const Settings& settings) {
-  if (settings.list_rules) return list(check_rules, settings.format);
-  if (settings.list_options) return list(options_table, settings.format);
+  if (settings.list_rules) return list(check_rules, "rules", settings.format);
+  if (settings.list_options) return list(options_table, "options", settings.format);
   if (!settings.explained_rule.empty())
     return explain(find_rule(check_rules, settings.explained_rule)->row(), settings.format);
   if (settings.paths.empty()) throw_required("FILE");

@@ -106,7 +106,7 @@ std::string inquire(LssSession& session, const Settings& settings) {
   const LssResult node_id = session.inquire_node_id();
   const bool has_node_id = node_id.done() && node_id.value != canopen::unconfigured_node_id.value();
   if (settings.format == "json") {
-    Json json{{"version", 1}, {"address", address_json(address)}};
+    Json json{{"schema", 2}, {"address", address_json(address)}};
     json["node_id"] = has_node_id ? Json(node_id.value) : Json(nullptr);
     print(json);
   } else {
@@ -133,7 +133,7 @@ std::string activate(LssSession& session, const Settings& settings) {
 std::string store(LssSession& session, const Settings& /*settings*/) { return problem_of("store", session.store()); }
 
 void print_found(const std::vector<LssAddress>& found) {
-  Json json{{"version", 1}, {"unconfigured", Json::array()}};
+  Json json{{"schema", 2}, {"unconfigured", Json::array()}};
   for (const LssAddress& address : found) json["unconfigured"].push_back(address_json(address));
   print(json);
 }
@@ -214,7 +214,7 @@ std::string assign(LssSession& session, const Settings& settings) {
   if (problem.empty()) problem = confirm_node_id(session, settings, before, after);
   if (!problem.empty()) return problem;
   if (settings.format == "json") {
-    print({{"version", 1}, {"address", address_json(address)}, {"node_id", settings.node_id}});
+    print({{"schema", 2}, {"address", address_json(address)}, {"node_id", settings.node_id}});
   } else {
     print_visibly(stdout, "{}: node-ID {}{}\n", to_text(address), settings.node_id, settings.store ? ", stored" : "");
   }

@@ -166,7 +166,7 @@ int save(const Settings& settings, const LiveEntry& entry, const SdoOutcome& out
 
 int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chosen>& entries) {
   SdoAccess node{bus, canopen::NodeId{settings.node}, settings.sdo};
-  Json json{{"version", 1}, {"node_id", settings.node}, {"entries", Json::array()}};
+  Json json{{"schema", 2}, {"node_id", settings.node}, {"entries", Json::array()}};
   int exit_code = exit_fine;
   unsigned silent = 0;
   bool heard = false;

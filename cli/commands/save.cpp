@@ -37,11 +37,11 @@ struct Settings : NodeSettings {
 using Json = nlohmann::ordered_json;
 
 Json address_json(const LiveEntry& entry) {
-  return {{"index", entry.index}, {"sub_index", entry.sub_index}, {"name", entry.name}};
+  return {{"index", entry_label(entry.index, entry.sub_index)}, {"name", entry.name}};
 }
 
 Json as_json(const Settings& settings, const NodeConfiguration& found, const SavedDcf& saved) {
-  Json json{{"version", 1},
+  Json json{{"schema", 2},
             {"node_id", settings.node},
             {"file", settings.output},
             {"read", found.values.size() + found.process_data.size()},

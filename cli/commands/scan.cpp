@@ -171,7 +171,7 @@ Json as_json(const FoundNode& node, const std::vector<Candidate>& candidates) {
 }
 
 void print_json(const Findings& found, const std::vector<Candidate>& candidates) {
-  Json json{{"version", 1}, {"nodes", Json::array()}, {"unconfigured", Json::array()}};
+  Json json{{"schema", 2}, {"nodes", Json::array()}, {"unconfigured", Json::array()}};
   for (const FoundNode& node : found.nodes) json["nodes"].push_back(as_json(node, candidates));
   for (const canopen::LssAddress& address : found.unconfigured) {
     json["unconfigured"].push_back({{"vendor_id", address.vendor_id},

@@ -20,7 +20,7 @@ FindingsReport::FindingsReport(std::string format, const ColorOption& color, boo
       color_{color},
       all_{all},
       sarif_{EDSC_VERSION, check_rules, url_of},
-      json_{{"version", 1},
+      json_{{"schema", 2},
             {"diagnostics", nlohmann::json::array()},
             {"allowed_diagnostics", nlohmann::json::array()},
             {"suppressed", nlohmann::json::array()},

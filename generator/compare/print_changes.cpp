@@ -119,7 +119,7 @@ std::string new_file_as_markdown(std::string_view name) { return fmt::format("##
 nlohmann::ordered_json changes_as_json(const Changes& changes) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Change& change : changes.all()) list.push_back(change_json(change));
-  return {{"version", 1},
+  return {{"schema", 2},
           {"changes", std::move(list)},
           {"breaking", changes.breaking()},
           {"compatible", changes.all().size() - changes.breaking()}};

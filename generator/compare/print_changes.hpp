@@ -26,7 +26,7 @@ namespace edsc {
 /// The heading of a file that is new.
 [[nodiscard]] std::string new_file_as_markdown(std::string_view name);
 
-/// `{"version": 1, "changes": [...], "breaking": n, "compatible": n}`: docs/command-line.md.
+/// `{"schema": 2, "changes": [...], "breaking": n, "compatible": n}`: docs/command-line.md.
 [[nodiscard]] nlohmann::ordered_json changes_as_json(const Changes& changes);
 
 }  // namespace edsc

@@ -163,7 +163,7 @@ nlohmann::ordered_json stored_values_as_json(const std::vector<StoredValueChange
                     {"old_position", json_of_place(value.old_position)},
                     {"new_position", json_of_place(value.new_position)}});
   }
-  return {{"version", 1},
+  return {{"schema", 2},
           {"stored_values", std::move(list)},
           {"kept", count(values, StoredFate::kept)},
           {"converted", count(values, StoredFate::converted)},

@@ -260,7 +260,7 @@ nlohmann::json print_json(const Diagnostics& diagnostics) {
     nlohmann::json& row = rows.emplace_back(to_json(one));
     if (one.follows_from) row["follows_from"] = places[*one.follows_from];
   }
-  return {{"version", 1},
+  return {{"schema", 2},
           {"diagnostics", std::move(rows)},
           {"allowed_diagnostics", allowed_rows(diagnostics)},
           {"suppressed", to_json_array(diagnostics.omitted())},

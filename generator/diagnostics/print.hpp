@@ -20,7 +20,7 @@ struct TextStyle {
 void print_text(std::string& out, const Diagnostics& diagnostics, const TextStyle& style);
 void print_text(std::FILE* out, const Diagnostics& diagnostics, const TextStyle& style);
 
-/// {"version":1, "diagnostics":[...], "allowed_diagnostics":[...], "suppressed":[...], "causes":n, "errors":n,
+/// {"schema":2, "diagnostics":[...], "allowed_diagnostics":[...], "suppressed":[...], "causes":n, "errors":n,
 /// "warnings":n, "notes":n, "allowed":n}. A finding that follows from another one has its index in "diagnostics" as
 /// `follows_from`. File names may contain bytes that are not UTF-8: dump it with
 /// nlohmann::json::error_handler_t::replace.

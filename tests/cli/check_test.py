@@ -298,13 +298,13 @@ class Documentation(CheckTest):
         result = self.run_edsc("check", "--explain", "pdo-length")
         rule = json.loads(self.run_edsc("check", "--explain", "pdo-length", "--format", "json").stdout)
         self.assertEqual(result.returncode, FINE)
-        self.assertEqual(set(rule), {"id", "severity", "severities", "meaning", "source", "consequences", "url", "examples"})
+        self.assertEqual(set(rule), {"schema", "id", "severity", "severities", "meaning", "source", "consequences", "url", "examples"})
         (example,) = rule.pop("examples")
         self.assertEqual(result.stdout, f"pdo-length: {rule['severity']}\n{rule['meaning']}\nSource: {rule['source']}\n"
                                         f"Documentation, with examples: {rule['url']}\n\n"
                                         f"Wrong:\n\n{example['wrong'][0]}\nRight:\n\n{example['right'][0]}")
         self.assertIn("[1A00sub1]", example["wrong"][0])
-        self.assertIn(rule, json.loads(self.run_edsc("check", "--list-rules", "--format", "json").stdout))
+        self.assertIn(rule, json.loads(self.run_edsc("check", "--list-rules", "--format", "json").stdout)["rules"])
 
     def test_is_found_beside_the_program(self) -> None:
         """An installed program names the installed document; without documents, there is no link."""
@@ -369,7 +369,7 @@ class Sarif(CheckTest):
         self.assertEqual(run["tool"]["driver"]["version"], version)
 
     def test_has_all_rules_with_their_severities(self) -> None:
-        rules = json.loads(self.run_edsc("check", "--list-rules", "--format", "json").stdout)
+        rules = json.loads(self.run_edsc("check", "--list-rules", "--format", "json").stdout)["rules"]
         driver = self.sarif(self.sheet())["runs"][0]["tool"]["driver"]
         self.assertEqual([(rule["id"], rule["severity"]) for rule in rules],
                          [(rule["id"], rule["defaultConfiguration"]["level"]) for rule in driver["rules"]])

@@ -564,9 +564,9 @@ class Check(CommandLine):
         result = self.edsc("check", WRONG, GOOD, "--format", "json")
         self.expect(INPUT_HAS_ERRORS, result)
         report = json.loads(result.stdout)
-        self.assertEqual(set(report), {"version", "diagnostics", "allowed_diagnostics", "suppressed", "left_out", "causes", "errors",
+        self.assertEqual(set(report), {"schema", "diagnostics", "allowed_diagnostics", "suppressed", "left_out", "causes", "errors",
                                        "warnings", "notes", "allowed"})
-        self.assertEqual((report["version"], report["errors"]), (1, 1))
+        self.assertEqual((report["schema"], report["errors"]), (2, 1))
         (finding,) = (row for row in report["diagnostics"] if row["severity"] == "error")
         self.assertEqual(set(finding), {"file", "line", "column", "length", "severity", "rule", "message", "notes"})
         self.assertEqual((finding["rule"], finding["severity"], finding["column"]), ("pdo-size", "error", 14))

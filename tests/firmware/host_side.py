@@ -94,7 +94,7 @@ class HostSide:
 
     def read_all(self) -> None:
         result = self.node_command("read", "--all", "--eds", self.path, "--format", "json")
-        found = {(row["index"], row["sub_index"]): row for row in json.loads(result.stdout)["entries"]}
+        found = {(int(row["index"][:4], 16), int(row["index"][6:], 16)): row for row in json.loads(result.stdout)["entries"]}
         no_error = range(1, 255)  # entries of 1003h that have no value, since 1003h:00 is 0
         wanted = {place: entry for place, entry in self.sheet.entries.items() if entry.readable and entry.type != DOMAIN
                   and not (place[0] == 0x1003 and place[1] in no_error)}

@@ -5,6 +5,7 @@
 
 #include "conform/report/json_report.hpp"
 #include "conform/report/report_facts.hpp"
+#include "device/device.hpp"
 #include "diagnostics/print.hpp"
 #include "text/printable.hpp"
 
@@ -28,8 +29,7 @@ json correction_object(const Correction& correction) {
 json difference_object(const Difference& difference, const Acceptance& acceptance) {
   json corrections = json::array();
   for (const Correction& correction : difference.corrections) corrections.push_back(correction_object(correction));
-  return {{"index", difference.index},
-          {"sub_index", difference.sub_index},
+  return {{"index", entry_label(difference.index, difference.sub_index)},
           {"name", text_or_null(difference.name)},
           {"kind", row_of(difference.kind).name},
           {"eds", difference.in_eds},
@@ -43,8 +43,7 @@ json difference_object(const Difference& difference, const Acceptance& acceptanc
 }
 
 json entry_object(const ComparedEntry& entry) {
-  return {{"index", entry.index},
-          {"sub_index", entry.sub_index},
+  return {{"index", entry_label(entry.index, entry.sub_index)},
           {"in_eds", entry.in_eds},
           {"name", text_or_null(entry.name)},
           {"type", text_or_null(entry.type)},
@@ -87,7 +86,7 @@ std::string json_report(const Acceptance& acceptance) {
                         {"differs", row.differs}});
   }
   const std::vector<std::string> objections = acceptance.objections();
-  const json report = {{"version", 1},
+  const json report = {{"schema", 2},
                        {"edsc", run.version},
                        {"accepted", objections.empty()},
                        {"objections", objections},

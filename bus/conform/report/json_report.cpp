@@ -132,7 +132,7 @@ json run_object(const RunReport& run, const Device& sheet) {
   for (const AreaCount& count : count_by_area(run)) areas.push_back(area_object(count));
   json cases = json::array();
   for (const CaseResult& result : run.cases) cases.push_back(case_object(result, run, sheet));
-  json report = {{"version", 1},
+  json report = {{"schema", 2},
                  {"edsc", run.version},
                  {"passed", run.passed()},
                  {"title", text_or_null(run.title)},

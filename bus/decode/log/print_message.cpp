@@ -137,6 +137,19 @@ void append_meaning(std::string& out, const MessageValue& value) {
   out += value.word->json;
 }
 
+void append_time(std::string& out, std::int64_t us) {
+  append_key(out, "time_us");
+  if (us < 0) out += '-';
+  append_decimal(out, us < 0 ? 0 - static_cast<std::uint64_t>(us) : static_cast<std::uint64_t>(us));
+}
+
+/// `"index":"1018h:01"`
+void append_index(std::string& out, std::uint16_t index, std::uint8_t sub_index) {
+  out += "\"index\":\"";
+  append_entry_label(out, index, sub_index);
+  out += '"';
+}
+
 void append_values(std::string& out, const Message& message) {
   if (message.values.empty()) return;
   append_key(out, "values");
@@ -145,9 +158,8 @@ void append_values(std::string& out, const Message& message) {
     const std::string_view text =
         std::string_view{message.text}.substr(value.text_begin, value.text_end - value.text_begin);
     out += separator;
-    out += "{\"index\":";
-    append_decimal(out, value.index);
-    append_member(out, "sub_index", value.sub_index);
+    out += '{';
+    append_index(out, value.index, value.sub_index);
     if (!value.name.empty()) append_member(out, "name", value.name);
     if (value.type != nullptr) append_member(out, "type", value.type->name);
     append_key(out, "value");
@@ -164,10 +176,10 @@ void append_transfer(std::string& out, const Message& message) {
   append_key(out, "transfer");
   out += message.download ? "{\"direction\":\"download\"" : "{\"direction\":\"upload\"";
   append_member(out, "step", step_name(message.step));
-  append_member(out, "index", message.index);
-  append_member(out, "sub_index", message.sub_index);
+  out += ',';
+  append_index(out, message.index, message.sub_index);
   append_member(out, "bytes", message.size);
-  if (message.duration_us >= 0) append_member(out, "microseconds", static_cast<std::uint64_t>(message.duration_us));
+  if (message.duration_us >= 0) append_member(out, "duration_us", static_cast<std::uint64_t>(message.duration_us));
   if (message.step == TransferStep::aborted) append_member(out, "abort_code", message.abort_code);
   out += '}';
 }
@@ -238,9 +250,9 @@ void append_text(std::string& out, const LogLine& line, const Message& message, 
 }
 
 void append_json(std::string& out, const LogLine& line, const Message& message, const NodeLabels& labels) {
-  out += "{\"line\":";
+  out += "{\"schema\":2,\"line\":";
   append_decimal(out, line.number);
-  if (line.has_time) append_member(out, "time", line.time);
+  if (line.has_time) append_time(out, line.microseconds);
   if (!line.interface.empty()) append_member(out, "interface", line.interface);
   append_member(out, "can_id", line.frame.id);
   if (line.frame.extended) out += ",\"extended\":true";

@@ -167,7 +167,7 @@ std::string Summary::json() const {
             {"open_transfers", open_transfers_},
             {"can_fd_frames", can_fd_frames_},
             {"broken_lines", broken_lines_}};
-  if (first_us_) json["seconds"] = seconds();
+  if (first_us_) json["duration_us"] = last_us_ - *first_us_;
   json["services"] = services_json(all_frames());
   json["nodes"] = Json::array();
   for (std::size_t id = 1; id < node_ids; ++id) {
@@ -175,15 +175,15 @@ std::string Summary::json() const {
     if (is_empty(node.frames)) continue;
     Json row{{"node", id}, {"transfers", node.transfers()}, {"aborted", node.aborted}};
     if (node.timed > 0) {
-      row["average_microseconds"] = node.sum_us / node.timed;
-      row["longest_microseconds"] = node.longest_us;
+      row["average_us"] = node.sum_us / node.timed;
+      row["longest_us"] = node.longest_us;
     }
     row["services"] = services_json(node.frames);
     json["nodes"].push_back(std::move(row));
   }
   json["aborts"] = codes_json(aborts_);
   json["emergencies"] = codes_json(emergencies_);
-  return Json{{"summary", std::move(json)}}.dump() + '\n';
+  return Json{{"schema", 2}, {"summary", std::move(json)}}.dump() + '\n';
 }
 
 }  // namespace edsc

@@ -127,7 +127,7 @@ int members(const MembersSettings& settings) {
   list_members("assume", assume_members, settings.format, json);
   list_members("nodes.*", node_members, settings.format, json);
   list_members("signals[]", signal_members, settings.format, json);
-  if (settings.format == "json") fmt::print("{}\n", json_text(json));
+  if (settings.format == "json") fmt::print("{}\n", json_text(Json{{"schema", 2}, {"members", std::move(json)}}));
   return exit_fine;
 }
 

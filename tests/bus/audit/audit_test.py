@@ -99,12 +99,12 @@ class Rules(Audits):
                     self.assertEqual({one["node_id"] for one in report["findings"]}, {case.node_id})
 
     def test_each_rule_has_a_broken_log(self) -> None:
-        rules = json.loads(self.run_edsc("--list-rules", "--format", "json").stdout)
+        rules = json.loads(self.run_edsc("--list-rules", "--format", "json").stdout)["rules"]
         self.assertEqual([rule["id"] for rule in rules], list(BROKEN))
 
     def test_numbers(self) -> None:
         one = self.report(BROKEN["pdo-event-timer"])["findings"][0]
-        self.assertEqual((one["index"], one["count"], one["expected"], one["seen"]), (0x1800, 1, "at most 100 ms", "none for 200 ms"))
+        self.assertEqual((one["index"], one["count"], one["expected"], one["seen"]), ("1800h:00", 1, "at most 100 ms", "none for 200 ms"))
         self.assertEqual(one["first"]["at_us"], 1_305_000)
         mean = self.report(BROKEN["bus-load"])["mean_load_percent"]
         self.assertGreater(mean, 0)
@@ -173,7 +173,7 @@ class Behaviour(Audits):
 
     def test_a_silent_tpdo_is_found_without_a_frame(self) -> None:
         report = self.report(Broken(lambda log: without(log, 0x185, 1200, END_MS)))
-        self.assertEqual([(one["rule"], one["index"]) for one in report["findings"]], [("pdo-event-timer", 0x1800)])
+        self.assertEqual([(one["rule"], one["index"]) for one in report["findings"]], [("pdo-event-timer", "1800h:00")])
 
     def test_a_producer_without_sync_is_found(self) -> None:
         def silent(log: list[Frame], from_ms: int) -> list[Frame]:
@@ -283,7 +283,7 @@ def page_with(rules: list[dict], page: str) -> str:
 
 
 def listed_rules() -> list[dict]:
-    return json.loads(subprocess.run([EDSC, "audit", "--list-rules", "--format", "json"], check=True, capture_output=True).stdout)
+    return json.loads(subprocess.run([EDSC, "audit", "--list-rules", "--format", "json"], check=True, capture_output=True).stdout)["rules"]
 
 
 class Documents(unittest.TestCase):

@@ -26,7 +26,7 @@ namespace {
 TEST(ConformJson, HoldsAllThatTheReportHolds) {
   const RunReport run = every_verdict();
   const auto report = nlohmann::json::parse(json_report(run, sheet().device));
-  EXPECT_EQ(report["version"], 1);
+  EXPECT_EQ(report["schema"], 2);
   EXPECT_EQ(report["passed"], false);
   EXPECT_EQ(report["verdicts"]["failed"], 1);
   EXPECT_EQ(report["permissions"], nlohmann::json::array({"store"}));

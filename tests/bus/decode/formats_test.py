@@ -255,14 +255,14 @@ class Formats(unittest.TestCase):
             for value in one.get("values", [None]):
                 row = next(records)
                 text = one["text"] if value is None else value["text"]
-                self.assertEqual((row["line"], row["time"], row["bus"], row["data"], row["service"], row["text"]),
-                                 (str(one["line"]), one["time"], one["interface"], one["data"], one["service"], text))
+                self.assertEqual((row["line"], round(float(row["time"]) * 1e6), row["bus"], row["data"], row["service"], row["text"]),
+                                 (str(one["line"]), one["time_us"], one["interface"], one["data"], one["service"], text))
                 self.assertEqual(row["node"], str(one.get("node", "")))
                 self.assertEqual(row["problem"], "true" if one.get("problem") else "false")
                 if value is None:
                     self.assertEqual(row["object"] + row["value"], "")
                     continue
-                self.assertEqual(row["object"], f"{value['index']:04X}h:{value['sub_index']:02X}")
+                self.assertEqual(row["object"], value["index"])
                 self.assertEqual((row["name"], row["unit"]), (value.get("name", ""), value.get("unit", "")))
                 if isinstance(value["value"], bool | str):
                     self.assertIn(row["value"], (str(value["value"]).lower(), str(value["value"])))

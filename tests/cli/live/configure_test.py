@@ -94,7 +94,7 @@ node 5: 3 of 4 values differ; nothing written
         found = self.expect_json(self.edsc("configure", 5, "axis.dcf", "--dry-run", "--format", "json"),
                                  "configure.schema.json")
         self.assertEqual([(row["index"], row["before"], row["wanted"]) for row in found["changes"]],
-                         [(0x1A00, "2", "1"), (0x1A00, "60410010h", "60640020h"), (0x2004, "1000 rpm", "1200 rpm")])
+                         [("1A00h:00", "2", "1"), ("1A00h:01", "60410010h", "60640020h"), ("2004h:00", "1000 rpm", "1200 rpm")])
         frames = self.network.frames("000", "605")
         self.assertEqual([frame for frame in frames if frame[:3] == "000" or frame[4] != "4"], [])
 
@@ -122,7 +122,7 @@ node 5: 3 of 4 values differ; nothing written
                     "node 5: 1 of 1 value written, 1 verified, 1 not written (node-ID, bit rate)\n",
                     withheld.format(" = 1200 rpm"))
         found = self.expect_json(self.edsc("configure", 5, "axis.dcf", "--format", "json"), "configure.schema.json")
-        self.assertEqual([row["index"] for row in found["withheld"]], [0x2004])
+        self.assertEqual([row["index"] for row in found["withheld"]], ["2004h:00"])
         self.assertFalse(found["configured_already"])
         self.expect(self.edsc("configure", 5, "axis.dcf", "--node-id-and-bit-rate"), FINE,
                     "2004h:00 CAN bit rate: 1000 rpm -> 1200 rpm\n"
@@ -242,8 +242,8 @@ switch on   1800h:01 TPDO communication parameter 1, COB-ID used by TPDO as befo
                                  "json"], cwd=self.folder, capture_output=True, text=True, timeout=600)
         found = self.expect_json(result, "configure.schema.json")
         self.assertEqual([(step["action"], step["index"], step["value"]) for step in found["steps"][:4]],
-                         [("switch off", 0x1005, None), ("switch on", 0x1005, "00000081h"),
-                          ("write", 0x2004, "1200 rpm"), ("switch off", 0x1800, None)])
+                         [("switch off", "1005h:00", None), ("switch on", "1005h:00", "00000081h"),
+                          ("write", "2004h:00", "1200 rpm"), ("switch off", "1800h:01", None)])
         self.assertTrue(found["dry_run"])
 
     def test_values_that_wait_for_others_are_tried_again(self) -> None:
@@ -345,7 +345,7 @@ axis.dcf:{rounded}:16: error: 2009h:00 Rounded value = 7: reads back as 0
         path = self.only(x2004="4000")
         line = path.read_text().splitlines().index("ParameterValue=4000") + 1
         found = self.expect_json(self.edsc("configure", 5, "axis.dcf", "--format", "json"), "configure.schema.json", FAILED)
-        self.assertEqual(found["failures"], [{"index": 0x2004, "sub_index": 0, "name": "Speed", "line": line,
+        self.assertEqual(found["failures"], [{"index": "2004h:00", "name": "Speed", "line": line,
                                               "text": "refused by the device: 0609 0031h, value too high"}])
 
 

@@ -126,7 +126,7 @@ node axis2 (6): 0 of 1 value differ
         self.assertEqual([(node["name"], node["answers"], node["same"]) for node in found["nodes"]],
                          [("axis1", True, False), ("axis3", False, False), ("axis2", True, False)])
         self.assertEqual([(one["index"], one["wanted"], one["found"]) for one in found["nodes"][0]["differences"]],
-                         [(0x2004, "1200 rpm", "1000 rpm")])
+                         [("2004h:00", "1200 rpm", "1000 rpm")])
         self.expect_nothing_written()
 
     def test_another_product(self) -> None:

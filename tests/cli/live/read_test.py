@@ -65,7 +65,7 @@ class Read(LiveTest):
 
     def test_all_as_json(self) -> None:
         found = self.expect_json(self.edsc("read", 5, "--all", "--eds", "device.eds", "--format", "json"), "read.schema.json")
-        values = {(entry["index"], entry["sub_index"]): entry["value"] for entry in found["entries"]}
+        values = {(int(entry["index"][:4], 16), int(entry["index"][6:], 16)): entry["value"] for entry in found["entries"]}
         self.assertEqual(values[0x6064, 0], 123456)
         self.assertEqual(values[0x2007, 0], -12)
         self.assertEqual(values[0x2003, 0], 1.5)
@@ -77,7 +77,7 @@ class Read(LiveTest):
     def test_a_refusal_as_json(self) -> None:
         found = self.expect_json(self.edsc("read", 5, "2FFFh", "--format", "json"), "read.schema.json", FAILED)
         self.assertEqual(found["entries"], [{
-            "index": 0x2FFF, "sub_index": 0, "name": None, "type": None, "result": "refused",
+            "index": "2FFFh:00", "name": None, "type": None, "result": "refused",
             "abort_code": 0x06020000, "text": "refused by the device: 0602 0000h, object does not exist"}])
 
     def test_a_domain_goes_to_a_file_by_block_transfer(self) -> None:

@@ -67,7 +67,7 @@ class Save(LiveTest):
         found = self.expect_json(self.edsc("save", 5, "device.eds", "-o", "all.dcf", "--all", "--format", "json"),
                                  "save.schema.json")
         self.assertEqual(found["saved"] + len(found["process_data"]), found["read"])
-        self.assertEqual([row["index"] for row in found["process_data"]], [0x6040, 0x60FF])
+        self.assertEqual([row["index"] for row in found["process_data"]], ["6040h:00", "60FFh:00"])
         values = self.values_of("all.dcf")
         self.assertEqual((values["2004"], values["1A00sub0"]), ("1000", "2"))
         self.assertNotIn("1010sub1", values)

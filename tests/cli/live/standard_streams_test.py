@@ -97,7 +97,9 @@ ROWS = (
 ENDLESS = {"bus"}  # until SIGINT
 
 
-class StandardStreams(LiveTest):
+class PreparedFiles(LiveTest):
+    """The files of the rows."""
+
     def setUp(self) -> None:
         super().setUp()
         text = (self.folder / "device.eds").read_text()
@@ -115,6 +117,8 @@ class StandardStreams(LiveTest):
     def write(self, name: str, text: str) -> None:
         (self.folder / name).write_text(text)
 
+
+class StandardStreams(PreparedFiles):
     def line(self, row: Row) -> list[str]:
         command, *subcommand = row.words.split()
         if row.bus and command in ("lss", "send"):

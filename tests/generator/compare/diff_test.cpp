@@ -379,7 +379,7 @@ TEST(Diff, SaysWhatAndWhereInOneLine) {
 TEST(Diff, HasJsonForPrograms) {
   const Compared compared(with("DefaultValue=1\n"), with("DefaultValue=2\n", "ro"));
   const auto json = changes_as_json(compared.changes);
-  EXPECT_EQ(json["version"], 1);
+  EXPECT_EQ(json["schema"], 2);
   EXPECT_EQ(json["breaking"], 1);
   EXPECT_EQ(json["compatible"], 1);
   const auto& change = json["changes"][0];

@@ -106,7 +106,7 @@ def runtime_problems(struct: str, members: dict[str, str], rows: dict[str, dict]
 def main() -> int:
     source_dir, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     listed = subprocess.run([edsc, "check", "--list-options", "--format", "json"], check=True, capture_output=True)
-    options = json.loads(listed.stdout)
+    options = json.loads(listed.stdout)["options"]
     page, schema = source_dir / "docs/options.md", source_dir / "docs/schema/options.schema.json"
     old_schema = json.loads(schema.read_text(encoding="utf-8"))
     texts = {

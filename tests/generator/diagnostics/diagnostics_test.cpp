@@ -350,7 +350,7 @@ TEST(PrintJson, HasAStableShape) {
   diagnostics.warning("duplicate-key", {&file, 2, 2, 4}, "second", {{{&file, 1, 2, 4}, "first"}});
   diagnostics.error("empty-file", {&file}, "whole");
   const nlohmann::json expected = nlohmann::json::parse(R"({
-    "version": 1,
+    "schema": 2,
     "diagnostics": [
       {"file": "a.eds", "line": 1, "column": 1, "length": 1, "severity": "error", "rule": "empty-file",
        "message": "whole", "notes": []},

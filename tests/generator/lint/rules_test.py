@@ -313,7 +313,7 @@ def main() -> int:
     base = (folder / "base.eds").read_text(encoding="utf-8")
     examples = read_examples(source / "generator/rules/check_examples.txt")
     listed = subprocess.run([edsc, "check", "--list-rules", "--format", "json"], check=True, capture_output=True)
-    rules = json.loads(listed.stdout)
+    rules = json.loads(listed.stdout)["rules"]
     ids = [rule["id"] for rule in rules]
     severities = {rule["id"]: rule["severities"] for rule in rules}
     problems = [f"{rule}: no example" for rule in ids if rule not in examples]

@@ -48,7 +48,7 @@ def schema_of(members: list[dict]) -> dict:
 def main() -> int:
     source, edsc = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
     listed = subprocess.run([edsc, "network", "members", "--format", "json"], check=True, capture_output=True)
-    path, schema = source / "docs/schema/network.schema.json", schema_of(json.loads(listed.stdout))
+    path, schema = source / "docs/schema/network.schema.json", schema_of(json.loads(listed.stdout)["members"])
     if "--write" in sys.argv:
         path.write_text(json.dumps(schema, indent=2) + "\n", encoding="utf-8")
     elif not path.exists() or json.loads(path.read_text(encoding="utf-8")) != schema:
