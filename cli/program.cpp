@@ -65,6 +65,13 @@ std::string message_of(const CLI::App& app, const CLI::ParseError& problem) {
   if (dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr) return extra_arguments(app);
   std::string message = problem.what();
   for (std::size_t at = 0; (at = message.find("\x01[", at)) != std::string::npos;) message.erase(at, 1);
+  if (dynamic_cast<const CLI::ExcludesError*>(&problem) != nullptr) {
+    constexpr std::string_view verb = " excludes ";
+    if (const std::size_t at = message.find(verb); at != std::string::npos) {
+      message.replace(at, verb.size(), " cannot be combined with ");
+    }
+  }
+  if (message == "BUS is required") message += "; the environment variable EDSC_BUS states the default";
   return message;
 }
 

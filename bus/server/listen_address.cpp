@@ -17,6 +17,15 @@ ListenAddress parse_listen_address(const std::string& text) {
   throw std::invalid_argument{"\"" + text + "\" is not a listen address; expected HOST:PORT, such as 127.0.0.1:29536"};
 }
 
+std::string listen_address_problem(const std::string& text) {
+  try {
+    static_cast<void>(parse_listen_address(text));
+    return {};
+  } catch (const std::invalid_argument& problem) {
+    return problem.what();
+  }
+}
+
 std::string to_text(const ListenAddress& address) {
   const bool ipv6 = address.host.find(':') != std::string::npos;
   return (ipv6 ? "[" + address.host + "]" : address.host) + ":" + std::to_string(address.port);

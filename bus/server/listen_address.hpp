@@ -14,6 +14,9 @@ struct ListenAddress {
 /// Throws std::invalid_argument with a message for the user if the address is malformed.
 [[nodiscard]] ListenAddress parse_listen_address(const std::string& text);
 
+/// What is wrong with the text of an address; empty for a valid one.
+[[nodiscard]] std::string listen_address_problem(const std::string& text);
+
 /// HOST:PORT again.
 [[nodiscard]] std::string to_text(const ListenAddress& address);
 

@@ -81,7 +81,7 @@ int serve(const Settings& settings) {
 
 void add_bus_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, serve, exit_code);
-  command.add_option("--listen", settings.listen).show_default();
+  command.add_option("--listen", settings.listen).check(listen_address_problem).show_default();
   command.add_option("NAME", settings.buses, "names of the buses").check(bad_bus_name).show_default();
   command.add_option("--clients", settings.limits.clients).range(1, 1000).show_default();
   command.add_option("--log", settings.log, "or - for standard output; the addresses are then on standard error");

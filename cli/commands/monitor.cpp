@@ -197,14 +197,7 @@ void add_monitor_options(Command command, int& exit_code) {
       .optional_value()
       .show_default("127.0.0.1:8080")
       .excludes("--once")
-      .check([](const std::string& text) {
-        try {
-          static_cast<void>(parse_listen_address(text));
-          return std::string{};
-        } catch (const std::invalid_argument& problem) {
-          return std::string{problem.what()};
-        }
-      });
+      .check(listen_address_problem);
   add_format_option(command, settings.format);
   settings.color.add_to(command);
 }

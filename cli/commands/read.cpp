@@ -207,7 +207,7 @@ int read_entries(LiveBus& bus, const Settings& settings, const std::vector<Chose
 
 int run_read(const Settings& settings) {
   if (!settings.all && settings.objects.empty()) throw_required("OBJECT or --all");
-  if (settings.all && settings.sheet.empty()) throw_requires("--all", "--eds");
+  if (settings.all && settings.sheet.empty()) throw_requires("--all", "--eds or --network");
   const auto loaded = settings.sheet.empty() ? nullptr : load_live_device(settings.sheet, settings.node);
   const std::vector<Chosen> entries = choose_entries(settings, loaded.get());
   if (!settings.file.empty() && entries.size() != 1) {

@@ -106,7 +106,7 @@ int save(LiveBus& bus, const Settings& settings, const LoadedDevice& loaded) {
 
 int run_save(const Settings& settings) {
   if (settings.format == "json" && settings.output.empty()) throw_requires("--format json", "--output");
-  if (settings.sheet.empty()) throw_required("FILE");
+  if (settings.sheet.empty()) throw_required("FILE or --network");
   const auto loaded = load_live_device(settings.sheet, settings.node);
   Diagnostics ignored;
   if (parse_ini(*loaded->source, ignored).sections.empty()) {

@@ -101,7 +101,7 @@ PdoValue pdo_value(const LoadedDevice& loaded, const std::string& text) {
 
 canopen::Frame compose_pdo_of_file(const Settings& settings, std::uint32_t /*sent*/) {
   const std::string& path = settings.node.sheet;
-  if (path.empty()) throw_required("--eds");
+  if (path.empty()) throw_required("--eds or --network");
   const auto loaded = load_live_device(path, settings.node.node);
   const NodeModel model{settings.node.node, *loaded->device};
   const PdoDirection direction = settings.transmit ? PdoDirection::transmit : PdoDirection::receive;

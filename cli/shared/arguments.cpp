@@ -161,8 +161,9 @@ class Reader {
       result_.wants_version = true;
       return;
     }
-    const bool is_joined = value.has_value();
     const bool needs = option == nullptr || needs_value(*option);
+    if (value && !needs && !takes_value(*option)) fail(name + " does not take a value");
+    const bool is_joined = value.has_value() || !needs;
     if (!value && (needs || takes_value(*option)) && has_value_next(needs, old)) value = words_[at_++];
     if (!value && needs && old != nullptr && !old->value.empty()) {
       note(fmt::format("{} is written \"{} {}\" now", old->name, name, old->value));
@@ -179,7 +180,7 @@ class Reader {
     }
     if (name.empty()) {  // it has become an argument
       take_argument(*value);
-    } else if (is_joined && !value->empty() && name.starts_with("--")) {
+    } else if (is_joined && value && !value->empty() && name.starts_with("--")) {
       add_option(name + "=" + *value);
     } else {
       add_option(name);

@@ -1,8 +1,10 @@
 #include "shared/command_line.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -117,7 +119,10 @@ Option Option::range(std::uint64_t min, std::uint64_t max) const {
 }
 Option Option::one_of(const std::vector<std::string>& words) const {
   all_facts()[option_].words = words;
-  return Option{*option_->check(CLI::IsMember(words))};
+  return check([words](const std::string& text) {
+    const bool is_word = std::ranges::find(words, text) != words.end();
+    return is_word ? std::string{} : fmt::format("{} is not one of {}", quote(text), fmt::join(words, ", "));
+  });
 }
 Option Option::suggest(std::vector<std::string> values) const {
   all_facts()[option_].suggestions = std::move(values);

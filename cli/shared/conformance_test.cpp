@@ -138,7 +138,7 @@ void ConformanceSettings::resolve() {
 }
 
 std::unique_ptr<ConformanceTest> prepare_conformance_test(const ConformanceSettings& settings) {
-  if (settings.sheet.empty()) throw_required("FILE");
+  if (settings.sheet.empty()) throw_required("FILE or --network");
   auto test = std::make_unique<ConformanceTest>();
   const bool has_sheet = load_sheet(settings, *test);
   if (!load_deviations(settings, test->deviations) || !has_sheet) return nullptr;

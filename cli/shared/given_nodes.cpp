@@ -54,7 +54,9 @@ std::unique_ptr<LoadedDevice> load_node(NodeArgument& argument, const ColorOptio
   load.check = false;
   auto loaded = load_device(load, diagnostics);
   print_errors(diagnostics, color);
-  if (loaded->unreadable || !loaded->device) fail(fmt::format("--node: {} cannot be used", argument.path));
+  if (loaded->unreadable || !loaded->device) {
+    fail(fmt::format("--node: {} cannot be used; write ID=FILE, or with --network the name of a node", argument.path));
+  }
   if (!argument.node_id) argument.node_id = loaded->device->node_id;
   if (!argument.node_id) {
     fail(fmt::format("--node {0}: the file does not state a node-ID; use --node 5={0}", argument.path));

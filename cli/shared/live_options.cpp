@@ -54,7 +54,7 @@ Option add_type_option(Command command, const canopen::DataTypeRow*& type) {
     const canopen::DataTypeRow* const found = find_type(text);
     return found != nullptr ? std::optional{found} : std::nullopt;
   };
-  return add_parsed(command, "--type", type, parse, "a data type");
+  return add_parsed(command, "--type", type, parse, "a data type, such as u16 or string");
 }
 
 std::optional<std::uint32_t> parse_count(const std::string& text, std::uint32_t most) {
@@ -100,7 +100,8 @@ ScanSettings ScanOptions::parsed() const {
 void add_scanned_nodes(Command command, ScanOptions& options) {
   command.add_option("--nodes", options.nodes)
       .check([](const std::string& text) {
-        return parse_node_list(text).empty() ? "\"" + text + "\" is not a list of node-IDs" : std::string{};
+        return parse_node_list(text).empty() ? "\"" + text + "\" is not a list of node-IDs, such as 1..127 or 1,3,8..20"
+                                             : std::string{};
       })
       .show_default();
   add_timeout_option(command, options.times.timeout_ms);

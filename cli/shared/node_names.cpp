@@ -68,7 +68,7 @@ std::vector<NamedNode> named_nodes(const std::string& network) {
   if (network.empty()) return {};
   std::string problem;
   const std::unique_ptr<SourceFile> source = read_source_file(network, problem);
-  if (!source) fail("network file " + problem);
+  if (!source) fail(problem);
   Diagnostics diagnostics;
   diagnostics.limit_notes(Notes::none);
   const NetworkDescription description = read_network_file(*source, diagnostics);
