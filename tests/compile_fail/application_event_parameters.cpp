@@ -1,4 +1,4 @@
-// expect: parameters of this function are not those of its event .*OnState
+// expect: parameters of this function do not match its event .*OnState
 // `on_state` gets an NMT state.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>

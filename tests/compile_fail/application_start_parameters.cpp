@@ -1,4 +1,4 @@
-// expect: parameters of this function are not those of its event .*Start
+// expect: parameters of this function do not match its event .*Start
 // A function `start` with a parameter that it never gets.
 #include <canopen/node.hpp>
 #include <every_type/device.hpp>
