@@ -57,7 +57,7 @@ class ManyFiles(CommandLine):
     def test_need_a_place_to_go_to(self) -> None:
         self.expect(WRONG_USAGE, self.edsc("format", self.rough, self.canonical), "several files need --check or --in-place")
         self.expect(WRONG_USAGE, self.edsc("format", "-i", "-"), "standard input cannot be written")
-        self.expect(WRONG_USAGE, self.edsc("format", "-i", self.rough, "-o", "x.eds"), "excludes")
+        self.expect(WRONG_USAGE, self.edsc("format", "-i", self.rough, "-o", "x.eds"), "cannot be combined with")
 
 
 class OtherBytes(CommandLine):

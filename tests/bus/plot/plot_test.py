@@ -215,7 +215,7 @@ class Plot(unittest.TestCase):
     def test_what_cannot_be_plotted(self) -> None:
         log = f"(1.0) can0 {position(5)}\n"
         for arguments, code, words in (
-                (("6064h",), WRONG_USAGE, "--node ID=FILE is missing"),
+                (("6064h",), WRONG_USAGE, "--node ID=FILE or --network FILE is missing"),
                 (("1008h", "--node", str(AXIS)), WRONG_USAGE, "the values are not numbers"),
                 (("5/6064h", "--node", str(AXIS)), WRONG_USAGE, "node 5 is not one of --node"),
                 (("6064h", "6064h", "--node", str(AXIS)), WRONG_USAGE, "given twice"),
