@@ -149,7 +149,7 @@ class Ways(unittest.TestCase):
         other = self.folder / "other edsc"
         other.write_text("#!/bin/sh\necho edsc 0.0.9\n")
         other.chmod(0o755)
-        with self.assertRaisesRegex(AssertionError, r"is\s+not\s+edsc\s+0\.1\.0,\s+but:\s+edsc\s+0\.0\.9"):
+        with self.assertRaisesRegex(AssertionError, r"is\s+not\s+edsc\s+0\.9\.0,\s+but:\s+edsc\s+0\.0\.9"):
             Project(self.folder / "refused").configure(f"-DCMAKE_PREFIX_PATH={self.prefix}", f"-DEDSC_EXECUTABLE={other}")
 
     # ---- Debian packages ----
