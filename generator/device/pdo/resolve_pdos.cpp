@@ -1,6 +1,7 @@
 #include "device/pdo/resolve_pdos.hpp"
 
 #include <algorithm>
+#include <canopen/can/cob_id.hpp>
 
 namespace edsc {
 namespace {
