@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -15,12 +16,12 @@ import tempfile
 import unittest
 from pathlib import Path
 
-EDSC = Path(sys.argv[2]).resolve()
+SOURCE_DIR, EDSC = (Path(path).resolve() for path in sys.argv[1:3])
 KINDS = ("bash", "zsh", "man")
 WORDS = ("json", "buses", "nodes", "objects")
 ROW = re.compile(r'^    \{"([^"]+)", "([\w-]+)",', re.MULTILINE)
-ROWS = ROW.findall((Path(sys.argv[1]) / "cli/commands/commands.hpp").read_text(encoding="utf-8"))
-EXIT_CODES = Path(sys.argv[1]) / "cli/shared/exit_code.hpp"
+ROWS = ROW.findall((SOURCE_DIR / "cli/commands/commands.hpp").read_text(encoding="utf-8"))
+EXIT_CODES = SOURCE_DIR / "cli/shared/exit_code.hpp"
 GROUPS = {group: [name for other, name in ROWS if other == group] for group, _ in ROWS}
 
 
@@ -122,6 +123,35 @@ printf '%s\\n' "${{COMPREPLY[@]}}"
             self.assertEqual(self.complete("check", "dr", folder=folder), {"drive.eds"})
             self.assertEqual(self.complete("decode", "--node", "5", "=", "dr", folder=folder), {"drive.eds"})
             self.assertEqual(self.complete("generate", "--templates", "", folder=folder), {"logs"})
+
+    def test_offers_buses(self) -> None:
+        for command in (("read",), ("scan",), ("network", "scan")):
+            with self.subTest(command=command):
+                self.assertLessEqual({"socketcand:", "simulated:"}, self.complete(*command, ""))
+                self.assertEqual(self.complete(*command, "simu"), {"simulated:"})
+
+    def test_offers_the_nodes_of_the_network_file(self) -> None:
+        network = SOURCE_DIR / "examples/networks/eight_devices.json"
+        names = set(json.loads(network.read_text(encoding="utf-8"))["nodes"])
+        environment = {"EDSC_NETWORK": str(network)}
+        for words in (("read", "socketcan:can0", ""), ("conform", "socketcan:can0", ""), ("audit", "--master", "")):
+            with self.subTest(words=words):
+                self.assertLessEqual(names, self.complete(*words, environment=environment))
+                self.assertEqual(self.complete(*words, environment={"EDSC_NETWORK": ""}) & names, set())
+
+    def test_offers_the_objects_of_the_eds(self) -> None:
+        words = ("read", "socketcan:can0", "5", "--eds", str(SOURCE_DIR / "eds/rk5c.eds"))
+        self.assertEqual(self.complete(*words, "cob_id_s"), {"cob_id_sync"})
+        self.assertLessEqual({"device_type", "error_register", "cob_id_sync"}, self.complete(*words, ""))
+
+    def test_offers_rules_and_cases(self) -> None:
+        rules = {rule["id"] for rule in json.loads(run("check", "--list-rules", "--format", "json"))["rules"]}
+        self.assertGreater(len(rules), 150)
+        for option in ("--explain", "--silence"):
+            self.assertEqual(self.complete("check", option, ""), rules)
+        cases = set(re.findall(r"^  (\d+\.\d+) ", run("conform", "--list"), re.MULTILINE))
+        self.assertGreater(len(cases), 150)
+        self.assertLessEqual(cases, self.complete("conform", "--only", ""))
 
 
 class Zsh(unittest.TestCase):
