@@ -180,7 +180,7 @@ std::optional<RequiredType> required_type(const Facts& facts) {
 bool always(const Facts&) { return true; }
 
 bool is_mandatory(const Facts& facts) {
-  return std::ranges::find(mandatory_objects, facts.index()) != std::end(mandatory_objects);
+  return std::ranges::find(required_objects, facts.index()) != std::end(required_objects);
 }
 
 bool is_of_profile(const Facts& facts) {

@@ -103,7 +103,7 @@ Readings DictionaryReader::read_all(const Progress& progress) {
     progress(i, sheet_.objects.size());
     read_object(readings, sheet_.objects[i]);
   }
-  for (const std::uint16_t index : mandatory_objects) {
+  for (const std::uint16_t index : required_objects) {
     read_missing(readings, index, 0);
     const StandardObject& standard = *find_standard_object(index);
     for (const StandardEntry& row : standard.entries) {

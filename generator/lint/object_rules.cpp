@@ -33,7 +33,7 @@ void check_default(const RuleContext& context, const Entry& entry) {
 }  // namespace
 
 void check_objects(const RuleContext& context) {
-  for (const std::uint16_t index : mandatory_objects) {
+  for (const std::uint16_t index : required_objects) {
     // What is described and ignored is reported where it is described.
     if (context.device.find(index) != nullptr || context.sheet.find(index) != nullptr) continue;
     context.report("mandatory-object", context.whole_file(),

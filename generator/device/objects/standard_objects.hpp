@@ -158,7 +158,7 @@ inline constexpr StandardObject objects[] = {
 [[nodiscard]] const StandardEntry* find_standard_entry(std::uint16_t index, std::uint8_t sub_index);
 
 /// Objects that each device has.
-inline constexpr std::uint16_t mandatory_objects[] = {0x1000, 0x1001, 0x1018};
+inline constexpr std::uint16_t required_objects[] = {0x1000, 0x1001, 0x1018};
 
 /// `index` requires `needed`.
 struct ObjectNeed {
