@@ -6,7 +6,6 @@
 #include "audit/audit_report.hpp"
 #include "commands/commands.hpp"
 #include "decode/log/log_decoder.hpp"
-#include "diagnostics/unknown_rule.hpp"
 #include "monitor/progress_line.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -128,12 +127,6 @@ int audit_log(const Settings& given) {
   return report.is_clean() && !decoder.skipped_lines() ? exit_fine : exit_input_has_errors;
 }
 
-/// In the format of CLI11: an error message, or nothing.
-std::string check_audit_rule(const std::string& id) {
-  if (find_rule(audit::audit_rules, id)) return {};
-  return fmt::format("{} (see --list-rules)", unknown_rule(id, audit::audit_rules));
-}
-
 }  // namespace
 
 void add_audit_options(Command command, int& exit_code) {
@@ -144,10 +137,7 @@ void add_audit_options(Command command, int& exit_code) {
   command.add_option("--master", settings.written_master);
   command.add_option("--bit-rate", settings.bit_rate_kbit, "to compute the bus load").range(1, 1000);
   command.add_option("--max-load", settings.limits.max_load).range(1, 100).show_default();
-  command.add_option("--silence", settings.silence)
-      .one_value_each()
-      .check(check_audit_rule)
-      .suggest(rule_names(audit::audit_rules));
+  take_rules(command.add_option("--silence", settings.silence).one_value_each(), audit::audit_rules, "--list-rules");
   command.add_option("--conform", settings.conform);
   add_choice(command, "--format", settings.format, {"text", "json", "html"});
   command.add_option("--output", settings.output, "default: standard output");

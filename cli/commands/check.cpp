@@ -8,7 +8,6 @@
 #include "commands/check_repair.hpp"
 #include "commands/commands.hpp"
 #include "device/options/option_table.hpp"
-#include "diagnostics/unknown_rule.hpp"
 #include "load/load_device.hpp"
 #include "rules/cause_rows.hpp"
 #include "rules/check_rules.hpp"
@@ -187,12 +186,6 @@ int check(const Settings& settings) {
   return exit_code;
 }
 
-/// In the format of CLI11: an error message, or nothing.
-std::string check_rule(const std::string& id) {
-  if (find_rule(check_rules, id)) return {};
-  return fmt::format("{} (see --list-rules)", unknown_rule(id, check_rules));
-}
-
 }  // namespace
 
 void add_check_options(Command command, int& exit_code) {
@@ -202,7 +195,7 @@ void add_check_options(Command command, int& exit_code) {
   add_options_option(command, settings.options_path);
   add_node_id_option(command, settings.node_id);
   command.add_option("--profile", settings.profile);
-  command.add_option("--silence", settings.silence).one_value_each().check(check_rule).suggest(rule_names(check_rules));
+  take_rules(command.add_option("--silence", settings.silence).one_value_each(), check_rules, "--list-rules");
   command.add_flag("--keep-going", settings.keep_going);
   command.add_flag("--all-findings", settings.all);
   command.add_flag("--strict", settings.strict, "a section of an overlay needs a reason");
@@ -210,7 +203,7 @@ void add_check_options(Command command, int& exit_code) {
   command.add_option("--output", settings.output, "of --repair: the overlay");
   command.add_flag("--list-rules", settings.list_rules);
   command.add_flag("--list-options", settings.list_options);
-  command.add_option("--explain", settings.explained_rule).check(check_rule).suggest(rule_names(check_rules));
+  take_rules(command.add_option("--explain", settings.explained_rule), check_rules, "--list-rules");
   settings.color.add_to(command);
 }
 

@@ -1,9 +1,14 @@
 #include "shared/common_options.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
+#include <utility>
 
 #include "diagnostics/print.hpp"
+#include "diagnostics/unknown_rule.hpp"
 #include "system/standard_streams.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 
@@ -25,10 +30,16 @@ void print_findings(const Diagnostics& diagnostics, const ColorOption& color) {
   write_to_stderr(text);
 }
 
-std::vector<std::string> rule_names(std::span<const Rule> rules) {
+Option take_rules(Option option, std::span<const Rule> table, const std::string& list_command) {
   std::vector<std::string> names;
-  for (const Rule& rule : rules) names.emplace_back(rule.id);
-  return names;
+  for (const Rule& rule : table) names.emplace_back(rule.id);
+  option.suggest(std::move(names));
+  return option.check([table, list_command](const std::string& id) {
+    const auto rule = find_rule(table, id);
+    if (!rule) return fmt::format("{} (see {})", unknown_rule(id, table), list_command);
+    if (id == rule->row().former_id) print_to_stderr("edsc: note: the rule {} is called {} now\n", id, rule->text());
+    return std::string{};
+  });
 }
 
 void add_options_option(Command command, std::string& path) { command.add_option("--options", path); }

@@ -40,8 +40,8 @@ struct ColorOption {
 /// Prints findings as text to standard error.
 void print_findings(const Diagnostics& diagnostics, const ColorOption& color);
 
-/// The ids of the rules, for completions.
-[[nodiscard]] std::vector<std::string> rule_names(std::span<const Rule> rules);
+/// Accepts the ids of the rules in this table, and completes them. A former id is accepted with a note.
+Option take_rules(Option option, std::span<const Rule> table, const std::string& list_command);
 
 /// `--options FILE` of a device.
 void add_options_option(Command command, std::string& path);

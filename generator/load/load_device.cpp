@@ -74,6 +74,12 @@ void read_options_file(const std::string& path, LoadedDevice& loaded, Diagnostic
   silence_by_options(loaded, diagnostics);
 }
 
+void report_former_id(RuleId rule, std::string_view id, const Position& position, Diagnostics& diagnostics) {
+  if (id != rule.row().former_id) return;
+  diagnostics.warning("deprecated-option", position,
+                      fmt::format("the rule {} is called {} now", quote(id), rule.text()));
+}
+
 void allow_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics) {
   for (const AllowedFindings& allowed : loaded.options.allow) {
     const auto rule = find_rule(check_rules, allowed.rule);
@@ -81,6 +87,7 @@ void allow_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics) {
       diagnostics.error("options", allowed.position, "allow: " + unknown_rule(allowed.rule, check_rules));
       continue;
     }
+    report_former_id(*rule, allowed.rule, allowed.position, diagnostics);
     Allowance allowance{*rule, allowed.reason, allowed.position, false, {}};
     if (allowed.object) {
       const bool is_entry = allowed.object->sub_index.has_value();
@@ -226,6 +233,7 @@ Device device_for(const LoadedDevice& loaded, std::optional<std::uint8_t> node_i
 void silence_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics) {
   for (const SilencedRule& silenced : loaded.options.silence) {
     if (const auto rule = find_rule(check_rules, silenced.rule)) {
+      report_former_id(*rule, silenced.rule, silenced.position, diagnostics);
       diagnostics.silence(*rule);
     } else {
       diagnostics.error("options", silenced.position, "silence: " + unknown_rule(silenced.rule, check_rules));

@@ -13,6 +13,11 @@ constexpr Rule fatal(Rule rule) {
   return rule;
 }
 
+constexpr Rule formerly(std::string_view id, Rule rule) {
+  rule.former_id = id;
+  return rule;
+}
+
 constexpr Rule of_names(Rule rule) {
   rule.is_of_names = true;
   return rule;
@@ -238,7 +243,8 @@ inline constexpr Rule check[] = {
     Rule{"network-cob-id", error, "a CAN-ID with two transmitters, two services, or a restricted one",
          "CiA 301, 7.3.5"},
     Rule{"network-pdo-unsent", warning, "an RPDO that no node transmits", "CiA 301, 7.2.2", note},
-    Rule{"network-pdo-unreceived", warning, "a TPDO that no node receives", "CiA 301, 7.2.2", note},
+    formerly("network-pdo-unheard",
+             {"network-pdo-unreceived", warning, "a TPDO that no node receives", "CiA 301, 7.2.2", note}),
     Rule{"network-pdo-length", error, "an RPDO that is longer than the TPDO that it receives", "CiA 301, 7.2.2"},
     Rule{"network-pdo-layout", warning, "an entry of an RPDO without an equal entry in the TPDO", "CiA 301, 7.2.2"},
     Rule{"network-pdo-type", warning, "an entry of an RPDO whose data type differs from that in the TPDO",

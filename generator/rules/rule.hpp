@@ -49,6 +49,7 @@ struct Rule {
   bool is_fatal = false;              ///< an error stops edsc even with `--keep-going`: no device can be resolved
   Breaks breaks = {};                 ///< of a rule about changes
   bool is_of_names = false;           ///< notes about names of the generated code, for commands that write it
+  std::string_view former_id = {};    ///< as the previous version wrote it; it is read for one version, with a note
 
   [[nodiscard]] constexpr bool allows(Severity other) const { return other == severity || other == mildest; }
 };
@@ -78,9 +79,10 @@ class RuleId {
   const Rule* row_ = &rule_table::no_rule;
 };
 
-/// Returns the rule whose id is `text`: what a user wrote.
+/// Returns the rule whose id, or former id, is `text`: what a user wrote.
 [[nodiscard]] constexpr std::optional<RuleId> find_rule(std::span<const Rule> table, std::string_view text) {
-  const auto at = std::ranges::find(table, text, &Rule::id);
+  if (text.empty()) return std::nullopt;
+  const auto at = std::ranges::find_if(table, [&](const Rule& row) { return row.id == text || row.former_id == text; });
   return at == table.end() ? std::nullopt : std::optional{RuleId{*at}};
 }
 

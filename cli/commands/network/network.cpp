@@ -6,7 +6,6 @@
 
 #include "commands/commands.hpp"
 #include "commands/network/timing_report.hpp"
-#include "diagnostics/unknown_rule.hpp"
 #include "network/checks/check_network.hpp"
 #include "network/network.hpp"
 #include "rules/check_rules.hpp"
@@ -78,17 +77,12 @@ int check(const CheckSettings& settings) {
   return exit_code;
 }
 
-/// In the format of CLI11: an error message, or nothing.
-std::string check_rule(const std::string& id) {
-  if (find_rule(check_rules, id)) return {};
-  return fmt::format("{} (see edsc check --list-rules)", unknown_rule(id, check_rules));
-}
-
 void add_network_check_options(Command command, int& exit_code) {
   CheckSettings& settings = define_command(command, "", check, exit_code);
   command.add_option("FILE", settings.paths, "network files (JSON)").required();
   add_choice(command, "--format", settings.format, {"text", "json", "sarif"});
-  command.add_option("--silence", settings.silence).one_value_each().check(check_rule).suggest(rule_names(check_rules));
+  take_rules(command.add_option("--silence", settings.silence).one_value_each(), check_rules,
+             "edsc check --list-rules");
   command.add_flag("--all-findings", settings.all);
   command.add_flag("--strict", settings.strict);
   command.add_flag("--times", settings.times);
