@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "network/sheet_folder.hpp"
+#include "network/sheet_files.hpp"
 #include "online/scan.hpp"
 
 namespace edsc {

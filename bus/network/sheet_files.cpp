@@ -1,12 +1,9 @@
-#include "network/sheet_folder.hpp"
+#include "network/sheet_files.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
-#include <string_view>
-#include <system_error>
 #include <tuple>
 
 #include "diagnostics/diagnostics.hpp"
@@ -15,30 +12,11 @@
 #include "network/communication_objects.hpp"
 #include "network/network.hpp"
 #include "system/path.hpp"
-#include "text/ascii.hpp"
 
 namespace edsc {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::array<std::string_view, 5> extensions = {".eds", ".dcf", ".xdd", ".xdc", ".overlay"};
-
-std::vector<std::string> sheet_paths(const std::string& folder, std::vector<std::string>& problems) {
-  std::vector<std::string> paths;
-  std::error_code error;
-  fs::recursive_directory_iterator at{to_native(folder), fs::directory_options::skip_permission_denied, error};
-  for (; !error && at != fs::recursive_directory_iterator{}; at.increment(error)) {
-    std::error_code of_file;
-    std::string extension = from_native(at->path().extension());
-    std::ranges::transform(extension, extension.begin(), to_lower);
-    const bool is_sheet = std::ranges::find(extensions, extension) != extensions.end();
-    if (is_sheet && at->is_regular_file(of_file)) paths.push_back(from_native(at->path()));
-  }
-  if (error) problems.push_back(fmt::format("{}: {}", folder, error.message()));
-  std::ranges::sort(paths);
-  return paths;
-}
 
 /// Nothing if the file is not a device description. Errors in the values of a file do not matter here.
 std::optional<SheetFile> read_sheet(const std::string& path) {
@@ -68,9 +46,9 @@ std::optional<SheetFile> read_sheet(const std::string& path) {
 
 }  // namespace
 
-SheetFolder read_sheet_folder(const std::string& folder) {
-  SheetFolder read;
-  for (const std::string& path : sheet_paths(folder, read.problems)) {
+SheetFiles read_sheet_files(const std::vector<std::string>& paths) {
+  SheetFiles read;
+  for (const std::string& path : paths) {
     if (auto file = read_sheet(path)) {
       read.files.push_back(*std::move(file));
     } else {

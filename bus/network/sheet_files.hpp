@@ -1,4 +1,4 @@
-/// The EDS, DCF, XDD and overlay files of a folder, to find the one that describes a device.
+/// EDS, DCF, XDD and overlay files, to find the one that describes a device.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +22,13 @@ struct SheetFile {
   std::vector<std::string> bases{};  ///< of an overlay
 };
 
-struct SheetFolder {
-  std::vector<SheetFile> files;       ///< ascending by path
+struct SheetFiles {
+  std::vector<SheetFile> files;       ///< in the order of their paths
   std::vector<std::string> problems;  ///< files that could not be read
 };
 
-/// Reads the files of a folder and its subfolders, by their extension: .eds, .dcf, .xdd, .xdc, .overlay. The base of an
-/// overlay is skipped: the overlay describes the device. A folder that cannot be read is a problem.
-[[nodiscard]] SheetFolder read_sheet_folder(const std::string& folder);
+/// The base of an overlay is skipped if it is one of them: the overlay describes the device.
+[[nodiscard]] SheetFiles read_sheet_files(const std::vector<std::string>& paths);
 
 /// A file that fits a device.
 struct FittingSheet {

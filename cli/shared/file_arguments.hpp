@@ -6,11 +6,9 @@
 #include <string_view>
 #include <vector>
 
-namespace edsc {
+#include "load/sheet_extensions.hpp"
 
-inline constexpr std::string_view sheet_extensions[] = {".eds", ".dcf", ".xdd", ".xdc", ".overlay"};
-/// Those that `edsc format` can write in place.
-inline constexpr std::string_view canonical_extensions[] = {".eds", ".dcf"};
+namespace edsc {
 
 /// Replaces each folder by its files with one of these extensions (in any letter case), in its subfolders too,
 /// ascending by path. Hidden folders are not searched. Ends the command if a folder has no such file or cannot be read.

@@ -3,24 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "change/sheet_text.hpp"
 #include "eds/number.hpp"
 #include "overlay/compose_overlay.hpp"
 #include "overlay/overlay_file.hpp"
-#include "system/path.hpp"
+#include "system/find_files.hpp"
 
 namespace edsc {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct SheetIdentity {
   std::optional<std::uint64_t> vendor, product, revision;
@@ -43,19 +41,6 @@ SheetIdentity identity_of_sheet(const SourceFile& source) {
           read_identity(text, "RevisionNumber", "1018sub3")};
 }
 
-std::vector<std::string> overlays_in(const std::string& folder, std::string& problem) {
-  std::vector<std::string> paths;
-  std::error_code error;
-  fs::directory_iterator at{to_native(folder), error};
-  for (; !error && at != fs::directory_iterator{}; at.increment(error)) {
-    const std::string path = from_native(at->path());
-    if (ends_with_ignoring_case(path, ".overlay")) paths.push_back(path);
-  }
-  if (error) problem = fmt::format("EDSC_OVERLAYS: {}: {}", folder, error.message());
-  std::ranges::sort(paths);
-  return paths;
-}
-
 /// How well an overlay fits a device: 0 not, 1 the product, 2 also the revision.
 unsigned fit_of(const OverlayHeader& header, const SheetIdentity& device) {
   const auto vendor = number_of(header.vendor_number);
@@ -68,7 +53,7 @@ unsigned fit_of(const OverlayHeader& header, const SheetIdentity& device) {
 }  // namespace
 
 std::vector<std::string> overlay_folders() {
-  constexpr char separator = fs::path::preferred_separator == '/' ? ':' : ';';
+  constexpr char separator = std::filesystem::path::preferred_separator == '/' ? ':' : ';';
   const char* const variable = std::getenv("EDSC_OVERLAYS");
   std::vector<std::string> folders;
   std::string_view rest = variable != nullptr ? variable : "";
@@ -89,10 +74,14 @@ std::shared_ptr<const SourceFile> find_overlay(const std::vector<std::string>& f
   unsigned best_fit = 0;
   std::shared_ptr<const SourceFile> equal;
   for (const std::string& folder : folders) {
-    std::string problem;
-    for (const std::string& path : overlays_in(folder, problem)) {
+    FoundFiles found = find_files(folder, std::array{std::string_view{".overlay"}}, Subfolders::left_out);
+    for (const std::string& path : found.paths) {
+      std::string problem;
       std::shared_ptr<const SourceFile> overlay = read_source_file(path, problem);
-      if (!overlay) break;
+      if (!overlay) {
+        found.problems.push_back(std::move(problem));
+        continue;
+      }
       Diagnostics ignored;  // reported when the overlay is applied
       const unsigned fit = fit_of(read_overlay(*overlay, ignored).header, device);
       if (fit == 0 || fit < best_fit) continue;
@@ -100,7 +89,9 @@ std::shared_ptr<const SourceFile> find_overlay(const std::vector<std::string>& f
       if (fit > best_fit) best = std::move(overlay);
       best_fit = fit;
     }
-    if (!problem.empty()) diagnostics.error("overlay-base", {file.get()}, problem);
+    for (const std::string& problem : found.problems) {
+      diagnostics.error("overlay-base", {file.get()}, "EDSC_OVERLAYS: " + problem);
+    }
   }
   if (equal) {
     diagnostics.error(

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "commands/commands.hpp"
 #include "network/describe_network.hpp"
 #include "online/scan.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
+#include "shared/file_arguments.hpp"
 #include "shared/live_options.hpp"
 #include "shared/output.hpp"
 #include "shared/with_bus.hpp"
@@ -23,13 +26,13 @@ constexpr const char* examples = R"(Examples:
 
 struct Settings {
   std::string bus;
-  std::string folder;
+  std::vector<std::string> sheets;
   std::string output;
   ScanOptions scan;
   std::optional<unsigned> bit_rate;
 };
 
-int scan_network(LiveBus& bus, const Settings& settings, const SheetFolder& sheets) {
+int scan_network(LiveBus& bus, const Settings& settings, const SheetFiles& sheets) {
   std::vector<FoundNode> found;
   scan(bus, settings.scan.parsed(), found);
   if (found.empty()) fail("no node answers on " + settings.bus, exit_device_failed);
@@ -50,9 +53,9 @@ int scan_network(LiveBus& bus, const Settings& settings, const SheetFolder& shee
 }
 
 int run_scan(const Settings& settings) {
-  const SheetFolder sheets = read_sheet_folder(settings.folder);
+  const SheetFiles sheets = read_sheet_files(expand_folders(settings.sheets));
   for (const std::string& problem : sheets.problems) print_to_stderr("edsc: {}\n", problem);
-  if (sheets.files.empty()) fail(settings.folder + " does not contain an EDS, DCF or XDD file");
+  if (sheets.files.empty()) fail("--eds names no EDS, DCF or XDD file");
   return with_bus(settings.bus, [&](LiveBus& bus) { return scan_network(bus, settings, sheets); });
 }
 
@@ -61,7 +64,9 @@ int run_scan(const Settings& settings) {
 void add_network_scan_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_scan, exit_code);
   add_bus_argument(command, settings.bus);
-  command.add_option("--eds", settings.folder, "or a folder with such files, and its subfolders").required();
+  command.add_option("--eds", settings.sheets, "of nodes to find; or a folder with such files")
+      .one_value_each()
+      .required();
   command.add_option("--output", settings.output, "the network file (default: standard output)");
   command.add_option("--bit-rate", settings.bit_rate).range(10, 1000);
   add_scanned_nodes(command, settings.scan);

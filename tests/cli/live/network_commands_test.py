@@ -323,6 +323,13 @@ node axis2 (6): 0 of 1 value differ
         self.assertEqual(check.returncode, FINE, check.stdout + check.stderr)
         self.assertEqual(self.network_command("verify", "plant.json").returncode, FINE)
 
+    def test_scan_with_files_in_place_of_their_folder(self) -> None:
+        for name in ("drive", "unused"):
+            (self.folder / f"{name}.eds").write_text(SHEET.read_text())
+        result = self.network_command("scan", "--eds", "drive.eds", "--nodes", "5", "--for", "100ms", timeout=5000)
+        self.assertEqual(result.returncode, FINE, result.stderr)
+        self.assertIn('"eds": "drive.eds"', result.stdout)
+
     def test_scan_of_two_nodes_with_one_node_id(self) -> None:
         self.network.device(lambda frame: ["585 43 00 10 00 92 01 02 00"] if frame.startswith("605 40 00 10 00") else [])
         result = self.network_command("scan", "--eds", ".", "--nodes", "5,6", "--for", "500ms", timeout=5000)
