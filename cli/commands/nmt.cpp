@@ -85,12 +85,10 @@ void add_nmt_options(Command command, int& exit_code) {
   std::vector<std::string> names;
   for (const NmtCommandText& row : nmt_command_texts) names.emplace_back(row.argument);
   command
-      .add_text_option(
-          "COMMAND",
-          [&settings](const std::string& text) {
-            settings.command = find_nmt_command(&NmtCommandText::argument, std::string_view{text});
-          },
-          "start, stop, pre-operational, reset-node or reset-communication")
+      .add_text_option("COMMAND",
+                       [&settings](const std::string& text) {
+                         settings.command = find_nmt_command(&NmtCommandText::argument, std::string_view{text});
+                       })
       .required()
       .one_of(names);
   add_node_argument(command, settings.written_node, "node-ID, 1..127, a name from the network file, or all");

@@ -62,6 +62,11 @@ struct Settings {
   }
 };
 
+std::optional<std::uint32_t> parse_from_one(const std::string& text, std::uint32_t most) {
+  const auto number = parse_count(text, most);
+  return number && *number != 0 ? number : std::nullopt;
+}
+
 canopen::Frame frame_with(std::uint32_t can_id, std::span<const std::uint8_t> bytes) {
   canopen::Frame frame;
   frame.id = can_id;
@@ -183,7 +188,8 @@ void add_pdo_options(Command command, Settings& settings) {
   add_network_option(command, settings.node.network);
   command.add_option("--eds", settings.node.sheet);
   add_parsed(
-      command, "NUMBER", settings.number, [](const std::string& text) { return parse_count(text, classical_can.pdos); },
+      command, "NUMBER", settings.number,
+      [](const std::string& text) { return parse_from_one(text, classical_can.pdos); },
       fmt::format("a number from 1 to {}", classical_can.pdos), "number of the RPDO: 1 is 1400h")
       .required();
   command.add_option("OBJECT=VALUE", settings.values, "a value for each mapped object, by name or address");
@@ -223,10 +229,7 @@ void add_send_options(Command command, int& exit_code) {
   add_bus_argument(command, settings.bus);
   command.add_duration("--every", 1000, 600'000'000,
                        [&settings](std::uint64_t us) { settings.every_us = static_cast<std::uint32_t>(us); });
-  const auto parse_positive = [](const std::string& text) {
-    const auto number = parse_count(text);
-    return number && *number != 0 ? number : std::nullopt;
-  };
+  const auto parse_positive = [](const std::string& text) { return parse_from_one(text, 0xFFFF'FFFF); };
   add_parsed(command, "--count", settings.count, parse_positive, "a number from 1", "default: 1");
   for (const KindRow& row : kinds) {
     const Command kind = command.add_subcommand(row.name, row.description);

@@ -6,15 +6,18 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 
 #include "diagnostics/quote.hpp"
 #include "shared/parse_number.hpp"
+#include "system/path.hpp"
 #include "text/duration.hpp"
 
 namespace edsc {
@@ -128,7 +131,14 @@ Option Option::suggest(std::vector<std::string> values) const {
   all_facts()[option_].suggestions = std::move(values);
   return *this;
 }
-Option Option::existing_folder() const { return Option{*option_->check(CLI::ExistingDirectory)}; }
+Option Option::existing_folder() const {
+  return check([](const std::string& text) {
+    std::error_code error;
+    const bool is_folder = std::filesystem::is_directory(to_native(text), error);
+    if (error) return fmt::format("{}: {}", text, error.message());
+    return is_folder ? std::string{} : text + ": not a folder";
+  });
+}
 Option Option::show_default() const {
   OptionFacts& facts = all_facts()[option_];
   if (facts.default_text.empty()) {

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import re
+import resource
 import signal
 import socket
 import subprocess
@@ -25,9 +26,12 @@ FINE, WRONG_USAGE = 0, 2
 class Bus:
     """A running `edsc bus` on a free port."""
 
-    def __init__(self, *arguments: str, buses: int = 1) -> None:
+    def __init__(self, *arguments: str, buses: int = 1, open_files: int = 0) -> None:
+        def limit() -> None:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (open_files, open_files))
+
         self.process = subprocess.Popen([EDSC, "bus", "--listen", "127.0.0.1:0", *arguments], text=True,
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=limit if open_files else None)
         stream = self.process.stderr if "--log" in arguments else self.process.stdout
         self.addresses = [ADDRESS.fullmatch(stream.readline()) for _ in range(buses)]
         self.port = int(self.addresses[0][1])
@@ -141,6 +145,26 @@ class BusCommand(unittest.TestCase):
             self.assertEqual(code, FINE)
             self.assertRegex(complained, r"\Aedsc: client 127\.0\.0\.1:\d+ is disconnected: element too long\n"
                                          r"edsc: client 127\.0\.0\.1:\d+ is disconnected: too many clients\n\Z")
+
+    def test_more_clients_than_it_can_have_files(self) -> None:
+        with Bus(open_files=24) as bus, contextlib.ExitStack() as stack:
+            first = self.client(bus)
+            refused = 0
+            for _ in range(30):
+                other = stack.enter_context(socket.create_connection(("127.0.0.1", bus.port), timeout=600))
+                answer = other.recv(1000)
+                refused += answer == b"< error too many open files >"
+                self.assertIn(answer, (b"< hi >", b"< error too many open files >"))
+            self.assertGreater(refused, 5)
+            first.say("< echo >")
+            first.expect("< echo >")
+            stack.close()
+            first.say("< echo >")  # after the ends of the others
+            first.expect("< echo >")
+            self.client(bus)
+            code, _, complained = bus.end()
+            self.assertEqual(code, FINE)
+            self.assertEqual(complained.count("is disconnected: too many open files\n"), refused)
 
     def test_what_it_refuses(self) -> None:
         with Bus() as bus:

@@ -266,6 +266,17 @@ class OptionsFile(CommandLine):
         self.write("small.options.json", '{ "silence": ["sub-number"] }')
         self.assertEqual(self.edsc("check", sheet).stdout, "")
 
+    def test_reads_the_former_id_of_a_rule_with_a_note(self) -> None:
+        sheet = self.write("small.eds", SMALL)
+        old = "network-pdo-unheard"
+        self.write("small.options.json", json.dumps({"silence": [old], "allow": [{"rule": old, "reason": "spare"}]}))
+        self.assertEqual(self.edsc("check", sheet).stdout.count(
+            'the rule "network-pdo-unheard" is called network-pdo-unreceived now [deprecated-option]'), 2)
+        result = self.edsc("network", "check", SOURCE_DIR / "examples/networks/four_modules.json", "--silence", "network-pdo-unheard")
+        self.expect(FINE, result)
+        self.assertIn("edsc: note: the rule network-pdo-unheard is called network-pdo-unreceived now\n", result.stderr)
+        self.assertEqual(result.stderr.count("note: the rule"), 1)
+
 
 class WrongUsage(CommandLine):
     def test_is_exit_code_2_with_a_hint(self) -> None:

@@ -49,7 +49,7 @@ BY_HAND = (
     "generate device.eds -o file.txt", "generate device.eds -o out --templates no_such", "generate device.eds -o out --name 1x",
     "diff device.eds", "diff device.eds no_such.eds", "diff device.eds --against git:no_such", "document no_such.eds",
     "network", "network check no_such.json", "network generate no_such.json -o x", "network verify {bus} no_such.json",
-    "network scan {bus} --eds device.eds -o x.json", "network simulate bad.json", "overlay from device.eds",
+    "network scan {bus} --eds no_such.eds -o x.json", "network simulate bad.json", "overlay from device.eds",
     "overlay apply device.eds", "bus vcan/0", "bus --listen 127.0.0.1", "record {bus} --log-interface a/b", "record {bus} --count 0",
     "record slcan:/dev/no_such", "record simulated:./no_such@5", "completion fish", "help chek", "chek device.eds",
     "read {bus} 5 1018h --timeout 5 --tmeout", "check device.eds --force", "check -x device.eds", "--verson", "", "version 1",
