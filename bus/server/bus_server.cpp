@@ -1,5 +1,6 @@
 #include "server/bus_server.hpp"
 
+#include <fcntl.h>
 #include <netdb.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
@@ -43,10 +44,18 @@ ListenAddress address_of(const sockaddr_storage& address, socklen_t size) {
   return {host.data(), static_cast<std::uint16_t>(std::stoul(port.data()))};
 }
 
+bool lacks_descriptors(int error) { return error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM; }
+
+canopen::Descriptor open_reserve() { return canopen::Descriptor{::open("/dev/null", O_RDONLY | O_CLOEXEC)}; }
+
 }  // namespace
 
 BusServer::BusServer(const ListenAddress& address, std::vector<std::string> buses, BusLimits limits, BusEvents events)
-    : address_{address}, buses_{std::move(buses)}, limits_{limits}, events_{std::move(events)} {
+    : address_{address},
+      buses_{std::move(buses)},
+      limits_{limits},
+      events_{std::move(events)},
+      reserve_{open_reserve()} {
   try {
     listen();
   } catch (...) {
@@ -78,11 +87,14 @@ void BusServer::listen() {
 }
 
 void BusServer::poll_once(std::chrono::milliseconds wait, const sigset_t* signals) {
-  std::vector<pollfd> ready{{listener_, POLLIN, 0}};
+  const auto begin = Clock::now();
+  const bool accepts = begin >= accepts_from_;
+  std::vector<pollfd> ready{{accepts ? listener_ : -1, POLLIN, 0}};
   for (const auto& client : clients_) {
     ready.push_back({client->socket(), static_cast<short>(POLLIN | (client->backlog() > 0 ? POLLOUT : 0)), 0});
   }
   wait = until_handshake_ends(wait);
+  if (!accepts) wait = std::min(wait, std::chrono::ceil<std::chrono::milliseconds>(accepts_from_ - begin));
   const timespec span{wait.count() / 1000, wait.count() % 1000 * 1'000'000};
   const int count = ::ppoll(ready.data(), ready.size(), &span, signals);
   if (count < 0 && errno != EINTR) fail("poll");
@@ -102,22 +114,46 @@ void BusServer::poll_once(std::chrono::milliseconds wait, const sigset_t* signal
   flush(now);
 }
 
-void BusServer::accept() {
+std::unique_ptr<BusClient> BusServer::accept_client() const {
   sockaddr_storage from{};
   socklen_t size = sizeof from;
   const int socket = ::accept4(listener_, reinterpret_cast<sockaddr*>(&from), &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
-  if (socket < 0 && (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED)) return;
-  if (socket < 0) fail("accept");
+  if (socket < 0) return nullptr;
   set_option(socket, IPPROTO_TCP, TCP_NODELAY);
-  auto client = std::make_unique<BusClient>(socket, to_text(address_of(from, size)));
+  return std::make_unique<BusClient>(socket, to_text(address_of(from, size)));
+}
+
+void BusServer::accept() {
+  auto client = accept_client();
+  if (!client && lacks_descriptors(errno)) return refuse_without_descriptor();
+  if (!client && (errno == EAGAIN || errno == EINTR || errno == ECONNABORTED)) return;
+  if (!client) fail("accept");
   if (clients_.size() < limits_.clients) {
     client->put("< hi >");
     clients_.push_back(std::move(client));
     return;
   }
-  client->refuse("too many clients");
-  static_cast<void>(client->flush());
-  log(*client, "too many clients");
+  turn_away(*client, "too many clients");
+}
+
+/// The listener stays readable: a client that is not accepted would end each wait at once.
+void BusServer::refuse_without_descriptor() {
+  constexpr std::chrono::milliseconds pause{100};
+  const std::string reason = std::generic_category().message(errno);
+  static_cast<void>(reserve_.close());
+  if (const auto client = accept_client()) {
+    turn_away(*client, "too many open files");
+  } else {
+    accepts_from_ = Clock::now() + pause;
+    events_.on_trouble("no client can be accepted: " + reason);
+  }
+  reserve_ = open_reserve();
+}
+
+void BusServer::turn_away(BusClient& client, const std::string& reason) const {
+  client.refuse(reason);
+  static_cast<void>(client.flush());
+  log(client, reason);
 }
 
 /// Reads the input of the client. Returns false if it must be disconnected.

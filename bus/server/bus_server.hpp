@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "canopen/can/frame.hpp"
+#include "canopen/host/descriptor.hpp"
 #include "server/bus_client.hpp"
 #include "server/listen_address.hpp"
 #include "server/socketcand_text.hpp"
@@ -27,7 +28,7 @@ struct BusLimits {
 /// Events that the server reports; none of the functions may be empty.
 struct BusEvents {
   std::function<void(const canopen::Frame&, const std::string& bus, socketcand::TimeStamp)> on_frame;
-  std::function<void(const std::string& message)> on_trouble;  ///< a client is disconnected
+  std::function<void(const std::string& message)> on_trouble;  ///< a client is disconnected or cannot be accepted
 };
 
 /// Each bus forwards every frame to all its clients except the sender, to all in the same order, without waiting for
@@ -52,7 +53,11 @@ class BusServer {
   using Clock = BusClient::Clock;
 
   void listen();
+  /// Null if there is none; errno says why.
+  [[nodiscard]] std::unique_ptr<BusClient> accept_client() const;
   void accept();
+  void refuse_without_descriptor();
+  void turn_away(BusClient& client, const std::string& reason) const;
   [[nodiscard]] bool receive(BusClient& client);
   [[nodiscard]] bool answer(BusClient& client, const ClientRequest& request);
   [[nodiscard]] bool open_bus(BusClient& client, const std::string& name);
@@ -68,6 +73,8 @@ class BusServer {
   BusLimits limits_;
   BusEvents events_;
   int listener_ = -1;
+  canopen::Descriptor reserve_;       ///< is closed to accept, and refuse, a client when the process has no other one
+  Clock::time_point accepts_from_{};  ///< no descriptor was free at all
   std::vector<std::unique_ptr<BusClient>> clients_;
 };
 
