@@ -82,12 +82,12 @@ struct Scale {
 
 /// The times of the log, in seconds from the origin of the axis.
 struct TimeAxis {
-  std::int64_t origin_us = 0;
+  std::int64_t origin_us = 0, last_us = 0;
   Scale scale;
   AxisTicks ticks;
   std::string label = "time in s";
 
-  explicit TimeAxis(const Plot& plot) {
+  explicit TimeAxis(const Plot& plot) : last_us{plot.last_us} {
     constexpr std::int64_t first_date_us = 100'000'000'000'000;  // 1973: no measurement lasts so long
     if (plot.first_us >= first_date_us) {
       origin_us = plot.first_us;
@@ -135,6 +135,8 @@ class LinePath {
     }
     y_ = y;
   }
+  /// The last value remains to the end of the log.
+  void hold_to(double x) { text_ += fmt::format("H{:.2f}", x); }
   void draw_vertical(double y) {
     if (y != y_) text_ += fmt::format("V{:.2f}", y);
     y_ = y;
@@ -154,6 +156,7 @@ std::string path_of(const PlotLine& line, const TimeAxis& time, const Scale& val
     path.draw_vertical(values.at(bin.max));
     path.draw_vertical(values.at(bin.last));
   }
+  if (line.series.bins().back().last_us < time.last_us) path.hold_to(time.x(time.last_us));
   return path.text();
 }
 
@@ -221,7 +224,7 @@ std::vector<BandPiece> pieces_of(const PlotLine& line, const TimeAxis& time) {
   std::vector<BandPiece> pieces;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     const bool is_last = i + 1 == runs.size();
-    const double left = time.x(runs[i].first_us), right = time.x(is_last ? runs[i].last_us : runs[i + 1].first_us);
+    const double left = time.x(runs[i].first_us), right = time.x(is_last ? time.last_us : runs[i + 1].first_us);
     const bool is_narrow = right - left < narrow && !is_last;
     const bool follows_narrow =
         !pieces.empty() && (pieces.back().run.is_mixed || pieces.back().right - pieces.back().left < narrow);

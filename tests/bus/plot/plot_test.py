@@ -120,8 +120,9 @@ class Plot(unittest.TestCase):
 
     def test_masked_values_are_bands_of_states(self) -> None:
         """0627h operation_enabled from 0 to 6 s, 0008h fault to 8 s, 004Fh none, then 0040h switch_on_disabled."""
-        words = ((0.0, 0x0627), (3.0, 0x0227), (6.0, 0x0008), (8.0, 0x004F), (9.0, 0x0040), (10.0, 0x0040))
+        words = ((0.0, 0x0627), (3.0, 0x0227), (6.0, 0x0008), (8.0, 0x004F), (9.0, 0x0040))
         log = "".join(f"({time}) can0 186#{word.to_bytes(2, 'little').hex()}00000000\n" for time, word in words)
+        log += "(10.0) can0 705#05\n"  # the last state remains to the end of the log
         result = edsc("6041h", log=log)
         self.assertEqual(result.returncode, FINE, result.stderr)
         picture = Picture(result.stdout)
@@ -163,7 +164,8 @@ class Plot(unittest.TestCase):
         self.assert_points(picture, 0, picture.paths(0)[0], [(1.5, 10_000), (9.5, 0)])
 
     def test_two_nodes_and_times_of_day(self) -> None:
-        """The same unit: one panel. The axis begins at the first frame: 2015-07-10 08:17:32.25 UTC is 1436516252.25."""
+        """The same unit: one panel; the last value remains to the end of the log. The axis begins at the first frame: 2015-07-10
+        08:17:32.25 UTC is 1436516252.25."""
         log = (f"(1436516252.250000) can0 {position(5)}\n(1436516253.250000) can0 {position(7).replace('186', '187')}\n"
                f"(1436516262.250000) can0 {position(6)}\n")
         node = ("--node", str(AXIS), "--node", f"7={AXIS}")
@@ -172,7 +174,7 @@ class Plot(unittest.TestCase):
         self.assertEqual(len(picture.panels), 1)
         self.assertEqual(len(picture.legend(0)), 2)
         self.assert_points(picture, 0, picture.paths(0)[0], [(0, 5), (10, 6)])
-        self.assert_points(picture, 0, picture.paths(0)[1], [(1, 7)])
+        self.assert_points(picture, 0, picture.paths(0)[1], [(1, 7), (10, 7)])
         texts = [text.text for text in picture.root.iter(f"{SVG}text")]
         self.assertIn("time in s since 2015-07-10 08:17:32.250000 UTC", texts)
 
