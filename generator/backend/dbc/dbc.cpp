@@ -85,6 +85,11 @@ class DbcWriter {
     if (!added && one.transmits() && !at->second.transmits()) at->second = one;
   }
 
+  /// Readers take the long names for the names of the signals: both differ within a message.
+  struct SignalNames {
+    DbcNames full{max_long_dbc_name}, shortened;
+  };
+
   enum class LeftOut : std::uint8_t { invalid_mapping, multiplexed, disabled, of_another_pdo };
 
   /// Why a PDO is not in the file.
@@ -153,7 +158,7 @@ class DbcWriter {
     if (one.transmits() && type >= first_event_driven_type && timer != 0) {
       sections_.attributes += fmt::format("BA_ \"GenMsgCycleTime\" BO_ {} {};\n", id, timer);
     }
-    DbcNames signals;
+    SignalNames signals;
     for (const PdoEntry& mapped : pdo.entries) {
       if (mapped.object != nullptr) add_signals(id, one, mapped, signals);
     }
@@ -174,17 +179,17 @@ class DbcWriter {
     return receivers.empty() ? nobody : receivers;
   }
 
-  void add_signals(std::uint32_t id, const NodePdo& message, const PdoEntry& mapped, DbcNames& names) {
+  void add_signals(std::uint32_t id, const NodePdo& message, const PdoEntry& mapped, SignalNames& names) {
     for (const DbcSignal& signal : dbc_signals(*mapped.object, mapped.bits)) {
       add_signal(id, message, mapped, signal, names);
     }
   }
 
   void add_signal(std::uint32_t id, const NodePdo& message, const PdoEntry& mapped, const DbcSignal& signal,
-                  DbcNames& names) {
+                  SignalNames& names) {
     const Entry& entry = *mapped.object;
-    const std::string long_name = message.node->names->full(entry) + signal.name;
-    const std::string name = names.take(long_name);
+    const std::string long_name = names.full.take(message.node->names->full(entry) + signal.name);
+    const std::string name = names.shortened.take(long_name);
     const unsigned start = mapped.offset + signal.first_bit;
     sections_.messages += fmt::format(" SG_ {} : {}|{}@1{} ({},{}) [{}|{}] {} {}\n", name, start, signal.bits,
                                       signal.is_signed ? '-' : '+', signal.factor, signal.offset, signal.min,

@@ -5,10 +5,10 @@
 namespace edsc {
 
 std::string DbcNames::take(std::string_view wanted) {
-  std::string name{wanted.substr(0, max_dbc_name)};
+  std::string name{wanted.substr(0, longest_)};
   for (unsigned number = 2; !taken_.insert(name).second; ++number) {
     const std::string suffix = "_" + std::to_string(number);
-    name = std::string{wanted.substr(0, max_dbc_name - suffix.size())} + suffix;
+    name = std::string{wanted.substr(0, longest_ - suffix.size())} + suffix;
   }
   return name;
 }

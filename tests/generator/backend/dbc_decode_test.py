@@ -20,7 +20,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
-from dbc_signals import INVALID, Message, Signal, dump_of, messages_of  # noqa: E402
+from dbc_signals import INVALID, Message, Signal, dump_of, messages_of, sheet_mapping  # noqa: E402
 
 logging.disable(logging.CRITICAL)
 with warnings.catch_warnings():
@@ -90,12 +90,29 @@ def compare_device(path: Path, edsc: str, file: Path, problems: list[str]) -> in
     return count
 
 
+def check_mapped_twice(edsc: str, folder: Path, problems: list[str]) -> None:
+    """Each signal of an object that a PDO maps twice has its own name and bits, whether the name is short or shortened."""
+    long = "temperature of the second winding of the motor"
+    sheet, file = folder / "twice.eds", folder / "twice.dbc"
+    sheet.write_text(sheet_mapping(["speed", long, "speed", long]))
+    subprocess.run([edsc, "generate", sheet, "--node-id", str(NODE_ID), "--dbc", file], check=True, stderr=subprocess.DEVNULL)
+    matrix, = canmatrix.formats.loadp(str(file), dbcImportEncoding="cp1252").values()
+    name = long.replace(" ", "_")
+    found = [(long_name(one, "SystemSignalLongSymbol"), one.start_bit) for one in sorted(matrix.frames[0].signals, key=lambda one: one.start_bit)]
+    if found != [("speed", 0), (name, 8), ("speed_2", 16), (f"{name}_2", 24)]:
+        problems.append(f"an object that is mapped twice: {found}")
+    decoded = matrix.frames[0].decode(bytes([1, 2, 3, 4]))
+    if sorted(int(one.raw_value) for one in decoded.values()) != [1, 2, 3, 4]:
+        problems.append(f"an object that is mapped twice: {decoded}")
+
+
 def main() -> int:
     source, edsc = Path(sys.argv[1]), sys.argv[2]
     problems: list[str] = []
     devices = sorted((source / "eds").glob("*.eds"))
     with tempfile.TemporaryDirectory() as folder:
         counts = [compare_device(path, edsc, Path(folder, f"{path.stem}.dbc"), problems) for path in devices]
+        check_mapped_twice(edsc, Path(folder), problems)
     print("\n".join(problems[:40]))
     print(f"{len(devices)} devices, {FRAMES} frames each, {sum(counts)} signals, {len(problems)} problems")
     return 1 if problems or not all(counts) else 0

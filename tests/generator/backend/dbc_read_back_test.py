@@ -20,7 +20,7 @@ HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parents[1] / "masters"), str(HERE.parents[1] / "support")]
 import dbc_signals  # noqa: E402
 from data_sheet import DataSheet  # noqa: E402
-from dbc_signals import EXTENDED, INVALID, Signal  # noqa: E402
+from dbc_signals import EXTENDED, INVALID, Signal, sheet_mapping  # noqa: E402
 from npm_packages import Skipped, install_npm_packages  # noqa: E402
 
 SKIPPED = 77
@@ -52,25 +52,6 @@ def messages_of(sheet: DataSheet, dump: dict) -> dict[int, dict]:
     return messages
 
 
-def sheet_of_words() -> str:
-    """An EDS whose TPDO 1 maps the objects of WORDS."""
-    def section(name: str, **keys: object) -> str:
-        return f"[{name}]\n" + "".join(f"{key}={value}\n" for key, value in keys.items())
-
-    def record(index: str, values: list[tuple[str, str]]) -> str:
-        text = section(index, ParameterName="PDO parameter", ObjectType="0x9", SubNumber=len(values))
-        for sub, (data_type, value) in enumerate(values):
-            text += section(f"{index}sub{sub:X}", ParameterName=f"Entry {sub}", ObjectType="0x7", DataType=data_type,
-                            AccessType="ro", DefaultValue=value)
-        return text
-
-    text = "".join(section(f"{0x2000 + i:04X}", ParameterName=name, ObjectType="0x7", DataType="0x5", AccessType="ro", PDOMapping=1)
-                   for i, name in enumerate(WORDS))
-    mapped = [("0x7", f"0x{0x2000 + i:04X}0008") for i in range(len(WORDS))]
-    return (text + record("1800", [("0x5", "2"), ("0x7", "$NODEID+0x180"), ("0x5", "255")])
-            + record("1A00", [("0x5", str(len(WORDS))), *mapped]))
-
-
 def read_back(messages: list[dict]) -> dict[int, dict]:
     """The same, from the output of candied. Its description of a signal begins with the index."""
     found = {}
@@ -99,7 +80,7 @@ def main() -> int:
             subprocess.run([edsc, "generate", path, "--options", path.with_suffix(".options.json"), "--node-id", str(NODE_ID),
                             "--dbc", f"{folder}/{name}.dbc"], check=True, stderr=subprocess.DEVNULL)
         words = Path(folder, "words.eds")
-        words.write_text(sheet_of_words(), encoding="utf-8")
+        words.write_text(sheet_mapping([*WORDS]), encoding="utf-8")
         subprocess.run([edsc, "generate", words, "--node-id", str(NODE_ID), "--dbc", words.with_suffix(".dbc")], check=True,
                        stderr=subprocess.DEVNULL)
         files = [*(f"{folder}/{name}.dbc" for name in sheets), str(words.with_suffix(".dbc"))]

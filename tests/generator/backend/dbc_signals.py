@@ -42,6 +42,26 @@ class Message:
     signals: list[Signal]
 
 
+def sheet_mapping(names: list[str]) -> str:
+    """An EDS whose TPDO 1 maps an UNSIGNED8 for each name, one more than once if it is repeated. The objects begin at 2000h."""
+    def section(name: str, **keys: object) -> str:
+        return f"[{name}]\n" + "".join(f"{key}={value}\n" for key, value in keys.items())
+
+    def record(index: str, values: list[tuple[str, str]]) -> str:
+        text = section(index, ParameterName="PDO parameter", ObjectType="0x9", SubNumber=len(values))
+        for sub, (data_type, value) in enumerate(values):
+            text += section(f"{index}sub{sub:X}", ParameterName=f"Entry {sub}", ObjectType="0x7", DataType=data_type,
+                            AccessType="ro", DefaultValue=value)
+        return text
+
+    indices = {name: f"{0x2000 + i:04X}" for i, name in enumerate(dict.fromkeys(names))}
+    text = "".join(section(index, ParameterName=name, ObjectType="0x7", DataType="0x5", AccessType="ro", PDOMapping=1)
+                   for name, index in indices.items())
+    mapped = [("0x7", f"0x{indices[name]}0008") for name in names]
+    return (text + record("1800", [("0x5", "2"), ("0x7", "$NODEID+0x180"), ("0x5", "255")])
+            + record("1A00", [("0x5", str(len(names))), *mapped]))
+
+
 def dump_of(edsc: str, path: Path, node_id: int) -> Member:
     output = subprocess.run([edsc, "dump", str(path), "--options", str(path.with_suffix(".options.json")), "--node-id",
                              str(node_id)], check=True, stdout=subprocess.PIPE, text=True, encoding="utf-8").stdout

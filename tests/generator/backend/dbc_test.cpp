@@ -145,6 +145,19 @@ TEST(Dbc, ShortensLongNamesAndKeepsThemInAttributes) {
                        "\"axis_values_of_the_left_hand_side_drive_slip\";"));
 }
 
+/// Readers replace the name of a signal by its long name, and reject two of one name in a message.
+TEST(Dbc, HasDifferentLongNamesForAnObjectThatIsMappedTwice) {
+  const Dbc dbc =
+      dbc_from(pdo("1800", "1A00", "$NODEID+0x180", {"0x20100108", "0x20010010", "0x20100108", "0x20010010"}));
+  EXPECT_NE(dbc.text.find(" SG_ torque_2 : 40|16"), std::string::npos) << dbc.text;
+  EXPECT_TRUE(has_line(dbc,
+                       "BA_ \"SystemSignalLongSymbol\" SG_ 389 axis_values_of_the_left_hand_sid "
+                       "\"axis_values_of_the_left_hand_side_drive_speed\";"));
+  EXPECT_TRUE(has_line(dbc,
+                       "BA_ \"SystemSignalLongSymbol\" SG_ 389 axis_values_of_the_left_hand_s_2 "
+                       "\"axis_values_of_the_left_hand_side_drive_speed_2\";"));
+}
+
 TEST(Dbc, NamesSignalsAsTheEdsDoesWithoutReservedWordsOfALanguage) {
   const std::string mapped = "PDOMapping=1\n";
   const DeviceFromText read{var("2100", "Switch", "0x5", "ro", mapped) + var("2101", "Float", "0x5", "ro", mapped) +
