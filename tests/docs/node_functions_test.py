@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -97,6 +98,9 @@ def documented(page: str) -> dict[str, set[str]]:
 
 def main() -> int:
     source = Path(sys.argv[1]).resolve()
+    if shutil.which("clang++-14") is None:
+        print("SKIPPED: clang++-14 of Debian 12 is missing; other versions write another syntax tree")
+        return 77
     expected = functions(source)
     if "--list" in sys.argv:
         for group, names in expected.items():

@@ -48,8 +48,8 @@ def main() -> int:
         return 77
     program = shutil.which("clang-format-14")
     if program is None:
-        print("clang-format-14 is missing: other versions format some lines differently")
-        return 1
+        print("SKIPPED: clang-format-14 of Debian 12 is missing; other versions format some lines differently")
+        return 77
     names = sources(source_dir, files)
     batches = [names[start:start + BATCH] for start in range(0, len(names), BATCH)]
     options = ["-i"] if fix else ["--dry-run", "--Werror"]
