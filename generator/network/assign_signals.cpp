@@ -14,6 +14,7 @@
 
 #include "device/cob_id_parameter.hpp"
 #include "device/index_range.hpp"
+#include "device/options/options.hpp"
 #include "device/pdo/pdo_defaults.hpp"
 #include "network/cob_id_use.hpp"
 #include "network/communication_objects.hpp"
@@ -41,14 +42,19 @@ struct SignalGroup {
 std::uint32_t number_or_0(const WrittenNumber& number) { return number ? number->value : 0; }
 
 /// What the signals of one PDO have in common: sender, timing and receivers.
-using SignalKind = std::tuple<const NetworkNode*, std::uint32_t, std::uint32_t, bool, std::vector<const NetworkNode*>>;
+using SignalKind =
+    std::tuple<const NetworkNode*, std::uint32_t, std::uint32_t, std::uint32_t, bool, std::vector<const NetworkNode*>>;
 
 SignalKind kind_of(const Signal& signal) {
   const SignalDescription& timing = *signal.description;
   std::vector<const NetworkNode*> receivers;
   for (const SignalEnd& end : signal.to) receivers.push_back(end.node);
-  return {signal.from.node, number_or_0(timing.every_ms), number_or_0(timing.every_sync),
-          timing.event && timing.event->value, std::move(receivers)};
+  return {signal.from.node,
+          number_or_0(timing.every_ms),
+          number_or_0(timing.every_sync),
+          number_or_0(timing.inhibit_time_us),
+          timing.event && timing.event->value,
+          std::move(receivers)};
 }
 
 /// The groups of one kind in order, and by the size of a signal the first that may have room for it.
@@ -128,6 +134,7 @@ class SignalPlanner {
     }
     sender->cob_id = *cob_id | (sender->cob_id & canopen::CobId::no_rtr_bit);
     set_timing(*first.description, *sender);
+    set_inhibit_time(*first.description, *first.from.node, *sender);
     plan_.pdos.push_back(*std::move(sender));
     for (PlannedPdo& receiver : receivers) {
       receiver.cob_id = *cob_id;
@@ -179,7 +186,7 @@ class SignalPlanner {
   /// A PDO of the node that has the mapping, or can get it.
   std::optional<PlannedPdo> choose(const NetworkNode& node, PdoDirection direction, std::vector<MappingValue> mapping,
                                    const Signal& first) {
-    PlannedPdo planned{node.name, direction, 1, 0, 255, {}, std::move(mapping), first.description->position};
+    PlannedPdo planned{node.name, direction, 1, 0, 255, {}, {}, std::move(mapping), first.description->position};
     if (!node.has_file()) {
       planned.number = ++master_pdos_[{&node, direction}];
       if (planned.number <= classical_can.pdos) return planned;
@@ -315,6 +322,18 @@ class SignalPlanner {
     }
   }
 
+  void set_inhibit_time(const SignalDescription& signal, const NetworkNode& node, PlannedPdo& sender) {
+    if (!signal.inhibit_time_us) return;
+    const std::uint32_t unit_us = node.has_file() ? node.loaded->options.inhibit_time_unit() : usual_inhibit_time_unit;
+    const auto [time_us, position] = *signal.inhibit_time_us;
+    if (time_us % unit_us != 0) {
+      diagnostics_.error("network-signal", position,
+                         fmt::format("the inhibit time of node {} has steps of {} us", node.name, unit_us));
+      return;
+    }
+    sender.inhibit_time = time_us / unit_us;
+  }
+
   const Network& network_;
   Diagnostics& diagnostics_;
   std::vector<CobIdUse> uses_;  ///< as configured without signals
@@ -367,6 +386,7 @@ void apply(NetworkNode& node, const PlannedPdo& pdo, Diagnostics& diagnostics) {
   if (pdo.event_timer_ms && (has_timer || *pdo.event_timer_ms != 0)) {
     set(communication, event_timer_sub_index, *pdo.event_timer_ms);
   }
+  if (pdo.inhibit_time) set(communication, inhibit_time_sub_index, *pdo.inhibit_time);
   set(mapping, 0, pdo.mapping.size());
   for (std::size_t i = 0; i < pdo.mapping.size(); ++i) set(mapping, i + 1, pdo.mapping[i].value());
 }

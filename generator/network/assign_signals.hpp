@@ -28,6 +28,7 @@ struct PlannedPdo {
   std::uint32_t cob_id = 0;
   std::uint8_t transmission_type = 255;
   std::optional<std::uint16_t> event_timer_ms;
+  std::optional<std::uint64_t> inhibit_time;  ///< in the unit of the device
   std::vector<MappingValue> mapping;
   Position position;               ///< of its first signal
   bool has_stated_can_id = false;  ///< by `set` or a DCF

@@ -249,6 +249,9 @@ class NetworkReader {
       value_error(json, "a signal has either \"every_ms\" or \"every_sync\"");
     }
     if (signal.every_sync && is_event) value_error(json, "a signal has either \"every_sync\" or \"event\"");
+    if (signal.inhibit_time_us && signal.every_sync) {
+      value_error(json, "\"inhibit_time_us\" is for signals that are not sent at SYNC");
+    }
     if (!has_interval && !is_event) value_error(json, "a signal needs \"every_ms\", \"every_sync\" or \"event\"");
   }
 

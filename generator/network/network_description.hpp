@@ -62,6 +62,7 @@ struct SignalDescription {
   WrittenNumber every_ms;
   WrittenNumber every_sync;
   WrittenFlag event;
+  WrittenNumber inhibit_time_us;
 };
 
 struct NetworkDescription {
@@ -153,6 +154,8 @@ inline constexpr MemberRow<SignalDescription> signal_members[] = {
     {"every_ms", &SignalDescription::every_ms, "sent in this interval in ms (event timer)", 1, 65535},
     {"every_sync", &SignalDescription::every_sync, "sent at each SYNC with this distance (transmission type)", 1, 240},
     {"event", &SignalDescription::event, "sent when the value changes (transmission type 255)"},
+    {"inhibit_time_us", &SignalDescription::inhibit_time_us,
+     "shortest time between two PDOs in us, a multiple of 100 (inhibit time)", 100, 6'553'500},
 };
 
 /// The time in ms in which a node responds to an SDO request: its own, or that of the network; empty if neither is

@@ -111,7 +111,7 @@ void set_text(NetworkNode& node, const WrittenValue& written, EntryFinder& entri
   }
   Diagnostics of_value;
   const Field field{written.value.value, written.value.position, true};
-  const auto value = parse_value(field, *found.entry->type, node.node_id, of_value);
+  const auto value = parse_exact_value(field, *found.entry->type, node.node_id, of_value);
   for (const Diagnostic& one : of_value.all()) {
     diagnostics.error("network-value", one.position, fmt::format("node {}: {}", node.name, one.message));
   }

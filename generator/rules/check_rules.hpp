@@ -247,6 +247,8 @@ inline constexpr Rule check[] = {
              {"network-pdo-unreceived", warning, "a TPDO that no node receives", "CiA 301, 7.2.2", note}),
     Rule{"network-pdo-length", error, "an RPDO that is longer than the TPDO that it receives", "CiA 301, 7.2.2"},
     Rule{"network-pdo-layout", warning, "an entry of an RPDO without an equal entry in the TPDO", "CiA 301, 7.2.2"},
+    Rule{"network-pdo-timer", error, "an RPDO whose event timer ends before the next PDO is sent", "CiA 301, 7.5.2.35",
+         warning},
     Rule{"network-pdo-type", warning, "an entry of an RPDO whose data type differs from that in the TPDO",
          "CiA 301, 7.2.2"},
     Rule{"network-pdo-unit", warning, "an entry of an RPDO whose unit differs from that in the TPDO", "edsc"},
@@ -267,7 +269,7 @@ inline constexpr Rule check[] = {
     Rule{"network-unmonitored", warning, "a node whose failure no other node detects", "CiA 301, 7.2.8.3.2"},
     Rule{"network-load", error, "a bus load above 100 percent, or above max_load", "edsc", warning},
     Rule{"network-response-time", error, "a frame that may be sent later than its deadline", "edsc"},
-    Rule{"network-event-rate", note, "an event-driven TPDO whose rate nothing limits", "CiA 301, 7.5.2.37"},
+    Rule{"network-event-rate", note, "an event-driven TPDO whose rate no inhibit time limits", "CiA 301, 7.5.2.37"},
     // This compiler.
     Rule{"meaning-bits", error, "a field is outside the type of its entry, or overlaps another one", "edsc"},
     Rule{"meaning-value", error, "a named value is outside the type or limits of its entry", "edsc", warning},

@@ -36,6 +36,12 @@ class ValueReader {
               std::optional<Limit> limit, Diagnostics& diagnostics)
       : field_{field}, type_{type}, node_id_{node_id}, limit_{limit}, diagnostics_{diagnostics} {}
 
+  /// A decimal number outside the range of the type is not read as two's complement.
+  ValueReader& exactly() {
+    is_exact_ = true;
+    return *this;
+  }
+
   std::optional<Value> read() {
     if (!field_.present || trim(field_.text).empty()) return std::nullopt;
     switch (type_.kind) {
@@ -207,7 +213,7 @@ class ValueReader {
   std::optional<Value> negative_integer(std::uint64_t magnitude) {
     const std::uint64_t lowest = std::uint64_t{1} << (type_.bits - 1);
     const bool is_unsigned = type_.kind != DataClass::signed_integer;
-    if (magnitude > lowest || (limit_ && is_unsigned && magnitude != 0)) return out_of_range(false);
+    if (magnitude > lowest || ((limit_ || is_exact_) && is_unsigned && magnitude != 0)) return out_of_range(false);
     if (is_unsigned && magnitude != 0) {
       warning("number-range",
               fmt::format("negative value of the unsigned type {}; using its two's complement", type_.name),
@@ -223,7 +229,7 @@ class ValueReader {
     if (type_.kind != DataClass::signed_integer) return value(magnitude);
     const std::uint64_t sign = std::uint64_t{1} << (type_.bits - 1);
     if (magnitude < sign) return value(magnitude);
-    if (!hexadecimal && limit_) return out_of_range(true);
+    if (!hexadecimal && (limit_ || is_exact_)) return out_of_range(true);
     if (!hexadecimal) {
       warning(
           "number-range",
@@ -332,6 +338,7 @@ class ValueReader {
   const DataTypeRow& type_;
   std::optional<std::uint8_t> node_id_;
   std::optional<Limit> limit_;
+  bool is_exact_ = false;
   Diagnostics& diagnostics_;
 };
 
@@ -340,6 +347,11 @@ class ValueReader {
 std::optional<Value> parse_value(const Field& field, const canopen::DataTypeRow& type,
                                  std::optional<std::uint8_t> node_id, Diagnostics& diagnostics) {
   return ValueReader{field, type, node_id, std::nullopt, diagnostics}.read();
+}
+
+std::optional<Value> parse_exact_value(const Field& field, const canopen::DataTypeRow& type, std::uint8_t node_id,
+                                       Diagnostics& diagnostics) {
+  return ValueReader{field, type, node_id, std::nullopt, diagnostics}.exactly().read();
 }
 
 std::optional<Value> parse_limit(const Field& field, Limit which, const canopen::DataTypeRow& type,

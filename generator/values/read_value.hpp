@@ -16,6 +16,11 @@ namespace edsc {
 [[nodiscard]] std::optional<Value> parse_value(const Field& field, const canopen::DataTypeRow& type,
                                                std::optional<std::uint8_t> node_id, Diagnostics& diagnostics);
 
+/// The same for a value of a network file, which is made for edsc: a decimal number outside the range of the type is an
+/// error. In an EDS it is read as two's complement.
+[[nodiscard]] std::optional<Value> parse_exact_value(const Field& field, const canopen::DataTypeRow& type,
+                                                     std::uint8_t node_id, Diagnostics& diagnostics);
+
 enum class Limit : std::uint8_t { low, high };
 
 /// The same for LowLimit or HighLimit. A limit outside the range of the type has no effect and is ignored, with a

@@ -71,7 +71,8 @@ void check_bit_rate(const NetworkContext& context) {
                                 {{bit_rate->position, "the bit rate of the network"}});
     }
     const auto& commissioning = node.device().information.commissioning;
-    const bool is_of_dcf = node.description->dcf && commissioning && commissioning->baudrate;
+    // Tools write 0 where the bit rate is not known.
+    const bool is_of_dcf = node.description->dcf && commissioning && commissioning->baudrate.value_or(0) != 0;
     if (is_of_dcf && *commissioning->baudrate != bit_rate->value) {
       context.diagnostics.warning("network-bit-rate", node.description->dcf->position,
                                   fmt::format("the DCF of node {} is for {} kbit/s, the network has {}", node.name,

@@ -1,14 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "device/entry_text.hpp"
 #include "device/meaning/raw_unit.hpp"
+#include "device/pdo/pdo_defaults.hpp"
 #include "network/checks/check_groups.hpp"
 #include "network/checks/merged_note.hpp"
+#include "network/timing/timing.hpp"
 
 namespace edsc {
 namespace {
@@ -31,6 +34,7 @@ class PdoLink {
           "network-pdo-length", place(*receiver_.pdo),
           fmt::format("{} expects {} bits, {} sends {}", named(receiver_), expected, named(sender_), sent), note());
     }
+    check_event_timer();
     for (const PdoEntry& entry : receiver_.pdo->entries) {
       if (entry.object != nullptr && entry.end() <= sent) check(entry);
     }
@@ -45,6 +49,24 @@ class PdoLink {
 
   [[nodiscard]] std::string title(const PdoEntry& entry) const {
     return fmt::format("{} entry {}, {}", named(receiver_), entry.position, text(entry));
+  }
+
+  /// The event timer of an RPDO reports a PDO that is missing (CiA 301, 7.5.2.35).
+  void check_event_timer() {
+    const std::uint64_t timer = communication_default(*receiver_.pdo, event_timer_sub_index).value_or(0);
+    if (timer == 0) return;
+    const Position at = default_place(*receiver_.pdo->communication->find(event_timer_sub_index));
+    const std::string expects = fmt::format("{} expects a PDO within {} ms (event timer)", named(receiver_), timer);
+    const auto interval = longest_interval(sender_, context_.uses);
+    if (!interval) {
+      context_.diagnostics.warning("network-pdo-timer", at,
+                                   fmt::format("{}, but {} sends it only at events", expects, named(sender_)), note());
+    } else if (*interval >= std::chrono::milliseconds{timer}) {
+      const double milliseconds = std::chrono::duration<double, std::milli>{*interval}.count();
+      context_.diagnostics.error(
+          "network-pdo-timer", at,
+          fmt::format("{}, but {} may send it only every {} ms", expects, named(sender_), milliseconds), note());
+    }
   }
 
   void check(const PdoEntry& entry) {

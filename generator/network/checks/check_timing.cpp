@@ -55,10 +55,13 @@ void check_timing(const NetworkContext& context) {
   MergedNote assumed;
   for (const TimedMessage& one : timing.messages) {
     check_response(context, one);
-    if (one.service != FrameService::pdo || !one.has_assumed_period) continue;
+    if (one.service != FrameService::pdo || !one.may_be_sent_earlier) continue;
     assumed.add("network-event-rate", one.position,
-                fmt::format("{} has neither inhibit time nor event timer; assuming {}", one.name,
-                            milliseconds_text(one.message.period)));
+                one.has_assumed_period
+                    ? fmt::format("{} has neither inhibit time nor event timer; assuming {}", one.name,
+                                  milliseconds_text(one.message.period))
+                    : fmt::format("{} has no inhibit time: an event may send it before its event timer of {} ends",
+                                  one.name, milliseconds_text(one.message.period)));
   }
   assumed.report(context.diagnostics);
 }

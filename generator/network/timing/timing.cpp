@@ -30,10 +30,30 @@ Nanoseconds inhibit_time(std::uint64_t value, std::uint32_t unit_us = usual_inhi
   return microseconds{unit_us} * static_cast<std::int64_t>(value);
 }
 
+/// 0 if no node sends SYNC.
+Nanoseconds sync_period_of(const std::vector<CobIdUse>& uses) {
+  const CobIdUse* const producer = sync_producer(uses);
+  if (producer == nullptr) return {};
+  const auto period = value_of(producer->node->device(), communication::cycle_period).value_or(0);
+  return microseconds{static_cast<std::int64_t>(period)};
+}
+
+std::uint64_t transmission_type(const CobIdUse& pdo) {
+  return communication_default(*pdo.pdo, transmission_type_sub_index).value_or(default_transmission_type);
+}
+
+Nanoseconds time_of_cycles(std::uint64_t type, Nanoseconds sync_period) {
+  return sync_period * static_cast<std::int64_t>(std::max<std::uint64_t>(type, 1));
+}
+
+milliseconds event_timer(const CobIdUse& pdo) {
+  return milliseconds{static_cast<std::int64_t>(communication_default(*pdo.pdo, event_timer_sub_index).value_or(0))};
+}
+
 class MessageCollector {
  public:
   MessageCollector(const Network& network, const std::vector<CobIdUse>& uses)
-      : network_{network}, uses_{uses}, assume_{network.description.assume}, sync_period_{sync_period()} {}
+      : network_{network}, uses_{uses}, assume_{network.description.assume}, sync_period_{sync_period_of(uses)} {}
 
   std::vector<TimedMessage> collect() {
     for (const CobIdUse& use : uses_) {
@@ -46,13 +66,6 @@ class MessageCollector {
   }
 
  private:
-  [[nodiscard]] Nanoseconds sync_period() const {
-    const CobIdUse* const producer = sync_producer(uses_);
-    if (producer == nullptr) return {};
-    const auto period = value_of(producer->node->device(), communication::cycle_period).value_or(0);
-    return microseconds{static_cast<std::int64_t>(period)};
-  }
-
   void add(const CobIdUse& use) {
     switch (use.service) {
       case FrameService::pdo: return add_pdo(use);
@@ -94,10 +107,10 @@ class MessageCollector {
   }
 
   void add_pdo(const CobIdUse& use) {
-    const auto type = communication_default(*use.pdo, transmission_type_sub_index).value_or(default_transmission_type);
+    const std::uint64_t type = transmission_type(use);
     const std::size_t size = use.pdo->multiplexed ? classical_can.bytes : use.pdo->bytes();
     switch (canopen::transmission_of(static_cast<std::uint32_t>(type))) {
-      case canopen::Transmission::synchronous: return add_synchronous(use, size, std::max<std::uint64_t>(type, 1));
+      case canopen::Transmission::synchronous: return add_synchronous(use, size, type);
       case canopen::Transmission::event_driven: return add_event_driven(use, size);
       case canopen::Transmission::remote_synchronous:
       case canopen::Transmission::remote:
@@ -105,9 +118,9 @@ class MessageCollector {
     }
   }
 
-  void add_synchronous(const CobIdUse& use, std::size_t size, std::uint64_t cycles) {
+  void add_synchronous(const CobIdUse& use, std::size_t size, std::uint64_t type) {
     if (sync_period_ == Nanoseconds{}) return;
-    TimedMessage one = message_of(use, size, sync_period_ * static_cast<std::int64_t>(cycles));
+    TimedMessage one = message_of(use, size, time_of_cycles(type, sync_period_));
     one.is_synchronous = true;
     const auto window = value_of(use.node->device(), communication::window_length).value_or(0);
     one.message.deadline = window != 0 ? microseconds{static_cast<std::int64_t>(window)} : sync_period_;
@@ -117,13 +130,13 @@ class MessageCollector {
   void add_event_driven(const CobIdUse& use, std::size_t size) {
     const Nanoseconds inhibit = inhibit_time(communication_default(*use.pdo, inhibit_time_sub_index).value_or(0),
                                              use.node->loaded->options.inhibit_time_unit());
-    const milliseconds timer{
-        static_cast<std::int64_t>(communication_default(*use.pdo, event_timer_sub_index).value_or(0))};
+    const milliseconds timer = event_timer(use);
     TimedMessage one = message_of(use, size, inhibit != Nanoseconds{} ? inhibit : timer);
     if (one.message.period == Nanoseconds{}) {
       one.message.period = interval(assume_.event_ms, 100);
       one.has_assumed_period = true;
     }
+    one.may_be_sent_earlier = inhibit == Nanoseconds{};
     // Without an event timer, the network does not state when the value is needed.
     const Nanoseconds needed = timer != milliseconds{} ? Nanoseconds{timer} : interval(assume_.event_ms, 100);
     one.message.deadline = std::max(needed, one.message.period);
@@ -205,6 +218,22 @@ void add_sync_jitter(std::vector<TimedMessage>& messages, const std::vector<Resp
 }
 
 }  // namespace
+
+std::optional<Nanoseconds> longest_interval(const CobIdUse& tpdo, const std::vector<CobIdUse>& uses) {
+  const std::uint64_t type = transmission_type(tpdo);
+  Nanoseconds interval{};
+  switch (canopen::transmission_of(static_cast<std::uint32_t>(type))) {
+    case canopen::Transmission::synchronous:
+      // Type 0: at the SYNC after an event.
+      if (type != 0) interval = time_of_cycles(type, sync_period_of(uses));
+      break;
+    case canopen::Transmission::event_driven: interval = event_timer(tpdo); break;
+    case canopen::Transmission::remote_synchronous:
+    case canopen::Transmission::remote:
+    case canopen::Transmission::reserved: break;
+  }
+  return interval != Nanoseconds{} ? std::optional{interval} : std::nullopt;
+}
 
 NetworkTiming network_timing(const Network& network, const std::vector<CobIdUse>& uses) {
   NetworkTiming timing;

@@ -188,11 +188,32 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
     "inhibit_time_of_the_sheet_longer_than_the_event_timer": (
         network(signal("d", "2000h", "m"), d={"node_id": 4, "eds": "slow.eds", "heartbeat_ms": 100}),
         [("warning", "pdo-inhibit-time")]),
+    "inhibit_time_of_a_signal": (network(signal(*SPEED, every_ms=10, inhibit_time_us=2500)), []),
+    "inhibit_time_of_a_signal_of_the_master": (network(signal("m", "a.2002h", event=True, inhibit_time_us=10000)), []),
+    "inhibit_time_of_a_signal_in_no_step": (network(signal(*SPEED, every_ms=10, inhibit_time_us=2550)), [("error", "network-signal")]),
+    "inhibit_time_of_a_signal_longer_than_its_interval": (network(signal(*SPEED, every_ms=10, inhibit_time_us=10100)),
+                                                          [("warning", "pdo-inhibit-time")]),
+    "inhibit_time_of_a_synchronous_signal": (network(signal(*SPEED, every_sync=1, inhibit_time_us=100)), [("error", "network-file")]),
+    "inhibit_time_and_value_disagree": (
+        network(signal(*SPEED, every_ms=10, inhibit_time_us=2500), a={**NODE_A, "set": {"1800h:03": 24}}),
+        [("error", "network-signal")]),
+    **{f"event_timer_of_{ms}_ms_for_a_signal_{name}": (network(signal(*SPEED, **timing), b={**NODE_A, "node_id": 2, "set": {"1400h:05": ms}}),
+                                                      [(severity, "network-pdo-timer")] if severity else [])
+       for name, timing, ms, severity in (
+           ("every_10_ms", {"every_ms": 10}, 10, "error"), ("every_10_ms", {"every_ms": 10}, 11, ""),
+           ("of_3_cycles_of_10_ms", {"every_sync": 3}, 30, "error"), ("of_3_cycles_of_10_ms", {"every_sync": 3}, 31, ""),
+           ("at_events", {"event": True}, 1000, "warning"), ("every_10_ms", {"every_ms": 10}, 0, ""))},
     "reserved_transmission_type": (network(signal(*SPEED), a={**NODE_A, "set": {"1801h:02": 241}}),
                                    [("error", "network-value")]),
     "reserved_transmission_type_of_an_rpdo": (network(signal(*SPEED), a={**NODE_A, "set": {"1401h:02": 252}}),
                                               [("error", "network-value")]),
     "a_consumer_for_each_node": (network(a={**NODE_A, "set": {"1016h:01": "0x200C8", "1016h:02": "0x300C8"}}), []),
+    "number_of_an_integer16_that_fits": (network(a={**NODE_A, "set": {"2007h": "-0x8000"}}), []),
+    "hexadecimal_number_of_an_integer16": (network(a={**NODE_A, "set": {"2007h": "0xFFFF"}}), []),
+    "decimal_number_of_an_integer16_that_does_not_fit": (network(a={**NODE_A, "set": {"2007h": "40000"}}), [("error", "network-value")]),
+    "negative_number_of_an_unsigned16": (network(a={**NODE_A, "set": {"2006h": "-1"}}), [("error", "network-value")]),
+    "dcf_without_a_bit_rate": (network(a={"dcf": "no_rate.dcf", "heartbeat_ms": 100}), []),
+    "dcf_for_another_bit_rate": (network(a={"dcf": "rate_125.dcf", "heartbeat_ms": 100}), [("warning", "network-bit-rate")]),
     "formula_that_fits": (network(a={**NODE_A, "set": {"2006h": "$NODEID+0xFFFE"}}), []),
     "formula_that_does_not_fit": (network(a={**NODE_A, "set": {"2006h": "$NODEID+0xFFFF"}}), [("error", "network-value")]),
     "formula_of_more_than_64_bits": (network(a={**NODE_A, "set": {"2006h": "$NODEID+0xFFFFFFFFFFFFFFFF"}}),
@@ -285,6 +306,8 @@ def main() -> int:
         (folder / "short.eds").write_text(re.sub(r"(\[1017\][^\[]*DataType=0x0006\n)", r"\g<1>HighLimit=255\n", sheet_with("1017", "0")))
         (folder / "coarse.eds").write_text(sheet_with("1017", "0").replace("Granularity=8", "Granularity=64"))
         (folder / "rate_100.eds").write_text(sheet_with("1017", "0").replace("BaudRate_125=1", "BaudRate_100=1"))
+        for name, rate in (("no_rate", 0), ("rate_125", 125)):
+            (folder / f"{name}.dcf").write_text(f"{sheet_with('1017', '0')}\n[DeviceComissioning]\nNodeID=1\nBaudrate={rate}\n")
         for name, units in UNITS.items():
             (folder / f"{name}.eds").write_text(sheet_in_units(*units))
         for name, (text, code, expected) in TEXTS.items():
