@@ -107,7 +107,7 @@ class TextPrinter {
     print_message(
         Severity::note,
         fmt::format("{} from this: {}{}", sum == 1 ? "1 finding follows" : fmt::format("{} findings follow", sum),
-                    rules, style_.of_check ? " (--all lists them)" : ""),
+                    rules, style_.of_check ? " (--all-findings lists them)" : ""),
         {});
   }
 

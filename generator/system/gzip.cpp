@@ -10,7 +10,7 @@ namespace edsc {
 namespace {
 
 constexpr int window_bits = 15;
-constexpr int gzip_header = 16;  ///< added to the window bits: gzip format instead of zlib
+constexpr int gzip_header = 16, zlib_header = 0;  ///< added to the window bits
 constexpr int memory_level = 9;
 constexpr int unknown_system = 255;
 constexpr std::size_t max_at_once = std::size_t{1} << 16;
@@ -21,6 +21,33 @@ constexpr std::size_t any_ratio_bytes = std::size_t{1} << 20;  ///< up to this s
 
 const Bytef* input_of(std::string_view bytes) { return reinterpret_cast<const Bytef*>(bytes.data()); }
 Bytef* output_of(std::string& bytes, std::size_t at) { return reinterpret_cast<Bytef*>(&bytes[at]); }
+
+std::string unpack(std::string_view bytes, std::size_t max_bytes, std::string& content, int header_bits,
+                   std::string_view incomplete) {
+  z_stream stream{};
+  if (inflateInit2(&stream, window_bits + header_bits) != Z_OK) throw std::bad_alloc{};
+  stream.next_in = input_of(bytes);
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  content.clear();
+  int result = Z_OK;
+  const auto is_bomb = [&] {
+    return content.size() > any_ratio_bytes && content.size() / max_ratio > static_cast<std::size_t>(stream.total_in);
+  };
+  while (result == Z_OK && content.size() <= max_bytes && !is_bomb()) {
+    const std::size_t size = content.size();
+    content.resize(size + max_at_once);
+    stream.next_out = output_of(content, size);
+    stream.avail_out = static_cast<uInt>(max_at_once);
+    result = inflate(&stream, Z_NO_FLUSH);
+    content.resize(size + max_at_once - stream.avail_out);
+  }
+  const bool whole = result == Z_STREAM_END && stream.avail_in == 0;
+  const std::string place = fmt::format("stopped at byte {} of {}", stream.total_in, bytes.size());
+  inflateEnd(&stream);
+  if (content.size() > max_bytes) return fmt::format("unpacks to more than {} bytes; {}", max_bytes, place);
+  if (is_bomb()) return fmt::format("unpacks to more than {} times its size; {}", max_ratio, place);
+  return whole ? "" : std::string{incomplete};
+}
 
 }  // namespace
 
@@ -47,29 +74,11 @@ std::string gzip(std::string_view bytes) {
 }
 
 std::string gunzip(std::string_view bytes, std::size_t max_bytes, std::string& content) {
-  z_stream stream{};
-  if (inflateInit2(&stream, window_bits + gzip_header) != Z_OK) throw std::bad_alloc{};
-  stream.next_in = input_of(bytes);
-  stream.avail_in = static_cast<uInt>(bytes.size());
-  content.clear();
-  int result = Z_OK;
-  const auto is_bomb = [&] {
-    return content.size() > any_ratio_bytes && content.size() / max_ratio > static_cast<std::size_t>(stream.total_in);
-  };
-  while (result == Z_OK && content.size() <= max_bytes && !is_bomb()) {
-    const std::size_t size = content.size();
-    content.resize(size + max_at_once);
-    stream.next_out = output_of(content, size);
-    stream.avail_out = static_cast<uInt>(max_at_once);
-    result = inflate(&stream, Z_NO_FLUSH);
-    content.resize(size + max_at_once - stream.avail_out);
-  }
-  const bool whole = result == Z_STREAM_END && stream.avail_in == 0;
-  const std::string place = fmt::format("stopped at byte {} of {}", stream.total_in, bytes.size());
-  inflateEnd(&stream);
-  if (content.size() > max_bytes) return fmt::format("unpacks to more than {} bytes; {}", max_bytes, place);
-  if (is_bomb()) return fmt::format("unpacks to more than {} times its size; {}", max_ratio, place);
-  return whole ? "" : "not a complete gzip file";
+  return unpack(bytes, max_bytes, content, gzip_header, "not a complete gzip file");
+}
+
+std::string unpack_zlib(std::string_view bytes, std::size_t max_bytes, std::string& content) {
+  return unpack(bytes, max_bytes, content, zlib_header, "not a complete zlib stream");
 }
 
 }  // namespace edsc

@@ -1,4 +1,4 @@
-/// gzip files (RFC 1952): EDS files that devices store compressed.
+/// Compressed data: gzip files (RFC 1952), as EDS files that devices store, and zlib streams.
 #pragma once
 
 #include <cstddef>
@@ -15,5 +15,8 @@ namespace edsc {
 /// Unpacks a gzip file into `content`. Stops above `max_bytes`, and above 1 MiB if that is more than 200 times the
 /// bytes read so far, as such a file is made to exhaust memory. Returns the reason; empty on success.
 [[nodiscard]] std::string gunzip(std::string_view bytes, std::size_t max_bytes, std::string& content);
+
+/// The same for a zlib stream (RFC 1950), as in the containers of BLF logs.
+[[nodiscard]] std::string unpack_zlib(std::string_view bytes, std::size_t max_bytes, std::string& content);
 
 }  // namespace edsc

@@ -21,8 +21,8 @@ from cli_test import CLEAN, EDSC, FINE, INPUT_HAS_ERRORS, SMALL, SOURCE_DIR, WRO
 sys.path.insert(0, str(SOURCE_DIR / "tests/corpus"))
 from corpus_test import find_corpus  # noqa: E402
 
-XDD = SOURCE_DIR / "tests/fixtures/drive.xdd"
-XDC = SOURCE_DIR / "tests/fixtures/drive_node_5.xdc"
+XDD = SOURCE_DIR / "examples/xdd/drive.xdd"
+XDC = SOURCE_DIR / "examples/xdd/drive_node_5.xdc"
 
 
 class ManyFiles(CommandLine):

@@ -17,7 +17,7 @@ from cli_test import EDSC, FINE, INPUT_HAS_ERRORS, SMALL, SOURCE_DIR, WRONG_USAG
 
 HEADER = "[Overlay]\nVersion=1\nBase=small.eds\n"
 RENAMED = HEADER + "; the manual\n[1017]\nParameterName=Producer heartbeat time => Heartbeat\n"
-XDD = SOURCE_DIR / "tests/fixtures/drive.xdd"
+XDD = SOURCE_DIR / "examples/xdd/drive.xdd"
 
 
 class Overlay(CommandLine):

@@ -159,7 +159,7 @@ class Repair(unittest.TestCase):
         self.assertEqual(self.edsc("check", wrong, "--repair", "-o", self.folder / "x.overlay", "--strict").returncode, 2)
 
     def test_repairs_an_xdd(self) -> None:
-        text = (SOURCE_DIR / "tests/fixtures/drive.xdd").read_text(encoding="utf-8")
+        text = (SOURCE_DIR / "examples/xdd/drive.xdd").read_text(encoding="utf-8")
         planted = re.sub(r'subNumber="(\d+)"', lambda at: f'subNumber="{int(at[1]) - 1}"', text)
         self.assertNotEqual(planted, text)
         (self.folder / "right").mkdir()

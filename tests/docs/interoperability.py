@@ -43,7 +43,7 @@ ROWS = (
         "`edsc conform` reports the gaps of its slave, and nothing else", "conform_foreign", ()),
     Row("canmatrix", "python3-canmatrix", "it decodes frames by the DBC files of `edsc generate`; each value is compared", "dbc_decode",
         ((r"(\d+) signals,", "signals compared"), (r"signals, (\d+) problems", "different"))),
-    Row("python-can", "python3-can", "`edsc decode` reads its logs: ASC, TRC 1.0 and 2.1", "decode_formats", ()),
+    Row("python-can", "python3-can", "`edsc decode` reads its logs: ASC, BLF, TRC 1.0 and 2.1", "decode_formats", ()),
     Row("can-utils", "can-utils", "`edsc decode` reads logs of candump, and ASC files of log2asc", "decode_formats", ()),
     Row("scapy", "python3-scapy", "`edsc decode` reads its captures: pcap and pcapng", "decode_formats", ()),
     Row("python-can", "python3-can", "its interface socketcand exchanges frames on `edsc bus`", "bus", ()),

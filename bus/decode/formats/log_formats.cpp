@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <iterator>
 
+#include "text/ascii.hpp"
+
 namespace edsc {
 namespace {
 
 /// Files that are not read, but given as a log.
 struct ForeignRow {
-  std::string_view beginning, conversion;
+  std::string_view beginning;  ///< of the file; empty: it has `word` in one of its first lines
+  std::string_view conversion;
+  std::string_view word = {};  ///< in lower case
 };
 
 constexpr ForeignRow foreign_rows[] = {
@@ -20,15 +24,24 @@ constexpr ForeignRow foreign_rows[] = {
     {"PK\x03\x04", "a zip archive; unpack it"},
     {"\xFF\xFE", "text in UTF-16; use iconv -f UTF-16 -t UTF-8"},
     {"\xFE\xFF", "text in UTF-16; use iconv -f UTF-16 -t UTF-8"},
-    {"LOGG\x90", "a BLF file of Vector; export it as ASC"},
     {"MDF     ", "an MDF file; export it as ASC"},
+    {"PAR1", "a Parquet file; DuckDB writes it as CSV"},
+    {"", "a trace of IXXAT (MiniMon, canAnalyser); save it as Vector ASC", "ascii trace ixxat"},
+    {"", "a text log of Kvaser; save it as Vector ASC", "chn identifier flg"},
+    {"", "a data sheet, not a log; --node ID=FILE names the data sheet of a node", "[fileinfo]"},
+    {"", "a data sheet, not a log; --node ID=FILE names the data sheet of a node", "[deviceinfo]"},
+    {"", "an XDD or XDC file, not a log; --node ID=FILE names the data sheet of a node", "<iso15745profilecontainer"},
 };
 
 }  // namespace
 
 std::string_view conversion_of(std::string_view beginning) {
-  const auto* const found =
-      std::ranges::find_if(foreign_rows, [&](const ForeignRow& row) { return beginning.starts_with(row.beginning); });
+  constexpr std::size_t first_lines = 4096;
+  const std::string_view first = beginning.substr(0, first_lines);
+  const auto* const found = std::ranges::find_if(foreign_rows, [&](const ForeignRow& row) {
+    if (!row.beginning.empty()) return beginning.starts_with(row.beginning);
+    return !std::ranges::search(first, row.word, {}, to_lower).empty();
+  });
   return found == std::end(foreign_rows) ? std::string_view{} : found->conversion;
 }
 

@@ -1,4 +1,4 @@
-/// The formats of logs: candump, Vector ASC, PEAK TRC, pcap and pcapng.
+/// The formats of logs: candump, Vector ASC and BLF, PEAK TRC, BUSMASTER, SavvyCAN, pcap and pcapng.
 #pragma once
 
 #include <memory>
@@ -24,13 +24,17 @@ struct LogFormat {
 // Each is defined in a source of its own.
 extern const LogFormat pcapng_format;
 extern const LogFormat pcap_format;
+extern const LogFormat blf_format;
 extern const LogFormat trc_format;
+extern const LogFormat busmaster_format;
+extern const LogFormat savvycan_format;
 extern const LogFormat asc_format;
 extern const LogFormat candump_format;
 
 /// In the order of detection; the last one is that of all other logs.
 inline constexpr const LogFormat* log_formats[] = {
-    &pcapng_format, &pcap_format, &trc_format, &asc_format, &candump_format,
+    &pcapng_format,    &pcap_format,     &blf_format, &trc_format,
+    &busmaster_format, &savvycan_format, &asc_format, &candump_format,
 };
 
 /// The format that the content has.

@@ -90,6 +90,62 @@ class Formats(unittest.TestCase):
             with self.subTest(seed=seed, version="1.0"):
                 self.same(log, lambda path, frames: log_frames.python_can_trc(path, frames, "V1_0"), False)
 
+    def test_blf_of_python_can(self) -> None:
+        for compression in (0, 1, 9):
+            log = log_frames.frames(400, compression)
+            log.append(Frame(log[-1].time_us + 100, 0x706, remote=True))
+            with self.subTest(compression=compression):
+                self.same(log, lambda path, frames, level=compression: log_frames.python_can_blf(path, frames, level), True)
+
+    def test_a_damaged_blf(self) -> None:
+        path = self.folder / "a.blf"
+        log_frames.python_can_blf(path, log_frames.frames(400, 1), 9)
+        whole = path.read_bytes()
+        length = struct.unpack_from("<I", whole, 4)[0]
+        for name, log, frames, problem in (
+                ("header", whole[:60], 0, "the file header is not complete"),
+                ("cut", whole[:-200], 1, "the log ends in an object"),
+                ("mark", whole[:length] + b"XOBJ" + whole[length + 4:], 0, "no object where one is expected"),
+                ("length", whole[:length + 8] + bytes(4) + whole[length + 12:], 0, "an object has an impossible length"),
+                ("method", whole[:length + 16] + b"\7" + whole[length + 17:], 0, "compression method 7 is not known"),
+                ("zlib", whole[:length + 40] + b"\xFF" * 8 + whole[length + 48:], 0, "not a complete zlib stream")):
+            with self.subTest(name):
+                result = edsc(log=log)
+                self.assertNotEqual(result.returncode, FINE)
+                self.assertIn(problem, result.stderr.decode())
+                self.assertEqual(result.stdout != b"", bool(frames))
+
+    def test_logs_of_busmaster(self) -> None:
+        for mode in ("SYSTEM", "ABSOLUTE", "RELATIVE"):
+            for decimal in (False, True):
+                log = log_frames.frames(200, 12)
+                log.append(Frame(log[-1].time_us + 100, 0x706, remote=True))
+                with self.subTest(mode=mode, decimal=decimal):
+                    self.same(log, lambda path, frames, mode=mode, decimal=decimal: log_frames.busmaster(path, frames, mode, decimal), True)
+
+    def test_a_log_of_busmaster_over_midnight(self) -> None:
+        log = (b"***BUSMASTER Ver 3.2.2***\n***HEX***\n***SYSTEM MODE***\n23:59:59:9999 Rx 1 0x706 s 1 05\n00:00:00:0009 Tx 1 0x706 s 1 05\n"
+               b"00:00:01:0000 Rx 1 0x706 s-fd 1 05\n00:00:01:0000 Rx 1 0x706 q 1 05\n00:00:01 Rx 1 0x706 s 1 05\n00:00:02:0000 Rx 1 0x806 s 1 05\n")
+        result = edsc(log=log)
+        self.assertEqual([line.split(" ", 1)[0] for line in result.stdout.decode().splitlines()], ["86399.999900", "86400.000900"])
+        self.assertEqual(result.stderr.decode().splitlines(), [
+            "<stdin>:6: a CAN FD frame is ignored",
+            '<stdin>:7: skipped, the type is not s, x, sr or xr: "00:00:01:0000 Rx 1 0x706 q 1 05"',
+            '<stdin>:8: skipped, the time is not hours, minutes, seconds and units of 100 us: "00:00:01 Rx 1 0x706 s 1 05"',
+            '<stdin>:9: skipped, the CAN-ID is not a number of 11 bits, or 29 bits with x: "00:00:02:0000 Rx 1 0x806 s 1 05"'])
+
+    def test_logs_of_savvycan(self) -> None:
+        for with_direction in (True, False):
+            with self.subTest(with_direction=with_direction):
+                self.same(log_frames.frames(200, 13), lambda path, frames, it=with_direction: log_frames.savvycan(path, frames, it), True)
+        header = b"Time Stamp,ID,Extended,Dir,Bus,LEN,D1,D2,D3,D4,D5,D6,D7,D8\n"
+        result = edsc(log=header + b"1,00000706,false,Rx,0,2,05,\n2,00000806,false,Rx,0,0,\n3.5,00000706,false,Rx,0,0,\n4,706,false,Rx,0,64,05,\n")
+        self.assertEqual(result.stderr.decode().splitlines(), [
+            '<stdin>:2: skipped, fewer bytes than the length states: "1,00000706,false,Rx,0,2,05,"',
+            '<stdin>:3: skipped, the CAN-ID has more than 11 bits, and Extended is not true: "2,00000806,false,Rx,0,0,"',
+            '<stdin>:4: skipped, the time is not a number of microseconds: "3.5,00000706,false,Rx,0,0,"',
+            "<stdin>:5: a CAN FD frame is ignored"])
+
     def test_captures_of_scapy(self) -> None:
         for writer in ("RawPcapWriter", "RawPcapNgWriter"):
             for seed in range(3):
@@ -190,7 +246,9 @@ class Formats(unittest.TestCase):
     def test_files_that_must_be_converted_before(self) -> None:
         line = "(1.000000) can0 706#05\n"
         for name, log in (("gzip", gzip.compress(line.encode())), ("UTF-16", line.encode("utf-16")),
-                          ("UTF-16", b"\xFE\xFF" + line.encode("utf-16-be")), ("BLF", b"LOGG\x90\0\0\0"), ("MDF", b"MDF     4.10    ")):
+                          ("UTF-16", b"\xFE\xFF" + line.encode("utf-16-be")), ("MDF", b"MDF     4.10    "), ("Parquet", b"PAR1\x15"), ("IXXAT", b"ASCII Trace IXXAT ID-2\n"),
+                          ("Kvaser", b"Chn Identifier Flg   DLC  D0...1...2...3...4...5...6..D7       Time     Dir\n"),
+                          ("data sheet", AXIS.read_bytes()), ("XDD", b'<?xml version="1.0"?>\n<ISO15745ProfileContainer>')):
             with self.subTest(name):
                 refused = edsc(log=log)
                 self.assertEqual((refused.returncode, refused.stdout), (WRONG_USAGE, b""))

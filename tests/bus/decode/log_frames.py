@@ -95,6 +95,50 @@ def python_can_trc(path: Path, log: list[Frame], version: str) -> None:
     writer.stop()
 
 
+def python_can_blf(path: Path, log: list[Frame], compression: int) -> None:
+    from can.io import BLFWriter  # noqa: PLC0415
+
+    writer = BLFWriter(str(path), compression_level=compression)
+    writer.max_container_size = 2000  # objects continue in the next container
+    for one in log:
+        sent = message(one)
+        if one.time_us != 0:
+            sent.timestamp += 0.5e-6  # it truncates
+        writer.on_message_received(sent)
+    writer.stop()
+
+
+def busmaster(path: Path, log: list[Frame], mode: str = "SYSTEM", decimal: bool = False) -> None:
+    """As the logs of BUSMASTER 3.2.2 look that users publish; times are in units of 100 us."""
+    lines = ["***BUSMASTER Ver 3.2.2***", "***PROTOCOL CAN***", "***NOTE: PLEASE DO NOT EDIT THIS DOCUMENT***",
+             "***[START LOGGING SESSION]***", "***START DATE AND TIME 28:11:2026 0:0:0:0***", "***DEC***" if decimal else "***HEX***",
+             f"***{mode} MODE***", "***START CHANNEL BAUD RATE***", "***CHANNEL 1 - Kvaser - 500000 bps***",
+             "***END CHANNEL BAUD RATE***", "***START DATABASE FILES***", "***END DATABASE FILES***",
+             "***<Time><Tx/Rx><Channel><CAN ID><Type><DLC><DataBytes>***"]
+    before = 0
+    for one in log:
+        ticks = (one.time_us - (before if mode == "RELATIVE" else 0)) // 100
+        before = one.time_us
+        seconds, ticks = divmod(ticks, 10_000)
+        time = f"{seconds // 3600:02}:{seconds // 60 % 60:02}:{seconds % 60:02}:{ticks:04}"
+        kind = ("x" if one.extended else "s") + ("r" if one.remote else "")
+        can_id = f"{one.can_id:08}" if decimal else f"0x{one.can_id:0{8 if one.extended else 3}X}"
+        data = "" if one.remote else "".join(f" {byte:03}" if decimal else f" {byte:02X}" for byte in one.data)
+        lines.append(f"{time} Rx 1 {can_id} {kind} {len(one.data)}{data}")
+    lines += ["***END DATE AND TIME 28:11:2026 0:1:0:0***", "***[STOP LOGGING SESSION]***"]
+    path.write_bytes("".join(f"{line}\r\n" for line in lines).encode())
+
+
+def savvycan(path: Path, log: list[Frame], with_direction: bool = True) -> None:
+    """The CSV of SavvyCAN, newer with the direction, older without it; it has no remote frames."""
+    lines = ["Time Stamp,ID,Extended,Dir,Bus,LEN,D1,D2,D3,D4,D5,D6,D7,D8"]
+    for one in log:
+        data = "".join(f"{byte:02X}," for byte in one.data.ljust(8, b"\0"))
+        lines.append(f"{one.time_us},{one.can_id:08X},{str(one.extended).lower()},Rx,1,{len(one.data)},{data}")
+    text = "\n".join(lines) + "\n"
+    path.write_text(text if with_direction else text.replace(",Dir,", ",").replace(",Rx,", ","))
+
+
 def log2asc(path: Path, log: list[Frame], *options: str) -> None:
     source = path.with_suffix(".candump")
     candump(source, log, "can0", 1_000_000_000)  # it regards a time of 0 s as missing

@@ -97,7 +97,7 @@ TEST_F(Consequences, AreCountedInTheText) {
   mark();
   EXPECT_EQ(text(),
             "a.eds:13:1: error: shifted [shifted-data-types]\n   13 | \n      | ^\n"
-            "a.eds: note: 2 findings follow from this: 1 number-range, 1 never-writable (--all lists them)\n"
+            "a.eds: note: 2 findings follow from this: 1 number-range, 1 never-writable (--all-findings lists them)\n"
             "a.eds: 1 cause, 2 errors, 1 warning; 2 stop generate\n");
   const std::string all = text(true);
   EXPECT_LT(all.find("[shifted-data-types]"), all.find("[number-range]"));
