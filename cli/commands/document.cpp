@@ -1,4 +1,5 @@
 #include "document/document.hpp"
+#include "eds/ini.hpp"
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@
 #include "shared/git_device.hpp"
 #include "shared/output.hpp"
 #include "system/path.hpp"
+#include "system/read_file.hpp"
 
 namespace edsc {
 namespace {
@@ -25,7 +27,8 @@ constexpr const char* examples = R"(Examples:
   edsc document drive.eds --against git:HEAD~1 -o drive.html  against the version of a git revision
   edsc document axis1.dcf -o axis1.html                       with the values that differ from the default
   edsc document plant.json -o plant.html                      a network: topology, SYNC cycle, load, response times
-  edsc document plant.json --node-pages -o plant.html         with a page for each node: plant-NODE.html)";
+  edsc document plant.json --node-pages -o plant.html         with a page for each node: plant-NODE.html
+  edsc document drive.eds --title "Drive of axis 1" --author "A. Mason" --logo logo.svg --without-findings -o drive.html    for a customer)";
 
 struct Settings {
   LoadSettings load;
@@ -33,12 +36,30 @@ struct Settings {
   std::string format;
   std::string against;
   bool nodes = false;
+  bool without_findings = false;
+  DocumentHead head;
+  std::string logo;
   ColorOption color;
 };
 
 DocumentFormat format_of(const Settings& settings) {
   const bool is_markdown = settings.format.empty() ? settings.output.ends_with(".md") : settings.format == "markdown";
   return is_markdown ? DocumentFormat::markdown : DocumentFormat::html;
+}
+
+DocumentHead head_of(const Settings& settings) {
+  constexpr std::size_t max_logo_bytes = 1'000'000;
+  DocumentHead head = settings.head;
+  head.has_findings = !settings.without_findings;
+  if (settings.logo.empty()) return head;
+  std::string contents;
+  if (const std::string problem = read_file(settings.logo, contents); !problem.empty()) {
+    fail(settings.logo + ": " + problem);
+  }
+  head.logo = DocumentHead::logo_url(settings.logo, contents);
+  if (head.logo.empty()) throw_invalid("--logo", "needs a file *.svg, *.png or *.jpg");
+  if (contents.size() > max_logo_bytes) throw_invalid("--logo", "needs a picture of at most 1 MB");
+  return head;
 }
 
 /// The older version, and the files it was read from. Ends the command if it has errors, which are printed.
@@ -88,7 +109,7 @@ int document_device(const Settings& settings) {
     compared = ComparedWith{name_of_older(settings, *older), compare_devices(older->named(), loaded->named())};
   }
   const DeviceToDocument device{*loaded, &diagnostics, compared ? &*compared : nullptr};
-  write_output(settings.output, document_of(device, format_of(settings)), inputs);
+  write_output(settings.output, document_of(device, format_of(settings), head_of(settings)), inputs);
   return exit_fine;
 }
 
@@ -107,14 +128,21 @@ int document_network(const Settings& settings) {
     for (std::string& name : input_files(*file)) inputs.push_back(std::move(name));
   }
   if (settings.nodes) {
-    write_all_files(documents_of(loaded->network, diagnostics, format_of(settings), settings.output), inputs);
+    write_all_files(documents_of(loaded->network, diagnostics, format_of(settings), settings.output, head_of(settings)),
+                    inputs);
   } else {
-    write_output(settings.output, document_of(loaded->network, diagnostics, format_of(settings)), inputs);
+    write_output(settings.output, document_of(loaded->network, diagnostics, format_of(settings), head_of(settings)),
+                 inputs);
   }
   return exit_fine;
 }
 
 int document(const Settings& settings) {
+  if (ends_with_ignoring_case(settings.output, ".pdf")) {
+    throw_invalid("--output",
+                  "is HTML or Markdown; a browser prints HTML as PDF, such as chromium --headless "
+                  "--print-to-pdf=FILE.pdf FILE.html");
+  }
   const bool is_network = settings.load.path.ends_with(".json");
   return is_network ? document_network(settings) : document_device(settings);
 }
@@ -129,6 +157,11 @@ void add_document_options(Command command, int& exit_code) {
       .one_of({"html", "markdown"});
   command.add_option("--against", settings.against);
   command.add_flag("--node-pages", settings.nodes).needs(output);
+  command.add_option("--title", settings.head.title, "default: the name of the device or of the network file");
+  command.add_option("--author", settings.head.author);
+  command.add_option("--date", settings.head.date);
+  command.add_option("--logo", settings.logo);
+  command.add_flag("--without-findings", settings.without_findings);
   add_node_id_option(command, settings.load.node_id);
   add_options_option(command, settings.load.options_path);
   command.add_flag("--keep-going", settings.load.keep_going);

@@ -8,6 +8,7 @@
 #include "backend/render.hpp"
 #include "backend/template_parts.hpp"
 #include "document/views.hpp"
+#include "eds/ini.hpp"
 #include "system/path.hpp"
 #include "text/counted.hpp"
 
@@ -24,6 +25,15 @@ std::string with_empty_lines(std::string text) {
   constexpr std::string_view mark = "\n~\n";
   for (std::size_t at = 0; (at = text.find(mark, at)) != std::string::npos;) text.replace(at, mark.size(), "\n\n");
   return text;
+}
+
+void add_head(const DocumentHead& head, Json& view) {
+  view["author"] = head.author;
+  view["date"] = head.date;
+  view["has_author_or_date"] = !head.author.empty() || !head.date.empty();
+  view["has_author_and_date"] = !head.author.empty() && !head.date.empty();
+  view["logo"] = head.logo;
+  view["has_logo"] = !head.logo.empty();
 }
 
 /// Renders the template of this name: `device` or `network`.
@@ -60,10 +70,14 @@ Json node_view(const NetworkNode& node, const std::string& page) {
 }
 
 std::string network_document(const Network& network, const Diagnostics& diagnostics, DocumentFormat format,
-                             const std::string& page) {
+                             const std::string& page, const DocumentHead& head) {
   Json view;
   view["source"] = file_name_of(network.source->name());
-  view["page_title"] = std::string{file_name_of(network.source->name())} + ", CANopen network";
+  const std::string title = head.title.empty() ? std::string{file_name_of(network.source->name())} : head.title;
+  view["title"] = title;
+  view["page_title"] = title + ", CANopen network";
+  add_head(head, view);
+  view["checked"] = head.has_findings;
   view["bit_rate"] = network.description.bit_rate ? Json(network.description.bit_rate->value) : Json(nullptr);
   view["length"] = network.description.length_m ? Json(network.description.length_m->value) : Json(nullptr);
   view["node_count"] = counted(network.nodes.size(), "node");
@@ -78,11 +92,28 @@ std::string network_document(const Network& network, const Diagnostics& diagnost
 
 }  // namespace
 
-std::string document_of(const DeviceToDocument& device, DocumentFormat format) {
+std::string DocumentHead::logo_url(std::string_view file_name, std::string_view contents) {
+  struct Row {
+    std::string_view extension, type;
+  };
+  constexpr Row rows[] = {
+      {".svg", "image/svg+xml"}, {".png", "image/png"}, {".jpg", "image/jpeg"}, {".jpeg", "image/jpeg"}};
+  for (const Row& row : rows) {
+    if (ends_with_ignoring_case(file_name, row.extension)) {
+      return fmt::format("data:{},{}", row.type, document::url_of(contents));
+    }
+  }
+  return {};
+}
+
+std::string document_of(const DeviceToDocument& device, DocumentFormat format, const DocumentHead& head) {
   Json view;
   document::add_identity(device, view);
-  view["checked"] = device.diagnostics != nullptr;
-  if (device.diagnostics != nullptr) document::add_findings(*device.diagnostics, view);
+  if (!head.title.empty()) view["title"] = head.title;
+  add_head(head, view);
+  const bool has_findings = device.diagnostics != nullptr && head.has_findings;
+  view["checked"] = has_findings;
+  if (has_findings) document::add_findings(*device.diagnostics, view);
   document::add_changes(device.compared, view);
   document::add_pdos(device, view);
   document::add_error_codes(device.device(), view);
@@ -91,19 +122,22 @@ std::string document_of(const DeviceToDocument& device, DocumentFormat format) {
   return rendered("device", std::move(view), format);
 }
 
-std::string document_of(const Network& network, const Diagnostics& diagnostics, DocumentFormat format) {
-  return network_document(network, diagnostics, format, {});
+std::string document_of(const Network& network, const Diagnostics& diagnostics, DocumentFormat format,
+                        const DocumentHead& head) {
+  return network_document(network, diagnostics, format, {}, head);
 }
 
 std::vector<OutputFile> documents_of(const Network& network, const Diagnostics& diagnostics, DocumentFormat format,
-                                     const std::string& path) {
+                                     const std::string& path, const DocumentHead& head) {
   const std::string name{file_name_of(network.source->name())};
-  std::vector<OutputFile> files{{path, network_document(network, diagnostics, format, path)}};
+  std::vector<OutputFile> files{{path, network_document(network, diagnostics, format, path, head)}};
   for (const NetworkNode& node : network.nodes) {
     const NodeOfNetwork in_network{node, name, std::string{file_name_of(path)}};
     DeviceToDocument device{*node.loaded};
     device.node = &in_network;
-    files.push_back({node_page(path, node), document_of(device, format)});
+    DocumentHead of_node = head;
+    of_node.title.clear();  // that of the network
+    files.push_back({node_page(path, node), document_of(device, format, of_node)});
   }
   return files;
 }

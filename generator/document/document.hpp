@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "compare/change.hpp"
@@ -14,6 +15,17 @@
 namespace edsc {
 
 enum class DocumentFormat : std::uint8_t { html, markdown };
+
+/// What a user adds to a page, all of it optional.
+struct DocumentHead {
+  std::string title;         ///< in place of the name of the device or of the network file
+  std::string author, date;  ///< as they were given
+  std::string logo;          ///< the URL of a picture: `data:image/svg+xml,...`; HTML only
+  bool has_findings = true;  ///< otherwise the page does not have those of `edsc check`
+
+  /// Of a picture in this file, with its contents: SVG, PNG or JPEG, by the name. Empty for another name.
+  [[nodiscard]] static std::string logo_url(std::string_view file_name, std::string_view contents);
+};
 
 /// The changes since another version of a device.
 struct ComparedWith {
@@ -41,14 +53,16 @@ struct DeviceToDocument {
 
 /// Renders identity, services, PDO layouts, findings, changes and the object dictionary. Texts of the EDS are printable
 /// and escaped. The result depends only on the contents of the files and the name of the EDS without its folders.
-[[nodiscard]] std::string document_of(const DeviceToDocument& device, DocumentFormat format);
+[[nodiscard]] std::string document_of(const DeviceToDocument& device, DocumentFormat format, const DocumentHead& head);
 
 /// Renders nodes, PDO links, SYNC cycle, bus load and response times of a network.
-[[nodiscard]] std::string document_of(const Network& network, const Diagnostics& diagnostics, DocumentFormat format);
+[[nodiscard]] std::string document_of(const Network& network, const Diagnostics& diagnostics, DocumentFormat format,
+                                      const DocumentHead& head);
 
 /// Returns the page of a network at this path, with links to a page for each node in the same folder: `plant.html` and
 /// `plant-axis1.html`. The page of a node shows the values that the network sets beside the default values.
 [[nodiscard]] std::vector<OutputFile> documents_of(const Network& network, const Diagnostics& diagnostics,
-                                                   DocumentFormat format, const std::string& path);
+                                                   DocumentFormat format, const std::string& path,
+                                                   const DocumentHead& head);
 
 }  // namespace edsc

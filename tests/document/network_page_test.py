@@ -119,6 +119,35 @@ class NetworkPage(DocumentCase):
             result = self.edsc("document", "plant.json", *option, exit_code=2)
             self.assertIn("is for devices, not for networks", result.stderr)
 
+    def test_title_author_date_and_logo(self) -> None:
+        self.plant()
+        logo = '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="20"><rect width="40" height="20" fill="#08c"/></svg>'
+        self.write("logo.svg", logo)
+        head = ("--title", "Line <3> & more", "--author", "A. Mason", "--date", "2026-11-28", "--logo", "logo.svg", "--without-findings")
+        for name, source in (("plant.html", "plant.json"), ("device.html", "node.eds")):
+            self.edsc("document", source, *head, "-o", name)
+            page = self.folder / name
+            self.assert_clean(self.browse("audit-expanded", page))
+            found = self.browse("texts", page, "h1", ".lead", "#findings", "title")
+            self.assertEqual(found["h1"], ["Line <3> & more"])
+            self.assertEqual(found[".lead"][-1], "A. Mason, 2026-11-28")
+            self.assertEqual(found["#findings"], [])
+            self.assertTrue(found["title"][0].startswith("Line <3> & more, CANopen "))
+            shown = self.browse("pictures", page)
+            self.assertEqual(shown, [{"class": "logo", "width": 40, "height": 20}])
+        self.edsc("document", "plant.json", *head, "-o", "plant.md")
+        text = (self.folder / "plant.md").read_text()
+        self.assertIn("A. Mason, 2026-11-28\n", text)
+        self.assertNotIn("Findings", text)
+        self.assertIn("Findings", self.edsc("document", "plant.json", "--format", "markdown").stdout)
+
+    def test_other_documents_are_refused(self) -> None:
+        self.plant()
+        self.assertIn("--print-to-pdf", self.edsc("document", "node.eds", "-o", "node.pdf", exit_code=2).stderr)
+        self.assertFalse((self.folder / "node.pdf").exists())
+        self.assertIn("*.svg, *.png or *.jpg", self.edsc("document", "node.eds", "--logo", "node.eds", exit_code=2).stderr)
+        self.assertIn("missing.svg: No such file", self.edsc("document", "node.eds", "--logo", "missing.svg", exit_code=2).stderr)
+
     def test_a_network_with_errors_is_not_written(self) -> None:
         node = '{"node_id": 1, "eds": "node.eds"}'
         self.write("broken.json", f'{{"nodes": {{"a": {node}, "b": {node}}}}}')

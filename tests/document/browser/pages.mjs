@@ -176,6 +176,21 @@ async function texts(page, [file, ...selectors]) {
   return found;
 }
 
+// The pictures that are drawn, with their own sizes.
+async function pictures(page, [file]) {
+  await open(page, file);
+  return page.$$eval('img', (all) => all.map((one) => ({ class: one.className, width: one.naturalWidth, height: one.naturalHeight })));
+}
+
+// The height of the tallest row of each table at the width of a phone, in lines of text.
+async function lines(page, [file]) {
+  await page.setViewport({ width: 390, height: 1000 });
+  await open(page, file);
+  await openAll(page);
+  return page.$$eval('main table', (tables) => tables.map((table) => Math.max(...[...table.rows].map((row) =>
+    row.getBoundingClientRect().height / parseFloat(getComputedStyle(row).lineHeight)))));
+}
+
 // The tables of an object: the caption and its rows; of a drawn word, each row of cells as [label, bits, class].
 async function meaning(page, [file, id]) {
   const seen = watch(page);
@@ -195,6 +210,6 @@ async function meaning(page, [file, id]) {
   }, id) };
 }
 
-const commands = { meaning, audit, site, 'audit-expanded': (page, files) => audit(page, files, true), use, drawings, speed, narrow, check, follow, texts };
+const commands = { meaning, audit, site, 'audit-expanded': (page, files) => audit(page, files, true), use, drawings, speed, narrow, check, follow, texts, pictures, lines };
 const [chromium, command, ...rest] = process.argv.slice(2);
 console.log(JSON.stringify(await withPage(chromium, (page) => commands[command](page, rest))));
