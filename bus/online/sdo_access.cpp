@@ -93,8 +93,8 @@ std::string failure_text(const SdoOutcome& outcome) {
     case SdoEnd::done: return "done";
     case SdoEnd::refused: return "refused by the device: " + abort_text(outcome.code);
     case SdoEnd::no_answer:
-      if (!outcome.foreign_abort) return "no answer";
-      return fmt::format("no answer, but an abort of {}: {}",
+      if (!outcome.foreign_abort) return fmt::format("no answer within {} ms", outcome.waited_ms);
+      return fmt::format("no answer within {} ms, but an abort of {}: {}", outcome.waited_ms,
                          entry_label(outcome.foreign_abort->index, outcome.foreign_abort->sub_index),
                          abort_text(outcome.foreign_abort->code));
     case SdoEnd::broken:
@@ -133,6 +133,7 @@ SdoOutcome SdoAccess::finish(std::uint32_t entry, bool block) {
   if (interrupted) throw Interrupted{};
   SdoOutcome outcome;
   outcome.code = client_.result();
+  outcome.waited_ms = settings_.timeout_ms;
   outcome.size_told = observed.size_told;
   if (outcome.code == canopen::ok) return outcome;
   outcome.foreign_abort = observed.foreign_abort;

@@ -36,6 +36,7 @@ struct SdoOutcome {
   canopen::AbortCode code = canopen::ok;
   std::vector<std::uint8_t> bytes;            ///< of an upload
   bool size_told = true;                      ///< false: not all of the four bytes may belong to the value
+  std::uint32_t waited_ms = 0;                ///< for each response
   std::optional<ForeignAbort> foreign_abort;  ///< received before the end
   std::string block_failure;                  ///< why a block transfer failed, if a segmented one followed
   std::size_t max_bytes = 0;                  ///< the limit that the value exceeds; 0: none

@@ -61,7 +61,7 @@ class Read(LiveTest):
 
     def test_a_node_that_is_not_there(self) -> None:
         self.expect(self.edsc("read", 9, "1018h:01", "1018h:02", "--timeout", "50ms"), FAILED,
-                    stderr="edsc: 1018h:01: no answer\nedsc: node 9 does not answer: 1 more not read\n")
+                    stderr="edsc: 1018h:01: no answer within 50 ms\nedsc: node 9 does not answer: 1 more not read\n")
 
     def test_all_as_json(self) -> None:
         found = self.expect_json(self.edsc("read", 5, "--all", "--eds", "device.eds", "--format", "json"), "read.schema.json")

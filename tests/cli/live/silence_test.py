@@ -46,7 +46,7 @@ class Silence(LiveTest):
     def test_a_device_that_falls_silent_in_the_middle(self) -> None:
         answers = {"605 40 08 10 00 00 00 00 00": ["585 41 08 10 00 0B 00 00 00"]}
         self.network.device(lambda frame: answers.get(frame, []))
-        self.expect(self.edsc("read", 5, "1008h", "--timeout", "50ms"), FAILED, stderr="edsc: 1008h:00: no answer\n")
+        self.expect(self.edsc("read", 5, "1008h", "--timeout", "50ms"), FAILED, stderr="edsc: 1008h:00: no answer within 50 ms\n")
         self.assertEqual(self.network.frames("605")[-1], "605 80 08 10 00 00 00 04 05")
 
     def test_a_device_that_breaks_the_protocol(self) -> None:
@@ -102,7 +102,7 @@ class Silence(LiveTest):
         answers = {"605 40 17 10 00 00 00 00 00": ["585 80 00 00 00 05 00 04 05"]}
         self.network.device(lambda frame: answers.get(frame, []))
         self.expect(self.edsc("read", 5, "1017h", "--timeout", "5000ms"), FAILED,
-                    stderr="edsc: 1017h:00: no answer, but an abort of 0000h:00: 0504 0005h, out of memory\n")
+                    stderr="edsc: 1017h:00: no answer within 5000 ms, but an abort of 0000h:00: 0504 0005h, out of memory\n")
 
     def test_a_block_transfer_that_breaks_is_tried_by_segments(self) -> None:
         def device(end_of_block: str, received: bytearray):
@@ -129,7 +129,7 @@ class Silence(LiveTest):
         for end_of_block, words in (
                 ("585 80 00 00 00 03 00 04 05", "refused by the device: 0504 0003h, invalid sequence number"),
                 ("585 80 00 20 00 04 00 04 05", "refused by the device: 0504 0004h, CRC error"),
-                ("", "no answer")):
+                ("", "no answer within 5000 ms")):
             with self.subTest(end_of_block), Network(EDSC, LIVE_NODES) as network:
                 self.network = network
                 received = bytearray()
