@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Unusual, possibly malicious files: edsc ends within a bounded time for each, and takes twice the time for twice the size.
+Also pages, comparisons, overlays and logs.
 
     pathological_test.py SOURCE_DIR EDSC [--times] [--large]
 
@@ -265,6 +266,22 @@ GROWING: dict[str, tuple[int, Callable[[int], dict[str, str]], list[str]]] = {
         **network({"set": {f"a.{i}": 1 for i in range(n)}}),
         "device.eds": "[DeviceInfo]\nVendorName=a\n" + "".join(var(f"{0x2000 + i:04X}", "a") for i in range(n))}, NETWORK),
     "long_name_in_set": (20000, lambda n: network({"set": {"a." * n: 1}}), NETWORK),
+    "objects_of_a_page": (12000, lambda n: {"device.eds": vars_from(n)}, ["document", "device.eds", "-o", "device.html"]),
+    "one_name_of_a_page": (12000, lambda n: {"device.eds": "".join(var(f"{0x2000 + i:04X}", "a") for i in range(n))},
+                           ["document", "device.eds", "-o", "device.html"]),
+    "differences": (24000, lambda n: {"device.eds": vars_from(n), "old.eds": vars_from(n).replace("DataType=5", "DataType=6")},
+                    ["diff", "old.eds", "device.eds"]),
+    "moved_objects": (12000, lambda n: {"device.eds": vars_from(n), "old.eds": "".join(
+        var(f"{0xA000 + i:04X}", f"a{i}") for i in range(n))}, ["diff", "old.eds", "device.eds"]),
+    "lines_of_an_overlay": (28000, lambda n: {"device.eds": vars_from(n), "device.overlay":
+                            "[Overlay]\nBase=device.eds\n" + "".join(f"[{0x2000 + i:04X}]\nDataType=5 => 6\n" for i in range(n))},
+                            ["overlay", "apply", "device.overlay", "-o", "out.eds"]),
+    "nodes_of_a_log": (400000, lambda n: {"device.eds": var("2000", "a"), "a.log": "".join(
+        f"({i}.0) can0 {0x580 + i % 128:03X}#4300200001000000\n" for i in range(n))}, ["audit", "a.log", "--node", "5=device.eds"]),
+    "transfers_of_a_log": (400000, lambda n: {"device.eds": var("2000", "a"), "a.log": "".join(
+        f"({i}.0) can0 605#2100200001000000\n" for i in range(n))}, ["decode", "a.log", "--node", "5=device.eds", "--summary"]),
+    "interfaces_of_a_log": (100000, lambda n: {"device.eds": var("2000", "a"), "a.log": "".join(
+        f"({i}.0) can{i} 705#05\n" for i in range(n))}, ["audit", "a.log", "--node", "5=device.eds"]),
     "nodes_of_a_network": (500, lambda n: {
         **network({}, nodes={f"n{i}": {"node_id": 1, "eds": "device.eds"} for i in range(n)}), "device.eds": var("2000", "a")}, NETWORK),
 }
