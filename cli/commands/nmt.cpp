@@ -85,10 +85,12 @@ void add_nmt_options(Command command, int& exit_code) {
   std::vector<std::string> names;
   for (const NmtCommandText& row : nmt_command_texts) names.emplace_back(row.argument);
   command
-      .add_text_option("COMMAND",
-                       [&settings](const std::string& text) {
-                         settings.command = find_nmt_command(&NmtCommandText::argument, std::string_view{text});
-                       })
+      .add_text_option(
+          "COMMAND",
+          [&settings](const std::string& text) {
+            settings.command = find_nmt_command(&NmtCommandText::argument, std::string_view{text});
+          },
+          "what the nodes do")
       .required()
       .one_of(names);
   add_node_argument(command, settings.written_node, "node-ID, 1..127, a name from the network file, or all");

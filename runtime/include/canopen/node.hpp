@@ -243,7 +243,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
 
   /// Reports an error of the application (CiA 301, 7.2.7.1): its emergency error code, the bits of 1001h that it sets
   /// (the generic one is set automatically), and the manufacturer-specific bytes. As with `set`, the EMCY is sent with
-  /// the next `on_time` or `on_frame`: `next_deadline` is due at once.
+  /// the next `on_time` or `on_frame`: `next_deadline` is due at once. A device without 1014h sends none.
   void emergency(EmergencyCode code, ErrorRegister bits, const EmergencyInfo& info = no_emergency_info) {
     emergencies().report(host(), code.value(), bits, info);
   }
