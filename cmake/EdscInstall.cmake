@@ -40,7 +40,7 @@ install(
         ${PROJECT_SOURCE_DIR}/cmake/EdscAddConformanceTest.cmake ${PROJECT_SOURCE_DIR}/cmake/EdscAddDictionary.cmake
         ${PROJECT_SOURCE_DIR}/cmake/EdscAddFirmware.cmake ${PROJECT_SOURCE_DIR}/cmake/EdscAddNetwork.cmake
         ${PROJECT_SOURCE_DIR}/cmake/EdscHeaders.cmake
-        ${PROJECT_SOURCE_DIR}/cmake/firmware_report.py
+        ${PROJECT_SOURCE_DIR}/cmake/firmware_bill.py ${PROJECT_SOURCE_DIR}/cmake/firmware_report.py
   DESTINATION ${package_dir} COMPONENT development)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/cmake/boards ${PROJECT_SOURCE_DIR}/cmake/toolchains DESTINATION ${package_dir}
         COMPONENT development)
