@@ -5,7 +5,8 @@ include(CheckCXXSourceCompiles)
 #                   [NO_LTO] [FLASH_LIMIT bytes] [RAM_LIMIT bytes])
 #
 # Makes an image for a Cortex-M from an EDS or DCF and sources with a `main`, in a build with a toolchain file for it:
-# TARGET.elf, .hex and .bin, TARGET.map, and TARGET.report.txt with the sizes of symbols and of the objects of the EDS.
+# TARGET.elf, .hex and .bin, TARGET.map, TARGET.report.txt with the sizes of symbols and of the objects of the EDS, and
+# TARGET.cdx.json, a bill of materials in CycloneDX 1.5.
 #
 #   edsc_add_firmware(drive EDS drive.eds BOARD mps2-an385 NODE_ID 5 SOURCES main.cpp FLASH_LIMIT 16000)
 #
@@ -81,13 +82,29 @@ function(edsc_add_firmware target)
   if(arg_RAM_LIMIT)
     list(APPEND report_arguments --ram-limit ${arg_RAM_LIMIT})
   endif()
+
+  # The bill of materials has the hashes of these files, also if a change of them does not change the headers.
+  get_filename_component(eds ${arg_EDS} ABSOLUTE)
+  set(inputs ${eds})
+  if(arg_OPTIONS)
+    get_filename_component(options ${arg_OPTIONS} ABSOLUTE)
+  else()
+    string(REGEX REPLACE "\\.[^.]*$" ".options.json" options ${eds})
+  endif()
+  if(EXISTS ${options})
+    list(APPEND inputs ${options})
+  endif()
+  set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${inputs})
+  list(TRANSFORM inputs PREPEND "--file;" OUTPUT_VARIABLE bill_files)
   add_custom_command(
     TARGET ${target} POST_BUILD
     COMMAND ${CMAKE_OBJCOPY} -O ihex $<TARGET_FILE:${target}> ${image}.hex
     COMMAND ${CMAKE_OBJCOPY} -O binary $<TARGET_FILE:${target}> ${image}.bin
     COMMAND Python3::Interpreter ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/firmware_report.py $<TARGET_FILE:${target}> ${dictionary}
             ${image}.report.txt ${report_arguments}
-    BYPRODUCTS ${image}.hex ${image}.bin ${image}.report.txt
+    COMMAND Python3::Interpreter ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/firmware_bill.py ${image}.bin ${image}.cdx.json --name ${target}
+            --edsc $<TARGET_FILE:edsc::edsc> --compiler ${CMAKE_CXX_COMPILER} ${bill_files}
+    BYPRODUCTS ${image}.hex ${image}.bin ${image}.report.txt ${image}.cdx.json
     VERBATIM)
 endfunction()
 

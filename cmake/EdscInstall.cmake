@@ -20,6 +20,8 @@ if(TARGET edsc)
   # editors and scripts.
   install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${document_dir}/edsc
           COMPONENT program)
+  install(FILES ${PROJECT_BINARY_DIR}/third_party/THIRD-PARTY-NOTICES ${PROJECT_BINARY_DIR}/third_party/edsc.cdx.json
+          DESTINATION ${document_dir}/edsc COMPONENT program)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples ${PROJECT_SOURCE_DIR}/eds DESTINATION ${document_dir}/edsc COMPONENT program)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs DESTINATION ${document_dir}/edsc COMPONENT program
           PATTERN developers EXCLUDE PATTERN site EXCLUDE PATTERN make.py EXCLUDE PATTERN api.doxygen EXCLUDE)
@@ -40,7 +42,7 @@ install(
         ${PROJECT_SOURCE_DIR}/cmake/EdscAddConformanceTest.cmake ${PROJECT_SOURCE_DIR}/cmake/EdscAddDictionary.cmake
         ${PROJECT_SOURCE_DIR}/cmake/EdscAddFirmware.cmake ${PROJECT_SOURCE_DIR}/cmake/EdscAddNetwork.cmake
         ${PROJECT_SOURCE_DIR}/cmake/EdscHeaders.cmake
-        ${PROJECT_SOURCE_DIR}/cmake/firmware_report.py
+        ${PROJECT_SOURCE_DIR}/cmake/firmware_bill.py ${PROJECT_SOURCE_DIR}/cmake/firmware_report.py
   DESTINATION ${package_dir} COMPONENT development)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/cmake/boards ${PROJECT_SOURCE_DIR}/cmake/toolchains DESTINATION ${package_dir}
         COMPONENT development)

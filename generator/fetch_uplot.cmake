@@ -1,4 +1,4 @@
-# Writes OUTPUT/uplot.js and OUTPUT/uplot.css: uPlot of the version in the lock file of PACKAGE, which NPM installs in
+# Writes OUTPUT/uplot.js, OUTPUT/uplot.css and OUTPUT/LICENSE: uPlot of the version in the lock file of PACKAGE, which NPM installs in
 # OUTPUT, or without npm CMake from the registry. The hash of the lock file holds for both. Without network the build fails: a
 # program without plots is asked for by EDSC_PLOTS=OFF. Run with cmake -P.
 cmake_policy(VERSION 3.25)
@@ -87,3 +87,4 @@ if(NOT dist)
 endif()
 configure_file(${dist}/uPlot.iife.min.js ${OUTPUT}/uplot.js COPYONLY)
 configure_file(${dist}/uPlot.min.css ${OUTPUT}/uplot.css COPYONLY)
+configure_file(${dist}/../LICENSE ${OUTPUT}/LICENSE COPYONLY)

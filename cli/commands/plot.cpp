@@ -15,6 +15,7 @@
 #include "shared/exit_code.hpp"
 #include "shared/log_options.hpp"
 #include "shared/output.hpp"
+#include "system/path.hpp"
 #include "text/counted.hpp"
 #include "text/number_text.hpp"
 #include "text/printable.hpp"
@@ -225,7 +226,8 @@ int plot(const Settings& settings) {
     fail(settings.log_name() + ": the frames have no times; candump writes them with -L or -t a",
          exit_input_has_errors);
   }
-  Plot picture{settings.title.empty() ? settings.log_name() : settings.title,
+  const std::string log_name{file_name_of(settings.log_name())};  // the same plot in each folder
+  Plot picture{settings.title.empty() ? log_name : settings.title,
                *log.times.first_us(),
                *log.times.first_us() + log.times.now_us(),
                {}};
@@ -252,7 +254,7 @@ void add_plot_options(Command command, int& exit_code) {
                   "index or name of an object, of all nodes that have it; NODE/OBJECT: of one node")
       .required();
   command.add_option("--output", settings.output, "SVG (default: standard output)");
-  command.add_option("--title", settings.title, "default: the name of the log");
+  command.add_option("--title", settings.title, "default: the name of the log, without its folder");
 }
 
 }  // namespace edsc

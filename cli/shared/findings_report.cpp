@@ -19,7 +19,6 @@ FindingsReport::FindingsReport(std::string format, const ColorOption& color, boo
     : format_{std::move(format)},
       color_{color},
       all_{all},
-      sarif_{EDSC_VERSION, check_rules, url_of},
       json_{{"schema", 2},
             {"diagnostics", nlohmann::json::array()},
             {"allowed_diagnostics", nlohmann::json::array()},
@@ -29,13 +28,15 @@ FindingsReport::FindingsReport(std::string format, const ColorOption& color, boo
             {"errors", 0},
             {"warnings", 0},
             {"notes", 0},
-            {"allowed", 0}} {}
+            {"allowed", 0}} {
+  if (format_ == "sarif") sarif_.emplace(EDSC_VERSION, check_rules, url_of);
+}
 
 void FindingsReport::add(const Diagnostics& diagnostics) {
   if (format_ == "text") {
     print_text(stdout, diagnostics, {.colour = color_.on(stdout), .of_check = true, .all = all_});
-  } else if (format_ == "sarif") {
-    sarif_.add(diagnostics);
+  } else if (sarif_) {
+    sarif_->add(diagnostics);
   } else {
     add_json(print_json(diagnostics));
   }
@@ -44,7 +45,7 @@ void FindingsReport::add(const Diagnostics& diagnostics) {
 void FindingsReport::add_left_out(const std::vector<LeftOut>& left_out) {
   if (format_ == "text") fmt::print("{}", left_out_text(left_out));
   for (const LeftOut& one : left_out) {
-    if (format_ == "sarif") sarif_.notify(one.position, "skipped: " + one.what);
+    if (sarif_) sarif_->notify(one.position, "skipped: " + one.what);
     const Place place = place_of(one.position);
     json_["left_out"].push_back(
         {{"file", place.file}, {"line", place.line}, {"column", place.column}, {"what", one.what}});
@@ -55,7 +56,7 @@ void FindingsReport::add_network(nlohmann::json network) { json_["networks"].pus
 
 void FindingsReport::finish() const {
   if (format_ == "json") fmt::print("{}\n", json_text(json_));
-  if (format_ == "sarif") fmt::print("{}\n", json_text(sarif_.document()));
+  if (sarif_) fmt::print("{}\n", json_text(sarif_->document()));
 }
 
 void FindingsReport::add_json(const nlohmann::json& one) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,7 @@ class FindingsReport {
   std::string format_;
   const ColorOption& color_;
   bool all_;
-  SarifLog sarif_;
+  std::optional<SarifLog> sarif_;  ///< only for SARIF: it lists all rules
   nlohmann::json json_;
 };
 

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -122,6 +123,12 @@ class Scripts(Copy):
         result = self.run_gate(GATES / "type_names.py")
         self.expect_failure(result, "planted::Planted is defined in generator/text/utf8.hpp:", " and tests/support/bench.hpp:")
         self.assertNotIn("generated/cpd", result.stdout)
+
+    @unittest.skipUnless(shutil.which("reuse"), "SKIPPED: reuse is not installed")
+    def test_a_license_without_its_text_is_reported(self) -> None:
+        self.assertEqual(self.run_gate(GATES / "licenses.py").returncode, 0)
+        self.plant("generator/text/planted.hpp", "// SPDX-License-" + "Identifier: Zlib\n")
+        self.expect_failure(self.run_gate(GATES / "licenses.py"), "Missing licenses: Zlib", "generator/text/planted.hpp")
 
     def test_a_phrase_to_avoid_is_reported(self) -> None:
         self.plant("README.md", "The bus eats " + "frames.\n")

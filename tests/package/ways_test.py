@@ -90,7 +90,7 @@ class Ways(unittest.TestCase):
         return log
 
     def check_image(self, build_dir: Path) -> None:
-        for suffix in ("elf", "hex", "bin", "map", "report.txt"):
+        for suffix in ("elf", "hex", "bin", "map", "report.txt", "cdx.json"):
             self.assertGreater((build_dir / f"valve_firmware.{suffix}").stat().st_size, 0, suffix)
         self.assertEqual((build_dir / "valve_firmware.elf").read_bytes()[18], EM_ARM)
         self.assertIn("the data sheet's objects", (build_dir / "valve_firmware.report.txt").read_text())
