@@ -119,6 +119,11 @@ class NetworkPage(DocumentCase):
             result = self.edsc("document", "plant.json", *option, exit_code=2)
             self.assertIn("is for devices, not for networks", result.stderr)
 
+    def test_rows_are_low_on_a_phone(self) -> None:
+        """A table is wider than the screen and scrolls, rather than having a word in each line."""
+        for path in NETWORKS:
+            self.assertLess(max(self.browse("lines", self.document(path))), 6, path.name)
+
     def test_title_author_date_and_logo(self) -> None:
         self.plant()
         logo = '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="20"><rect width="40" height="20" fill="#08c"/></svg>'
