@@ -6,15 +6,18 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 
 #include "diagnostics/quote.hpp"
 #include "shared/parse_number.hpp"
+#include "system/path.hpp"
 #include "text/duration.hpp"
 
 namespace edsc {
@@ -128,7 +131,14 @@ Option Option::suggest(std::vector<std::string> values) const {
   all_facts()[option_].suggestions = std::move(values);
   return *this;
 }
-Option Option::existing_folder() const { return Option{*option_->check(CLI::ExistingDirectory)}; }
+Option Option::existing_folder() const {
+  return check([](const std::string& text) -> std::string {
+    std::error_code error;
+    const std::filesystem::file_status found = std::filesystem::status(to_native(text), error);
+    if (!std::filesystem::exists(found)) return "Directory does not exist: " + text;
+    return std::filesystem::is_directory(found) ? "" : "Directory is actually a file: " + text;
+  });
+}
 Option Option::show_default() const {
   OptionFacts& facts = all_facts()[option_];
   if (facts.default_text.empty()) {

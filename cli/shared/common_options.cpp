@@ -1,8 +1,7 @@
 #include "shared/common_options.hpp"
 
-#include <cstdlib>
-
 #include "diagnostics/print.hpp"
+#include "system/environment.hpp"
 #include "system/standard_streams.hpp"
 
 namespace edsc {
@@ -16,7 +15,7 @@ void ColorOption::add_to(Command command) { add_choice(command, "--color", when,
 
 bool ColorOption::on(std::FILE* stream) const {
   if (when != "auto") return when == "always";
-  return is_terminal(stream) && std::getenv("NO_COLOR") == nullptr && !is_dumb_terminal();
+  return is_terminal(stream) && !environment_variable("NO_COLOR") && !is_dumb_terminal();
 }
 
 void print_findings(const Diagnostics& diagnostics, const ColorOption& color) {

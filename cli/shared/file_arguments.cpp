@@ -31,7 +31,7 @@ std::vector<std::string> files_below(const std::string& folder, std::span<const 
     if (std::ranges::find(extensions, extension) == extensions.end() || !at->is_regular_file(of_file)) continue;
     found.push_back(from_native(at->path().lexically_normal()));
   }
-  if (error) fail(fmt::format("{}: {}", folder, error.message()));
+  if (error) fail(fmt::format("{}: {}", folder, error.default_error_condition().message()));
   std::ranges::sort(found);
   return found;
 }

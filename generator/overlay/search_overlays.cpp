@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -15,6 +14,7 @@
 #include "eds/number.hpp"
 #include "overlay/compose_overlay.hpp"
 #include "overlay/overlay_file.hpp"
+#include "system/environment.hpp"
 #include "system/path.hpp"
 
 namespace edsc {
@@ -51,7 +51,7 @@ std::vector<std::string> overlays_in(const std::string& folder, std::string& pro
     const std::string path = from_native(at->path());
     if (ends_with_ignoring_case(path, ".overlay")) paths.push_back(path);
   }
-  if (error) problem = fmt::format("EDSC_OVERLAYS: {}: {}", folder, error.message());
+  if (error) problem = fmt::format("EDSC_OVERLAYS: {}: {}", folder, error.default_error_condition().message());
   std::ranges::sort(paths);
   return paths;
 }
@@ -69,9 +69,9 @@ unsigned fit_of(const OverlayHeader& header, const SheetIdentity& device) {
 
 std::vector<std::string> overlay_folders() {
   constexpr char separator = fs::path::preferred_separator == '/' ? ':' : ';';
-  const char* const variable = std::getenv("EDSC_OVERLAYS");
+  const std::string variable = environment_variable("EDSC_OVERLAYS").value_or("");
   std::vector<std::string> folders;
-  std::string_view rest = variable != nullptr ? variable : "";
+  std::string_view rest = variable;
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find(separator), rest.size());
     if (end > 0) folders.emplace_back(rest.substr(0, end));
