@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "program.hpp"
+#include "system/environment.hpp"
 
 namespace {
 
@@ -22,5 +23,5 @@ consteval std::array<edsc::CommandRow, names.size()> rows() {
 
 int main(int argc, char** argv) {
   static constexpr auto few_commands = rows();
-  return edsc::run_program(few_commands, EDSC_VERSION, argc, argv);
+  return edsc::run_program(few_commands, EDSC_VERSION, edsc::program_arguments(argc, argv));
 }

@@ -18,6 +18,8 @@
 #include "shared/command_line.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/output.hpp"
+#include "shared/vocabulary.hpp"
+#include "system/path.hpp"
 #include "system/standard_streams.hpp"
 #include "text/printable.hpp"
 
@@ -37,16 +39,24 @@ std::string without_mark(std::string argument) {
   return argument;
 }
 
-void take_marks_off(CLI::App& app) {
+/// Inside edsc, a path has `/` between its folders.
+std::string with_slashes(const std::string& argument) { return edsc::from_native(edsc::to_native(argument)); }
+
+/// Takes the marks off, and gives all paths one form. CLI11 calls the last function first.
+void prepare_values(CLI::App& app) {
+  using enum edsc::OptionValueKind;
   for (CLI::Option* const option : app.get_options()) {
-    if (option->get_items_expected_max() > 0) option->transform(without_mark);
+    if (option->get_items_expected_max() == 0) continue;
+    const edsc::OptionValueKind kind = edsc::facts_of(*option).kind;
+    if (kind == file || kind == folder || kind == path || kind == node_file) option->transform(with_slashes);
+    option->transform(without_mark);
   }
-  for (CLI::App* const command : app.get_subcommands([](CLI::App*) { return true; })) take_marks_off(*command);
+  for (CLI::App* const command : app.get_subcommands([](CLI::App*) { return true; })) prepare_values(*command);
 }
 
 /// Parses the arguments, each unchanged.
 void parse(CLI::App& app, const std::vector<std::string>& words) {
-  take_marks_off(app);
+  prepare_values(app);
   std::vector<std::string> arguments;
   arguments.reserve(words.size());
   for (auto word = words.rbegin(); word != words.rend(); ++word) arguments.push_back(marked(*word));
@@ -109,8 +119,9 @@ int run(CLI::App& app, const edsc::ReadArguments& read, const int& exit_code) {
 
 namespace edsc {
 
-int run_program(std::span<const CommandRow> rows, const std::string& version, int argc, char** argv) {
-  occupy_standard_descriptors();
+int run_program(std::span<const CommandRow> rows, const std::string& version,
+                const std::vector<std::string>& arguments) {
+  prepare_standard_streams();
   CLI::App app{"edsc compiles CANopen Electronic Data Sheets (EDS, DCF) to checked C++20."};
   app.name("edsc");
   app.set_help_flag("-h,--help", std::string{find_command_option("--help")->meaning});
@@ -125,7 +136,7 @@ int run_program(std::span<const CommandRow> rows, const std::string& version, in
   int output_error = 0;
   ReadArguments read;
   try {
-    read = read_arguments(app, {argv + 1, argv + argc});
+    read = read_arguments(app, arguments);
     exit_code = run(app, read, exit_code);
   } catch (const WrongUsage& problem) {
     exit_code = report_wrong_usage(problem.what(), problem.command);

@@ -3,12 +3,14 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 #include "commands/commands.hpp"
 
 namespace edsc {
 
-/// Returns the exit code.
-int run_program(std::span<const CommandRow> rows, const std::string& version, int argc, char** argv);
+/// `arguments` do not include the name of the program. Returns the exit code.
+int run_program(std::span<const CommandRow> rows, const std::string& version,
+                const std::vector<std::string>& arguments);
 
 }  // namespace edsc

@@ -12,6 +12,9 @@ if(NOT EDSC_SANITIZE AND CMAKE_CXX_COMPILER_ID MATCHES "GNU|Clang")
                      # glibc warns of it without optimization
                      $<$<CONFIG:Release,RelWithDebInfo,MinSizeRel>:-U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2>)
   set(EDSC_HARDENING_LINK -Wl,-z,relro,-z,now,-z,noexecstack)
+  if(WIN32)
+    set(EDSC_HARDENING_LINK -Wl,--dynamicbase,--nxcompat,--high-entropy-va -fstack-protector-strong) # brings libssp
+  endif()
 endif()
 
 # edsc_set_host_flags(TARGET)

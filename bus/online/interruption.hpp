@@ -1,8 +1,6 @@
 /// Ctrl-C and SIGTERM while a command talks to a bus.
 #pragma once
 
-#include <csignal>
-
 namespace edsc {
 
 /// Thrown after an interruption, when a command has ended its transfers.
@@ -18,10 +16,6 @@ class Interruption {
   Interruption& operator=(const Interruption&) = delete;
 
   [[nodiscard]] static bool noted();
-
- private:
-  struct sigaction before_int_ {};
-  struct sigaction before_term_ {};
 };
 
 /// During its lifetime, an interruption is ignored, so that a command can restore the device. The second signal still

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
 #include <filesystem>
 #include <mutex>
 #include <optional>
@@ -13,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "system/environment.hpp"
 #include "system/path.hpp"
 #include "system/run_program.hpp"
 
@@ -25,8 +25,7 @@ constexpr const char* runtime_header = "canopen/host/network_simulation/network_
 
 /// The words of `$CXX`, such as `ccache g++`.
 std::vector<std::string> compiler() {
-  const char* const variable = std::getenv("CXX");
-  std::istringstream text{variable != nullptr ? variable : ""};
+  std::istringstream text{environment_variable("CXX").value_or("")};
   std::vector<std::string> words;
   for (std::string word; text >> word;) words.push_back(word);
   if (words.empty()) words.emplace_back("c++");
@@ -93,12 +92,10 @@ class Compilation {
 
 std::string runtime_include_folder() {
   std::error_code error;
-  for (fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path(); !error && folder.has_relative_path();
-       folder = folder.parent_path()) {
+  for (fs::path folder = program_file().parent_path(); folder.has_relative_path(); folder = folder.parent_path()) {
     for (const char* const include : {"include/edsc", "runtime/include"}) {
       if (fs::exists(folder / include / runtime_header, error)) return from_native(folder / include);
     }
-    error.clear();
   }
   return {};
 }

@@ -135,7 +135,7 @@ Option Option::existing_folder() const {
   return check([](const std::string& text) {
     std::error_code error;
     const bool is_folder = std::filesystem::is_directory(to_native(text), error);
-    if (error) return fmt::format("{}: {}", text, error.message());
+    if (error) return fmt::format("{}: {}", text, error.default_error_condition().message());
     return is_folder ? std::string{} : text + ": not a folder";
   });
 }

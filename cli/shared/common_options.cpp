@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <utility>
 
 #include "diagnostics/print.hpp"
 #include "diagnostics/unknown_rule.hpp"
+#include "system/environment.hpp"
 #include "system/standard_streams.hpp"
 #include "text/printable.hpp"
 
@@ -21,7 +21,7 @@ void ColorOption::add_to(Command command) { add_choice(command, "--color", when,
 
 bool ColorOption::on(std::FILE* stream) const {
   if (when != "auto") return when == "always";
-  return is_terminal(stream) && std::getenv("NO_COLOR") == nullptr && !is_dumb_terminal();
+  return is_terminal(stream) && !environment_variable("NO_COLOR") && !is_dumb_terminal();
 }
 
 void print_findings(const Diagnostics& diagnostics, const ColorOption& color) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <iterator>
 #include <string_view>
@@ -11,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "system/environment.hpp"
 #include "system/gzip.hpp"
 #include "system/path.hpp"
 #include "system/run_program.hpp"
@@ -32,7 +32,7 @@ class Git {
  public:
   explicit Git(const std::string& path) : words_{std::begin(git_words), std::end(git_words)} {
     std::error_code error;
-    if (std::getenv("GIT_DIR") != nullptr) {  // in a hook, it is relative to the folder chosen by git
+    if (environment_variable("GIT_DIR")) {  // in a hook, it is relative to the folder chosen by git
       const fs::path relative = fs::relative(to_native(path), error);
       name_ = "./" + (error ? path : from_native(relative));
       return;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <optional>
 
 #include "diagnostics/diagnostics.hpp"
@@ -13,6 +12,7 @@
 #include "shared/common_options.hpp"
 #include "shared/exit_code.hpp"
 #include "shared/parse_number.hpp"
+#include "system/environment.hpp"
 #include "system/path.hpp"
 #include "text/source_file.hpp"
 #include "text/suggestion.hpp"
@@ -60,8 +60,7 @@ Option add_network_option(Command command, std::string& network) { return comman
 
 std::string network_or_default(const std::string& network) {
   if (!network.empty()) return network;
-  const char* const path = std::getenv("EDSC_NETWORK");
-  return path != nullptr ? path : "";
+  return environment_variable("EDSC_NETWORK").value_or("");
 }
 
 std::vector<NamedNode> named_nodes(const std::string& network) {

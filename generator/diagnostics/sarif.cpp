@@ -7,7 +7,7 @@
 
 #include "diagnostics/place.hpp"
 #include "diagnostics/report_order.hpp"
-#include "text/ascii.hpp"
+#include "system/path.hpp"
 #include "text/counted.hpp"
 #include "text/source_file.hpp"
 
@@ -16,25 +16,10 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// A path as a URI reference (RFC 3986): percent-encoded except for unreserved characters and slashes. A relative path
-/// remains relative.
-std::string uri_of(std::string_view path) {
-  constexpr std::string_view unreserved = "-._~/";
-  std::string uri = path.starts_with('/') ? "file://" : "";
-  for (const char c : path) {
-    if (is_letter(c) || is_digit(c) || unreserved.find(c) != std::string_view::npos) {
-      uri += c;
-    } else {
-      uri += fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    }
-  }
-  return uri;
-}
-
 json location_of(const Position& position) {
   const Place place = place_of(position);
   return {{"physicalLocation",
-           {{"artifactLocation", {{"uri", uri_of(place.file)}}},
+           {{"artifactLocation", {{"uri", uri_of_path(place.file)}}},
             {"region",
              {{"startLine", place.line}, {"startColumn", place.column}, {"endColumn", place.column + place.length}}}}}};
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string_view>
@@ -15,6 +14,7 @@
 #include "eds/number.hpp"
 #include "overlay/compose_overlay.hpp"
 #include "overlay/overlay_file.hpp"
+#include "system/environment.hpp"
 #include "system/find_files.hpp"
 
 namespace edsc {
@@ -54,9 +54,9 @@ unsigned fit_of(const OverlayHeader& header, const SheetIdentity& device) {
 
 std::vector<std::string> overlay_folders() {
   constexpr char separator = std::filesystem::path::preferred_separator == '/' ? ':' : ';';
-  const char* const variable = std::getenv("EDSC_OVERLAYS");
+  const std::string variable = environment_variable("EDSC_OVERLAYS").value_or("");
   std::vector<std::string> folders;
-  std::string_view rest = variable != nullptr ? variable : "";
+  std::string_view rest = variable;
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find(separator), rest.size());
     if (end > 0) folders.emplace_back(rest.substr(0, end));

@@ -33,7 +33,7 @@ void find_below(const fs::path& folder, std::span<const std::string_view> extens
       found.paths.push_back(from_native(path.lexically_normal()));
     }
   }
-  if (error) found.problems.push_back(from_native(folder) + ": " + error.message());
+  if (error) found.problems.push_back(from_native(folder) + ": " + error.default_error_condition().message());
 }
 
 }  // namespace

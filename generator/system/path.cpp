@@ -1,13 +1,21 @@
 #include "system/path.hpp"
 
-#include <system_error>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <system_error>
 
 namespace edsc {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+bool is_latin_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
+bool begins_with_drive(std::string_view path) { return path.size() >= 2 && path[1] == ':' && is_latin_letter(path[0]); }
+
+}  // namespace
 
 fs::path to_native(std::string_view path) { return fs::path{std::u8string{path.begin(), path.end()}}; }
 
@@ -36,9 +44,25 @@ std::string path_from(std::string_view from, std::string_view path) {
 
 std::string absolute_path(std::string_view path) { return from_native(std::filesystem::absolute(to_native(path))); }
 
+std::string uri_of_path(std::string_view path, char separator) {
+  constexpr std::string_view plain = "-._~/";  // RFC 3986, 2.3, with letters and digits
+  const bool has_drives = separator != '/';
+  std::string uri = path.starts_with('/') ? "file://" : "";
+  if (has_drives && path.starts_with("//")) {
+    uri = "file:";
+  } else if (has_drives && begins_with_drive(path) && path.substr(2).starts_with('/')) {
+    uri = fmt::format("file:///{}:", path[0]);
+    path.remove_prefix(2);
+  }
+  for (const char c : path) {
+    const bool is_plain = is_latin_letter(c) || (c >= '0' && c <= '9') || plain.find(c) != std::string_view::npos;
+    uri += is_plain ? std::string{c} : fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
+  }
+  return uri;
+}
+
 std::string_view file_name_of(std::string_view path) {
-  const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
-  if (path.size() >= 2 && path[1] == ':' && is_letter(path[0])) path.remove_prefix(2);
+  if (begins_with_drive(path)) path.remove_prefix(2);
   return path.substr(path.find_last_of("/\\") + 1);
 }
 

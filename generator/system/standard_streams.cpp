@@ -13,7 +13,7 @@
 
 namespace edsc {
 
-void occupy_standard_descriptors() {
+void prepare_standard_streams() {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
     // The lowest free number is this one. Opened for the other direction, so that using it fails like a closed one.

@@ -7,12 +7,13 @@
 namespace edsc {
 
 /// Opens descriptors 0 to 2 if the caller has closed them, so that no file or bus gets their numbers. Writing to a
-/// closed standard output fails.
-void occupy_standard_descriptors();
+/// closed standard output fails. On Windows, bytes are read and written unchanged, a console shows UTF-8, and
+/// interprets escape sequences if it can; its settings are restored at the end of the process.
+void prepare_standard_streams();
 
 [[nodiscard]] bool is_terminal(std::FILE* stream);
 
-/// Whether TERM states that the terminal understands no escape sequences.
+/// Whether the terminal understands no escape sequences: on Linux TERM states it.
 [[nodiscard]] bool is_dumb_terminal();
 
 /// From now on, writing to a pipe that its reader has closed fails with EPIPE and does not end the program.

@@ -2,9 +2,11 @@
 
 namespace edsc {
 
+void WaitingSignals::note(int /*signal*/) { noted_ = 1; }
+
 WaitingSignals::WaitingSignals(std::initializer_list<int> signals, Second second) {
   struct sigaction action {};
-  action.sa_handler = [](int) { noted_ = 1; };
+  action.sa_handler = note;
   action.sa_flags = second == Second::ends_program ? static_cast<int>(SA_RESETHAND) : 0;
   sigset_t blocked{};
   sigemptyset(&blocked);

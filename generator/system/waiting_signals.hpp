@@ -9,7 +9,13 @@
 
 namespace edsc {
 
-/// Records these signals, which are delivered only while the command waits with `while_waiting`, as in ppoll().
+#ifdef _WIN32
+using SignalMask = int;  ///< unused: Windows delivers signals in a thread of their own
+#else
+using SignalMask = sigset_t;
+#endif
+
+/// Records these signals. On Linux they are delivered only while the command waits with `while_waiting`, as in ppoll().
 class WaitingSignals {
  public:
   /// What the second signal of a kind does.
@@ -18,11 +24,13 @@ class WaitingSignals {
   WaitingSignals(std::initializer_list<int> signals, Second second);
 
   [[nodiscard]] static bool noted() { return noted_ != 0; }
-  [[nodiscard]] const sigset_t* while_waiting() const { return &while_waiting_; }
+  [[nodiscard]] const SignalMask* while_waiting() const { return &while_waiting_; }
 
  private:
+  static void note(int signal);
+
   inline static volatile std::sig_atomic_t noted_ = 0;
-  sigset_t while_waiting_{};
+  SignalMask while_waiting_{};
 };
 
 }  // namespace edsc

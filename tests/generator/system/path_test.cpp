@@ -71,6 +71,17 @@ TEST(Path, HasSlashesForEachSeparator) {
   EXPECT_EQ(with_slashes(u8"machine/a\\b.eds", '/'), "machine/a\\b.eds") << "a name on Linux";
 }
 
+/// The examples of RFC 8089, appendices E.2 and E.3, and of RFC 3986.
+TEST(Path, AsAUri) {
+  EXPECT_EQ(uri_of_path("/path/to/a file.eds", '/'), "file:///path/to/a%20file.eds");
+  EXPECT_EQ(uri_of_path("machine/Ger\xC3\xA4t#1.eds", '/'), "machine/Ger%C3%A4t%231.eds");
+  EXPECT_EQ(uri_of_path("c:/path/to/file", '/'), "c%3A/path/to/file") << "a folder on Linux";
+  EXPECT_EQ(uri_of_path("c:/path/to/file", '\\'), "file:///c:/path/to/file");
+  EXPECT_EQ(uri_of_path("//host.example.com/Share/a b.txt", '\\'), "file://host.example.com/Share/a%20b.txt");
+  EXPECT_EQ(uri_of_path("/path/to/file", '\\'), "file:///path/to/file");
+  EXPECT_EQ(uri_of_path("machine/drive.eds", '\\'), "machine/drive.eds");
+}
+
 TEST(Path, KeepsItsTextFromAndToTheFileSystem) {
   const std::string texts[] = {
       "",       "a//b/./c/..",   "/a/", "-", "Ger\xC3\xA4t.eds", "\xE8\xA1\xA8/\xF0\x9F\x94\xA7.eds", "\xE4 not UTF-8",

@@ -1,0 +1,42 @@
+# The libraries of edsc for Windows: zlib of the cross compiler, and headers of the machine that builds. A cross compiler must not
+# search all of that machine's headers, so a folder of the build has links to those of the libraries.
+
+# Debian's package of pugixml has a library for Linux only. This is its source, which is compiled as headers.
+set(EDSC_PUGIXML_ARCHIVE "http://deb.debian.org/debian/pool/main/p/pugixml/pugixml_1.13.orig.tar.gz"
+    CACHE STRING "Source of pugixml for a program for Windows: URL or file")
+set(pugixml_hash 5c5ad5d7caeb791420408042a7d88c2c6180781bf218feca259fd9d840a888e1)
+
+set(EDSC_HOST_INCLUDE_DIR /usr/include CACHE PATH "Folder of the header-only libraries of the machine that builds")
+set(linked_headers ${CMAKE_BINARY_DIR}/linked_headers)
+file(MAKE_DIRECTORY ${linked_headers})
+foreach(folder IN ITEMS CLI fmt kainjow nlohmann)
+  if(NOT IS_DIRECTORY ${EDSC_HOST_INCLUDE_DIR}/${folder})
+    message(FATAL_ERROR "missing headers ${EDSC_HOST_INCLUDE_DIR}/${folder}; packages.txt lists the packages")
+  endif()
+  file(CREATE_LINK ${EDSC_HOST_INCLUDE_DIR}/${folder} ${linked_headers}/${folder} SYMBOLIC)
+endforeach()
+
+# edsc_add_linked_library(NAME DEFINITION...) makes a target of a library in the folder of links.
+function(edsc_add_linked_library name)
+  add_library(${name} INTERFACE IMPORTED GLOBAL)
+  target_include_directories(${name} SYSTEM INTERFACE ${linked_headers})
+  target_compile_definitions(${name} INTERFACE ${ARGN})
+endfunction()
+
+edsc_add_linked_library(fmt::fmt-header-only FMT_HEADER_ONLY)
+edsc_add_linked_library(nlohmann_json::nlohmann_json)
+edsc_add_linked_library(CLI11::CLI11)
+set(KAINJOW_MUSTACHE_INCLUDE_DIR ${linked_headers} CACHE PATH "Folder of kainjow/mustache.hpp")
+
+include(FetchContent)
+FetchContent_Declare(pugixml URL ${EDSC_PUGIXML_ARCHIVE} URL_HASH SHA256=${pugixml_hash} DOWNLOAD_EXTRACT_TIMESTAMP OFF
+                                 SOURCE_SUBDIR none)
+FetchContent_MakeAvailable(pugixml)
+add_library(edsc_pugixml INTERFACE)
+target_include_directories(edsc_pugixml SYSTEM INTERFACE ${pugixml_SOURCE_DIR}/src)
+target_compile_definitions(edsc_pugixml INTERFACE PUGIXML_HEADER_ONLY)
+
+find_package(ZLIB REQUIRED)
+set(EDSC_FMT fmt::fmt-header-only)
+set(EDSC_PUGIXML edsc_pugixml)
+set(EDSC_ZLIB ZLIB::ZLIB)
