@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -105,6 +107,14 @@ int run(CLI::App& app, const edsc::ReadArguments& read, const int& exit_code) {
   return exit_code;
 }
 
+/// Returns the only command whose options are needed; null: all of them, as for help or a command that does not exist.
+const edsc::CommandRow* only_command(std::span<const edsc::CommandRow> rows, std::span<char*> words) {
+  if (words.empty()) return nullptr;
+  const auto found = std::ranges::find(rows, std::string_view{words.front()},
+                                       [](const edsc::CommandRow& row) { return std::string_view{row.name}; });
+  return found == rows.end() || found->describes_all ? nullptr : &*found;
+}
+
 }  // namespace
 
 namespace edsc {
@@ -117,15 +127,17 @@ int run_program(std::span<const CommandRow> rows, const std::string& version, in
   app.set_version_flag("-V,--version", "edsc " + version, std::string{find_command_option("--version")->meaning});
   app.require_subcommand(1);
   int exit_code = exit_fine;
+  const std::span<char*> words{argv + 1, argv + std::max(argc, 1)};
+  const CommandRow* const only = only_command(rows, words);
   for (const CommandRow& row : rows) {
     CLI::App* const command = app.add_subcommand(row.name, row.description);
-    row.add_options(Command{*command}, exit_code);
+    if (only == nullptr || only == &row) row.add_options(Command{*command}, exit_code);
     command->group(row.group);  // later, because subcommands inherit it
   }
   int output_error = 0;
   ReadArguments read;
   try {
-    read = read_arguments(app, {argv + 1, argv + argc});
+    read = read_arguments(app, {words.begin(), words.end()});
     exit_code = run(app, read, exit_code);
   } catch (const WrongUsage& problem) {
     exit_code = report_wrong_usage(problem.what(), problem.command);
