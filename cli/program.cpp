@@ -4,9 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -115,6 +117,14 @@ int run(CLI::App& app, const edsc::ReadArguments& read, const int& exit_code) {
   return exit_code;
 }
 
+/// Returns the only command whose options are needed; null: all of them, as for help or a command that does not exist.
+const edsc::CommandRow* only_command(std::span<const edsc::CommandRow> rows, const std::vector<std::string>& words) {
+  if (words.empty()) return nullptr;
+  const auto found = std::ranges::find(rows, std::string_view{words.front()},
+                                       [](const edsc::CommandRow& row) { return std::string_view{row.name}; });
+  return found == rows.end() || found->describes_all ? nullptr : &*found;
+}
+
 }  // namespace
 
 namespace edsc {
@@ -128,9 +138,10 @@ int run_program(std::span<const CommandRow> rows, const std::string& version,
   app.set_version_flag("-V,--version", "edsc " + version, std::string{find_command_option("--version")->meaning});
   app.require_subcommand(1);
   int exit_code = exit_fine;
+  const CommandRow* const only = only_command(rows, arguments);
   for (const CommandRow& row : rows) {
     CLI::App* const command = app.add_subcommand(row.name, row.description);
-    row.add_options(Command{*command}, exit_code);
+    if (only == nullptr || only == &row) row.add_options(Command{*command}, exit_code);
     command->group(row.group);  // later, because subcommands inherit it
   }
   int output_error = 0;

@@ -8,7 +8,7 @@ set(document_dir ${CMAKE_INSTALL_DATADIR}/doc)
 
 if(TARGET edsc)
   install(TARGETS edsc RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
-  if(NOT CMAKE_CROSSCOMPILING) # edsc writes them itself
+  if(NOT CMAKE_CROSSCOMPILING OR CMAKE_CROSSCOMPILING_EMULATOR) # edsc writes them itself
     set(shell_files ${PROJECT_BINARY_DIR}/generator/shell)
     install(FILES ${shell_files}/edsc.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME edsc
             COMPONENT program)
@@ -45,5 +45,6 @@ install(
         ${PROJECT_SOURCE_DIR}/cmake/firmware_bill.py ${PROJECT_SOURCE_DIR}/cmake/firmware_report.py
   DESTINATION ${package_dir} COMPONENT development)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/cmake/boards ${PROJECT_SOURCE_DIR}/cmake/toolchains DESTINATION ${package_dir}
-        COMPONENT development)
+        COMPONENT development
+        PATTERN aarch64-linux-gnu.cmake EXCLUDE) # for edsc itself
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${document_dir}/libedsc-dev RENAME copyright COMPONENT development)

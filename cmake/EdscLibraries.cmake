@@ -1,12 +1,26 @@
 # The libraries of the program edsc, by one name each: EDSC_FMT, EDSC_PUGIXML, EDSC_ZLIB, EDSC_NETTLE and EDSC_HTTPLIB. With
 # EDSC_STATIC they are part of the program, which then needs no library of the machine.
 
-option(EDSC_STATIC "Build a program that contains its libraries and runs on any Linux with this processor" OFF)
-
 # The shared cpp-httplib of Debian brings OpenSSL and brotli. This is its source, without both.
 set(EDSC_HTTPLIB_ARCHIVE "http://deb.debian.org/debian/pool/main/c/cpp-httplib/cpp-httplib_0.11.4+ds.orig.tar.xz"
     CACHE STRING "Source of cpp-httplib for a static program: URL or file")
 set(httplib_hash 8b1a5df569003b6a4f24c68489bbda5c64aec94697bdc9ebba5d79408b2ae7eb)
+
+# The libraries for another processor: packages.txt names them. cpp-httplib is the source above.
+set(EDSC_DEBIAN_ARCHITECTURE ""
+    CACHE STRING "Architecture, such as arm64, for which the libraries are fetched from Debian; empty: they are installed")
+if(EDSC_DEBIAN_ARCHITECTURE)
+  set(EDSC_DEBIAN_ROOT ${PROJECT_BINARY_DIR}/debian-${EDSC_DEBIAN_ARCHITECTURE})
+  if(NOT EXISTS ${EDSC_DEBIAN_ROOT}/versions)
+    file(STRINGS ${PROJECT_SOURCE_DIR}/packages.txt libraries REGEX "^build +.*-dev$")
+    list(TRANSFORM libraries REPLACE "^build +" "")
+    list(REMOVE_ITEM libraries libcpp-httplib-dev)
+    message(STATUS "Fetching the libraries for ${EDSC_DEBIAN_ARCHITECTURE}")
+    execute_process(COMMAND ${PROJECT_SOURCE_DIR}/cmake/fetch_debian_libraries.sh ${EDSC_DEBIAN_ARCHITECTURE}
+                            ${EDSC_DEBIAN_ROOT} ${libraries} COMMAND_ERROR_IS_FATAL ANY)
+  endif()
+  list(APPEND CMAKE_FIND_ROOT_PATH ${EDSC_DEBIAN_ROOT})
+endif()
 
 if(EDSC_STATIC)
   set(CMAKE_FIND_LIBRARY_SUFFIXES .a)

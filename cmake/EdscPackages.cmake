@@ -1,15 +1,25 @@
 # The Debian packages, made by the target `package` or cpack: edsc_VERSION_ARCHITECTURE.deb with the program, and
-# libedsc-dev_VERSION_all.deb with the files to compile a device.
+# libedsc-dev_VERSION_all.deb with the files to compile a device. For a static program also an archive of the whole for any
+# Linux, edsc-VERSION-linux-PROCESSOR.tar.gz. Packages of a commit have the same bytes everywhere.
 set(CPACK_GENERATOR DEB)
+if(EDSC_STATIC AND NOT WIN32)
+  list(APPEND CPACK_GENERATOR TGZ)
+  set(CPACK_PACKAGE_FILE_NAME edsc-${PROJECT_VERSION}-linux-${CMAKE_SYSTEM_PROCESSOR})
+endif()
 set(CPACK_PACKAGE_NAME edsc)
 # Debian requires name and address of a maintainer: `-DEDSC_MAINTAINER="Name <address>"`. No mail reaches the default address,
 # whose domain is reserved for that (RFC 2606).
 set(EDSC_MAINTAINER "edsc maintainers <maintainers@edsc.invalid>" CACHE STRING "Maintainer of the Debian packages")
 set(CPACK_PACKAGE_CONTACT "${EDSC_MAINTAINER}")
-set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL program development)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/compress_manual_pages.cmake)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ
+                                                WORLD_EXECUTE)
+set(CPACK_EDSC_SOURCE_DIR ${PROJECT_SOURCE_DIR})
+set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/cmake/package_date.cmake)
+set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/compress_manual_pages.cmake
+                            ${PROJECT_SOURCE_DIR}/cmake/package_times.cmake)
+set(CPACK_POST_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/package_order.cmake)
 
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -17,7 +27,11 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME edsc)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION devel)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON) # needs dpkg-shlibdeps (package dpkg-dev) and file
+if(EDSC_STATIC)
+  set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE ${EDSC_DEBIAN_ARCHITECTURE}) # empty: that of dpkg
+else()
+  set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON) # needs dpkg-shlibdeps (package dpkg-dev) and file
+endif()
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS libedsc-dev)
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "") # CPack would prepend it to each description
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${PROJECT_DESCRIPTION}

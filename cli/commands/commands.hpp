@@ -50,6 +50,7 @@ struct CommandRow {
   const char* name;
   const char* description;
   AddOptions* add_options;
+  bool describes_all = false;  ///< it prints the options of all commands
 };
 
 /// In the order of the help. A program without access to a bus (EDSC_OFFLINE of CMake) does not have those for a bus.
@@ -82,8 +83,8 @@ inline constexpr CommandRow commands[] = {
     {"Logs", "decode", "decode the frames of a log", add_decode_options},
     {"Logs", "audit", "check a log against the EDS files of its nodes", add_audit_options},
     {"Logs", "plot", "plot values of a log over time, as SVG", add_plot_options},
-    {"Shell", "completion", "print the completion for a shell, or the manual page", add_completion_options},
-    {"Shell", "help", "show the options and examples of a command", add_help_options},
+    {"Shell", "completion", "print the completion for a shell, or the manual page", add_completion_options, true},
+    {"Shell", "help", "show the options and examples of a command", add_help_options, true},
     {"Shell", "version", "print the version", add_version_options},
 };
 
