@@ -188,7 +188,7 @@ def main() -> int:
     limits = ((image.flash, arguments.flash_limit, "flash", IN_FLASH), (image.ram, arguments.ram_limit, "RAM", IN_RAM))
 
     sums = ", ".join(f"{used} bytes of {what}" + (f" (limit {limit})" if limit else "") for used, limit, what, _ in limits)
-    line = f"{arguments.image.name}: {sums}; the data sheet's objects: {flash.total()} and {ram.total()}"
+    line = f"{arguments.image.name}: {sums}, of which the objects of the EDS take {flash.total()} and {ram.total()}"
     heading = "object  flash     RAM"
     arguments.report.write_text("\n".join([
         line, f"flash: {in_flash.text()}", f"RAM: {in_ram.text()}", "",
@@ -200,7 +200,7 @@ def main() -> int:
         print(f"error: {arguments.image.name} has {used} bytes of {what}, {used - limit} more than its limit of {limit}")
         print(f"largest in {what}:", *symbols_text(image, kinds), sep="\n")
     if over:
-        print("the data sheet's largest objects:", f"  {heading}", *objects_text(flash, ram, SHOWN), sep="\n")
+        print("the largest objects of the EDS:", f"  {heading}", *objects_text(flash, ram, SHOWN), sep="\n")
     return 1 if over else 0
 
 

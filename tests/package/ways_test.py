@@ -93,7 +93,7 @@ class Ways(unittest.TestCase):
         for suffix in ("elf", "hex", "bin", "map", "report.txt", "cdx.json"):
             self.assertGreater((build_dir / f"valve_firmware.{suffix}").stat().st_size, 0, suffix)
         self.assertEqual((build_dir / "valve_firmware.elf").read_bytes()[18], EM_ARM)
-        self.assertIn("the data sheet's objects", (build_dir / "valve_firmware.report.txt").read_text())
+        self.assertIn("of which the objects of the EDS take", (build_dir / "valve_firmware.report.txt").read_text())
         self.nothing_to_do(build_dir)
 
     def check_cross(self, project: Project, *settings: object) -> None:
