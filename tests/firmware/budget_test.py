@@ -70,7 +70,7 @@ class Budget(unittest.TestCase):
         largest = told.split("largest in flash:\n")[1].split("the data sheet's")[0].splitlines()
         sizes = [int(line.split()[0]) for line in largest]
         self.assertEqual(sizes, sorted(sizes, reverse=True))
-        self.assertRegex(told, r"the data sheet's largest objects:\n  object  flash     RAM\n(  [0-9A-F]{4}h +\d+ +\d+\n)+")
+        self.assertRegex(told, r"the largest objects of the EDS:\n  object  flash     RAM\n(  [0-9A-F]{4}h +\d+ +\d+\n)+")
         self.assertRegex(told, r"\n  2000h +\d+ +2\n")
         self.assertNotIn("bytes of RAM, ", told)
 
