@@ -17,14 +17,17 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
+/// void in cpp-httplib 0.11 of Debian 12, bool in 0.18 of Debian 13.
+using Enqueued = decltype(std::declval<httplib::TaskQueue&>().enqueue({}));
+
 /// Threads that know when their connection was accepted. The time of a connection includes that in which it waits for
 /// a thread: otherwise clients that send nothing would delay others by that of all those before them.
 class ConnectionThreads final : public httplib::TaskQueue {
  public:
   explicit ConnectionThreads(std::size_t count) : threads_{count} {}
 
-  void enqueue(std::function<void()> connection) override {
-    threads_.enqueue([connection = std::move(connection), accepted = steady_clock::now()] {
+  Enqueued enqueue(std::function<void()> connection) override {
+    return threads_.enqueue([connection = std::move(connection), accepted = steady_clock::now()] {
       accepted_ = accepted;
       connection();
     });
@@ -116,7 +119,15 @@ bool BoundedServer::process_and_close_socket(socket_t socket) {
   if (begin_connection(socket)) {
     BoundedStream stream{socket, ConnectionThreads::accepted()};
     bool is_closed = false;
-    is_done = process_request(stream, true, is_closed, nullptr);
+    // cpp-httplib 0.18 also takes the addresses and ports of both ends.
+    const auto process = [&](auto& server) {
+      if constexpr (requires { server.process_request(stream, true, is_closed, nullptr); }) {
+        return server.process_request(stream, true, is_closed, nullptr);
+      } else {
+        return server.process_request(stream, {}, 0, {}, 0, true, is_closed, nullptr);
+      }
+    };
+    is_done = process(*this);
     ::shutdown(socket, SHUT_RDWR);
     end_connection(socket);
   }
