@@ -148,18 +148,21 @@ class Packages(unittest.TestCase):
 
     @unittest.skipIf(os.geteuid() != 0, "not root")
     def test_debian_packages_are_installed_without_other_packages(self) -> None:
+        """libedsc-dev needs edsc for the processor of the machine: this machine's dpkg does not install it for another one."""
+        native = output("dpkg", "--print-architecture").strip()
         for platform in PLATFORMS:
             program, development = platform.debian_packages()
             self.assertNotIn("Depends", output("dpkg-deb", "-f", program))
+            packages = [program, development] if platform.architecture == native else [program]
             root = self.folder / platform.architecture
             for folder in ("info", "updates"):
                 (root / "var/lib/dpkg" / folder).mkdir(parents=True)
             for name in ("status", "available"):
                 (root / "var/lib/dpkg" / name).touch()
-            output("dpkg", f"--root={root}", "--force-architecture", "-i", program, development)
+            output("dpkg", f"--root={root}", "--force-architecture", "-i", *packages)
             installed = output("dpkg-query", f"--admindir={root}/var/lib/dpkg", "-W", "-f",
                                "${Package} ${Architecture} ${db:Status-Status}\n").splitlines()
-            self.assertEqual(installed, [f"edsc {platform.architecture} installed", "libedsc-dev all installed"])
+            self.assertEqual(installed, [f"edsc {platform.architecture} installed", "libedsc-dev all installed"][:len(packages)])
             self.assertEqual((root / "usr/bin/edsc").read_bytes(), (self.unpacked(platform) / "bin/edsc").read_bytes())
 
     @unittest.skipIf(os.geteuid() != 0, "not root")
