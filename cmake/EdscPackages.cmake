@@ -51,4 +51,22 @@ Files needed to compile a device: headers of the CANopen runtime, which needs
 no heap, no exceptions and no operating system, functions for CMake, and
 start-up code, linker scripts and drivers of boards with a Cortex-M.")
 
+# For Windows an archive without an installer: `cpack -G ZIP`. The program finds the documents beside it.
+if(WIN32)
+  install(TARGETS edsc RUNTIME DESTINATION . COMPONENT windows EXCLUDE_FROM_ALL)
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION .
+          COMPONENT windows EXCLUDE_FROM_ALL)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/eds ${PROJECT_SOURCE_DIR}/examples DESTINATION .
+          COMPONENT windows EXCLUDE_FROM_ALL
+          PATTERN developers EXCLUDE PATTERN site EXCLUDE PATTERN make.py EXCLUDE PATTERN api.doxygen EXCLUDE)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/include/canopen DESTINATION include/edsc COMPONENT windows EXCLUDE_FROM_ALL)
+  set(CPACK_GENERATOR ZIP)
+  set(CPACK_PACKAGE_FILE_NAME edsc-${PROJECT_VERSION}-windows-x86_64)
+  set(CPACK_PACKAGING_INSTALL_PREFIX "")
+  set(CPACK_COMPONENTS_ALL windows)
+  set(CPACK_ARCHIVE_COMPONENT_INSTALL ON)
+  set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+  set(CPACK_COMPONENT_INCLUDE_TOPLEVEL_DIRECTORY ON)
+endif()
+
 include(CPack)

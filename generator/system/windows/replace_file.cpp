@@ -48,6 +48,15 @@ std::wstring_view without_end(std::wstring_view name) {
   return end == std::wstring_view::npos ? name : name.substr(0, end + 1);
 }
 
+/// The path with the name as the folder has it, which may differ in upper and lower case.
+fs::path with_stored_name(const fs::path& path) {
+  WIN32_FIND_DATAW found{};
+  const HANDLE search = FindFirstFileW(path.c_str(), &found);
+  if (search == INVALID_HANDLE_VALUE) return path;
+  FindClose(search);
+  return path.parent_path() / found.cFileName;
+}
+
 bool is_read_only(const fs::path& path) {
   const DWORD attributes = GetFileAttributesW(path.c_str());
   return attributes != INVALID_FILE_ATTRIBUTES && (attributes & FILE_ATTRIBUTE_READONLY) != 0;
@@ -100,9 +109,8 @@ std::optional<FileState> state_of(const std::string& path) {
 
 FinalPlace final_place(const fs::path& path) {
   const DWORD attributes = GetFileAttributesW(path.c_str());
-  if (attributes == INVALID_FILE_ATTRIBUTES || (attributes & FILE_ATTRIBUTE_REPARSE_POINT) == 0) {
-    return {path, std::nullopt};
-  }
+  if (attributes == INVALID_FILE_ATTRIBUTES) return {path, std::nullopt};
+  if ((attributes & FILE_ATTRIBUTE_REPARSE_POINT) == 0) return {with_stored_name(path), std::nullopt};
   const OpenHandle file{open_to_examine(path)};
   std::wstring name(std::size_t{1} << 15U, L'\0');
   const DWORD length =
