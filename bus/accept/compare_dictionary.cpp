@@ -15,10 +15,12 @@
 #include "conform/cases/shared/entry_values.hpp"
 #include "conform/cases/shared/product_values.hpp"
 #include "device/entry_text.hpp"
+#include "diagnostics/diagnostics.hpp"
 #include "online/interruption.hpp"
 #include "text/counted.hpp"
 #include "values/append.hpp"
 #include "values/little_endian.hpp"
+#include "values/read_value.hpp"
 
 namespace edsc::accept {
 namespace {
@@ -41,6 +43,15 @@ std::string access_name(const LiveEntry& entry) { return std::string{canopen::ro
 
 bool has_type_length(const LiveEntry& entry, const SdoOutcome& outcome) {
   return entry.type->bits == 0 || !outcome.size_told || outcome.bytes.size() == bytes_for(entry.type->bits);
+}
+
+/// A value as the EDS has it, and what a formula is for this node: `$NODEID+0x620 (00000625h)`.
+std::string written_text(std::string text, const LiveEntry& entry, canopen::NodeId node) {
+  if (text.find('$') == std::string::npos || entry.type->bits == 0) return text;
+  Diagnostics ignored;
+  const auto number = parse_value({text, {}, true}, *entry.type, node.value(), ignored);
+  if (!number) return text;
+  return fmt::format("{} ({})", text, value_of(entry, bytes_of(number->bits, bytes_for(entry.type->bits))));
 }
 
 /// The value that the device sent, or the reason why it sent none.
@@ -110,7 +121,7 @@ class Pass {
     if (const auto value = eds_value(entry)) {
       row.default_value = value_of(entry, *value);
     } else if (const auto written = written_value(data_, *object_of(reading), entry.sub_index)) {
-      row.default_value = *written;  // edsc itself uses the value of CiA 301
+      row.default_value = written_text(*written, entry, node_);  // edsc itself uses the value of CiA 301
     }
     return row;
   }
