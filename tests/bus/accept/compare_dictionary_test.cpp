@@ -338,6 +338,33 @@ TEST(CompareDictionary, TheEdsMakesAnObjectWriteOnlyThatTheStandardMakesReadable
   expect(eds, unchanged, {"1017h:00 access eds_wrong eds-access [1017] AccessType=wo => rw"});
 }
 
+/// CiA 402-2: 6041h and 6064h are ro, 6040h is rw. The objects of the second axis are 800h above.
+TEST(CompareDictionary, AProfileDefinesTheAccess) {
+  expect(base_eds() + var("6064", "Position", i32, "wo"), with_value(0x6064, 0, {1, 0, 0, 0}),
+         {"6064h:00 access eds_wrong eds-access [6064] AccessType=wo => ro"});
+  expect(base_eds() + var("6864", "Position", i32, "wo"), with_value(0x6864, 0, {1, 0, 0, 0}),
+         {"6864h:00 access eds_wrong eds-access [6864] AccessType=wo => ro"});
+  const auto write_only = [](DictionaryPort& device) { device.aborts[{0x6041, 0}] = 0x0601'0001; };
+  expect(base_eds() + var("6041", "Statusword", u16, "ro"), write_only,
+         {"6041h:00 access device_wrong standard-access"});
+  expect(base_eds() + var("6040", "Controlword", u16, "wo"), with_value(0x6040, 0, {0, 0}),
+         {"6040h:00 access undecided free-access [6040] AccessType=wo => rw"});
+  const Compared result = run(base_eds() + var("6064", "Position", i32, "wo"), with_value(0x6064, 0, {1, 0, 0, 0}));
+  EXPECT_EQ(result.comparison.differences.at(0).reason,
+            "CiA 402 does not allow the access of the EDS, wo, and allows the access of the device");
+}
+
+/// Without the profile in 1000h, no standard defines the access.
+TEST(CompareDictionary, AProfileThatTheDeviceDoesNotStateDefinesNothing) {
+  expect(base_eds() + var("6064", "Position", i32, "wo"),
+         [](DictionaryPort& device) {
+           device.values[{0x1000, 0}] = {0x91, 1, 0, 0};
+           device.values[{0x6064, 0}] = {1, 0, 0, 0};
+         },
+         {"1000h:00 value undecided other-identity [1000] DefaultValue=0x192 => 0x00000191",
+          "6064h:00 access undecided free-access [6064] AccessType=wo => rw"});
+}
+
 TEST(CompareDictionary, AnAccessThatNoStandardDefinesIsUndecided) {
   expect(base_eds() + var("2000", "Command", u16, "wo"), with_value(0x2000, 0, {1, 0}),
          {"2000h:00 access undecided free-access [2000] AccessType=wo => rw"});
