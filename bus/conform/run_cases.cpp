@@ -1,6 +1,7 @@
 #include "conform/run_cases.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -12,17 +13,19 @@
 namespace edsc::conform {
 namespace {
 
-/// The first option that the case needs and the run does not have; empty: none.
+/// The options that the case needs and the run does not have: `needs --level communication, --store and --outputs`;
+/// empty: none.
 std::string missing_permission(const CaseRow& row, const DutSettings& settings) {
-  if (row.level > settings.level) {
-    return fmt::format("needs --level {}", row_of(row.level).name);
-  }
+  std::vector<std::string> missing;
+  if (row.level > settings.level) missing.push_back(fmt::format("--level {}", row_of(row.level).name));
   for (const PermissionRow& option : permission_options) {
-    if (includes(row.needs, option.permission) && !includes(settings.permissions, option.permission)) {
-      return fmt::format("needs {}", option.option);
-    }
+    if (row.level >= Level::all || includes(settings.permissions, option.permission)) continue;
+    if (includes(row.needs, option.permission)) missing.emplace_back(option.option);
   }
-  return {};
+  if (missing.empty()) return {};
+  const std::string last = std::move(missing.back());
+  missing.pop_back();
+  return missing.empty() ? "needs " + last : fmt::format("needs {} and {}", fmt::join(missing, ", "), last);
 }
 
 bool is_selected(const CaseRow& row, const std::vector<std::string>& only) {
