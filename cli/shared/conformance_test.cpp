@@ -43,22 +43,29 @@ class CommandStimuli final : public conform::Stimuli {
     }
   }
 
-  void begin_case(std::string_view id) override { case_ = id; }
+  void begin_case(std::string_view id) override {
+    case_ = id;
+    failed_ = false;
+  }
   bool set(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) override { return run("change"); }
   bool emergency(std::uint16_t, std::uint8_t) override { return run("error"); }
   bool emergency_over(std::uint8_t) override { return run("error_over"); }
   bool power_cycle() override { return run("power_cycle"); }
+  [[nodiscard]] bool command_failed() const override { return failed_; }
 
  private:
   /// The command gets the requested stimulus in EDSC_STIMULUS.
   bool run(const char* what) {
     const auto found = commands_.find(case_);
     if (found == commands_.end()) return false;
-    return run_command_line(found->second, "EDSC_STIMULUS", what);
+    const bool succeeds = run_command_line(found->second, "EDSC_STIMULUS", what);
+    failed_ = !succeeds;
+    return succeeds;
   }
 
   std::map<std::string, std::string, std::less<>> commands_;
   std::string case_;
+  bool failed_ = false;
 };
 
 /// A simulated device receives stimuli through its program.

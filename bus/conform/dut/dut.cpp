@@ -356,6 +356,7 @@ void Dut::fail_by_sheet(AnyRule rule, std::string expected, std::string got) {
 void Dut::not_applicable(std::string reason) { throw CaseEnd{Verdict::not_applicable, std::move(reason), {}, {}}; }
 void Dut::inconclusive(std::string reason) { inconclusive(Condition::none, std::move(reason)); }
 void Dut::inconclusive(Condition condition, std::string reason) {
+  if (condition == Condition::stimulus && stimuli_.command_failed()) reason += "; the command of --stimulus failed";
   throw CaseEnd{Verdict::inconclusive, std::move(reason), {}, {}, {}, {}, condition};
 }
 

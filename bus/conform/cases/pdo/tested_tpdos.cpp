@@ -25,7 +25,12 @@ bool changes_by_itself(Dut& dut, const Tpdo& tpdo) {
   return !frames.empty();
 }
 
-void no_stimulus(Dut& dut, const Tpdo& tpdo) {
+void no_stimulus(Dut& dut, const Tpdo& tpdo, bool has_run) {
+  const std::string_view what = dut.simulated() ? "stimulus" : "command of --stimulus";
+  if (has_run) {
+    dut.inconclusive(Condition::stimulus, fmt::format("the {} ran, {} did not change; it must change an object of {}",
+                                                      what, objects_text(tpdo.mapping), tpdo.name()));
+  }
   dut.inconclusive(
       Condition::stimulus,
       fmt::format("no stimulus changes an object of {} ({}); use --stimulus with a command that changes one",
