@@ -97,6 +97,12 @@ struct MissingCondition {
   std::vector<const CaseResult*> cases;
 };
 
+/// A file that a run uses.
+struct InputFile {
+  std::string path;  ///< as it was given or found; empty: there is none
+  std::string hash;  ///< SHA-256, hexadecimal digits; empty if the file cannot be read again, such as standard input
+};
+
 /// The results of a run, as its reports show them.
 struct RunReport {
   std::string title;          ///< of the report, as the user gives it; may be empty
@@ -106,12 +112,16 @@ struct RunReport {
   std::int64_t started = 0;   ///< seconds since 1970-01-01 00:00 UTC; 0: not known
   std::string bus;            ///< the address
   std::uint8_t node = 0;
-  std::string sheet;            ///< path as it was given
-  std::string options;          ///< path of the options file if it was given
-  std::string sheet_hash;       ///< SHA-256 of the file, hexadecimal digits
-  std::string product, vendor;  ///< as in the EDS
-  std::string identity;         ///< differences from the EDS; empty: none
-  std::string read_identity;    ///< as read from the device: `vendor-ID 0000 0319h, product code ...`
+  std::string sheet;       ///< path as it was given
+  std::string options;     ///< path of the options file if it was given
+  std::string sheet_hash;  ///< SHA-256 of the file, hexadecimal digits
+  InputFile options_file;  ///< that was used: the one that was given, or the one beside the EDS
+  InputFile deviations_file;
+  std::string product, vendor;                 ///< as in the EDS
+  std::string identity;                        ///< differences from the EDS; empty: none
+  std::vector<EntryAddress> identity_entries;  ///< the entries of the numbers that differ
+  std::string identity_deviation;              ///< why all of them are declared; empty: they are not
+  std::string read_identity;                   ///< as read from the device: `vendor-ID 0000 0319h, product code ...`
   std::optional<SimulatedComposition> composition;  ///< of a simulated device
   Level level = Level::read;
   Permission permissions = Permission::none;

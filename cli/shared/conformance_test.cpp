@@ -124,6 +124,8 @@ std::string hash_of_file(const std::string& path) {
   return conform::sha256({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
+conform::InputFile input_file(const std::string& path) { return {path, hash_of_file(path)}; }
+
 /// Returns false if the file has an error, which is printed.
 bool load_deviations(const ConformanceSettings& settings, DeclaredDeviations& declared) {
   if (settings.deviations.empty()) return true;
@@ -161,6 +163,8 @@ std::unique_ptr<ConformanceTest> prepare_conformance_test(const ConformanceSetti
   report.sheet = settings.sheet;
   report.options = settings.options;
   report.sheet_hash = hash_of_file(settings.sheet);
+  if (test->loaded->options_source) report.options_file = input_file(test->loaded->options_source->name());
+  if (!settings.deviations.empty()) report.deviations_file = input_file(settings.deviations);
   report.product = test->sheet().product_name;
   report.vendor = test->sheet().vendor_name;
   report.version = EDSC_VERSION;

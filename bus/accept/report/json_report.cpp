@@ -97,6 +97,8 @@ std::string json_report(const Acceptance& acceptance) {
                        {"bus", run.bus},
                        {"node_id", run.node},
                        {"eds", {{"file", run.sheet}, {"sha256", text_or_null(run.sheet_hash)}}},
+                       {"options", conform::file_object(run.options_file)},
+                       {"deviations", conform::file_object(run.deviations_file)},
                        {"check",
                         {{"errors", findings.errors()},
                          {"warnings", findings.warnings()},

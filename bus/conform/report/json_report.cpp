@@ -118,6 +118,11 @@ json area_object(const AreaCount& count) {
 
 }  // namespace
 
+json file_object(const InputFile& file) {
+  if (file.path.empty()) return nullptr;
+  return {{"file", file.path}, {"sha256", text_or_null(file.hash)}};
+}
+
 json frame_objects(std::span<const SeenFrame> frames, std::uint8_t node, const Device& sheet) {
   json objects = json::array();
   decode_frames(frames, node, sheet,
@@ -147,7 +152,12 @@ json run_object(const RunReport& run, const Device& sheet) {
                    {"sha256", text_or_null(run.sheet_hash)},
                    {"vendor", run.vendor},
                    {"product", run.product}}},
-                 {"identity", {{"read", text_or_null(run.read_identity)}, {"differences", text_or_null(run.identity)}}},
+                 {"options", file_object(run.options_file)},
+                 {"deviations", file_object(run.deviations_file)},
+                 {"identity",
+                  {{"read", text_or_null(run.read_identity)},
+                   {"differences", text_or_null(run.identity)},
+                   {"deviation", text_or_null(run.identity_deviation)}}},
                  {"composition", composition_object(run)},
                  {"level", row_of(run.level).name},
                  {"permissions", permission_names(run.permissions)},

@@ -45,6 +45,11 @@ void append_detail(std::string& out, std::string_view name, std::string_view tex
   fmt::format_to(std::back_inserter(out), "{:{}}{:<13} {}\n", "", id_width, name, printable(text));
 }
 
+void append_file(std::string& out, std::string_view name, const InputFile& file) {
+  append_detail(out, name, file.path.empty() ? "none" : file.path);
+  append_detail(out, "SHA-256", file.hash);
+}
+
 }  // namespace
 
 std::string TextReport::head() const {
@@ -57,6 +62,8 @@ std::string TextReport::head() const {
   append_detail(out, "device", device);
   append_detail(out, "EDS", run_.sheet);
   append_detail(out, "SHA-256", run_.sheet_hash);
+  append_file(out, "options", run_.options_file);
+  append_file(out, "deviations", run_.deviations_file);
   append_detail(out, "node", fmt::format("{} on {}", run_.node, run_.bus));
   append_detail(out, "composition", composition_text(run_));
   append_detail(out, "test", fmt::format("{}, seed {}, edsc {}", level_text(run_), run_.seed, run_.version));
