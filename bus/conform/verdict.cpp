@@ -102,6 +102,7 @@ std::string repeat_command(const RunReport& run, const CaseRow& row) {
     if (level >= Level::all || !includes(permissions, permission.permission)) continue;
     fmt::format_to(std::back_inserter(command), " {}", permission.option);
   }
+  if (run.force) command += " --force";
   fmt::format_to(std::back_inserter(command), " --only {} --seed {}", row.id, run.seed);
   return command;
 }

@@ -125,6 +125,7 @@ struct RunReport {
   std::optional<SimulatedComposition> composition;  ///< of a simulated device
   Level level = Level::read;
   Permission permissions = Permission::none;
+  bool force = false;  ///< also a device with another vendor-ID or product code than the EDS is written
   std::uint32_t seed = 0;
   std::string version;  ///< of edsc
   std::vector<CaseResult> cases;

@@ -157,6 +157,7 @@ std::unique_ptr<ConformanceTest> prepare_conformance_test(const ConformanceSetti
   run.dut.level = std::ranges::find(conform::levels, settings.level, &conform::LevelRow::name)->level;
   run.dut.permissions = permissions_of(settings, run.dut.level);
   run.dut.seed = settings.seed;
+  run.force = settings.force;
   run.only = settings.only;
   RunReport& report = test->report;
   report.bus = settings.bus;
@@ -225,6 +226,7 @@ void add_conformance_options(Command command, ConformanceSettings& settings) {
   command.add_flag("--store", settings.store, "1010h and 1011h, then restore the original values");
   command.add_flag("--application", settings.application);
   command.add_flag("--outputs", settings.outputs);
+  command.add_flag("--force", settings.force, "the device has another vendor-ID or product code");
   command.add_option("--only", settings.only)
       .one_value_each()
       .check([](const std::string& pattern) {
