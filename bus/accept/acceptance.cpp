@@ -53,7 +53,7 @@ std::vector<std::string> Acceptance::objections() const {
   if (const std::size_t count = comparison.undeclared(); count > 0) {
     list.push_back(fmt::format("the dictionary of the device and the EDS have {}", counted(count, "difference")));
   }
-  if (!run.passed()) list.push_back(fmt::format("conformance test failed: {}", conform::result_sentence(run)));
+  if (!run.passed()) list.push_back(fmt::format("conformance test failed: {}", conform::verdict_sentence(run)));
   return list;
 }
 

@@ -157,7 +157,7 @@ json run_view(const RunReport& run, const Device& sheet) {
   json areas = json::array();
   for (const AreaCount& area : count_by_area(run)) areas.push_back(area_view(area, run, sheet));
   return {{"result", run.passed() ? "passed" : "failed"},
-          {"sentence", result_sentence(run)},
+          {"sentence", verdict_sentence(run)},
           {"has_problems", !problems.empty()},
           {"problems", problems},
           {"title", shown(run.title)},

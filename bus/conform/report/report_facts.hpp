@@ -16,6 +16,13 @@ namespace edsc::conform {
 /// `3 of 127 cases failed; 101 passed, 20 not applicable, 3 not run`
 [[nodiscard]] std::string result_sentence(const RunReport& run);
 
+/// The same, after the problem of the run if no case failed: `unused deviation: pump.json:4: case 8.4 passed: ...; none
+/// of 127 cases failed; 26 passed`.
+[[nodiscard]] std::string verdict_sentence(const RunReport& run);
+
+/// How much of the test has run: `level read: 26 of 207 cases run`. Empty if each case ran or is not applicable.
+[[nodiscard]] std::string coverage_text(const RunReport& run);
+
 /// `18 failed cases, 5 causes`; empty without a failed case.
 [[nodiscard]] std::string causes_sentence(const RunReport& run);
 

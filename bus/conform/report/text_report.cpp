@@ -173,7 +173,7 @@ std::string TextReport::summary() const {
   const bool passed = run_.passed();
   const std::string_view color = color_of(passed ? Verdict::passed : Verdict::failed);
   fmt::format_to(std::back_inserter(out), "{}: {}\n", colored(passed ? "passed" : "failed", color_ ? color : ""),
-                 result_sentence(run_));
+                 verdict_sentence(run_));
   return out;
 }
 
