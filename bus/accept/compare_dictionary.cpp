@@ -313,6 +313,11 @@ std::size_t Comparison::undeclared() const {
   return static_cast<std::size_t>(std::ranges::count(differences, false, &Difference::is_declared));
 }
 
+bool Comparison::differs(const IdentityNumber& number) const {
+  const auto &stated = in_eds.*number.value, &found = in_device.*number.value;
+  return stated && found && *stated != *found;
+}
+
 Comparison compare_dictionary(LiveBus& bus, const Device& sheet, const DataSheet& data,
                               const ComparisonSettings& settings) {
   Comparison result;

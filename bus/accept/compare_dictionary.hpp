@@ -1,8 +1,10 @@
 /// Compares the object dictionary of a device on the bus with its EDS. Reads only.
 #pragma once
 
+#include <array>
 #include <canopen/can/node_id.hpp>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,8 @@ namespace edsc::accept {
 
 struct Comparison {
   Identity in_eds, in_device;
+  /// For each of `identity_numbers`, the reason in the file of deviations; empty: not declared.
+  std::array<std::string, std::size(identity_numbers)> identity_deviations;
   std::vector<ComparedEntry> entries;  ///< ascending
   std::vector<Difference> differences;
   std::vector<std::string> unstable;  ///< differences of a first read that a second read did not show
@@ -28,6 +32,8 @@ struct Comparison {
   [[nodiscard]] std::size_t count(Mark mark) const;
   /// Differences that the file of deviations does not declare.
   [[nodiscard]] std::size_t undeclared() const;
+  /// Whether both state the number of the identity, and another one.
+  [[nodiscard]] bool differs(const IdentityNumber& number) const;
 };
 
 struct ComparisonSettings {

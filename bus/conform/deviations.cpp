@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <iterator>
 #include <set>
 #include <string_view>
@@ -150,13 +151,23 @@ bool applies(const Deviation& deviation, const CaseResult& result, const std::ve
   return std::ranges::any_of(named, [&](const EntryAddress& entry) { return covers(*deviation.object, entry); });
 }
 
-std::string reason_of(const Deviation& deviation) {
-  return deviation.source.empty() ? deviation.reason : fmt::format("{} ({})", deviation.reason, deviation.source);
+/// The case that compares the constants of 1000h to 1FFFh, of which the identity is a part.
+constexpr std::string_view constants_case = "4.2";
+
+void append_reason(std::string& text, std::set<std::string>& reasons, const Deviation& deviation) {
+  const std::string reason = reason_of(deviation);
+  if (!reasons.insert(reason).second) return;
+  if (!text.empty()) text += "; ";
+  text += reason;
 }
 
 }  // namespace
 
 std::span<const DeviationMember> deviation_members() { return members; }
+
+std::string reason_of(const Deviation& deviation) {
+  return deviation.source.empty() ? deviation.reason : fmt::format("{} ({})", deviation.reason, deviation.source);
+}
 
 std::vector<Deviation> read_deviations(const SourceFile& source, Diagnostics& diagnostics) {
   return DeviationsReader{source, diagnostics}.read();
@@ -178,16 +189,28 @@ void apply_deviations(std::span<const Deviation> deviations, CaseResult& result)
   if (declared.empty() || (knows_each && !std::ranges::all_of(named, is_declared))) return;
   result.verdict = Verdict::deviates;
   std::set<std::string> reasons;
-  for (const Deviation* row : declared) {
-    const std::string reason = reason_of(*row);
-    if (!reasons.insert(reason).second) continue;
-    if (!result.deviation.empty()) result.deviation += "; ";
-    result.deviation += reason;
+  for (const Deviation* row : declared) append_reason(result.deviation, reasons, *row);
+}
+
+void apply_deviations(std::span<Deviation> deviations, RunReport& run) {
+  std::string text;
+  std::set<std::string> reasons;
+  std::size_t declared = 0;
+  for (const EntryAddress& entry : run.identity_entries) {
+    bool is_declared = false;
+    for (Deviation& deviation : deviations) {
+      if (deviation.id != constants_case || !deviation.object || !covers(*deviation.object, entry)) continue;
+      deviation.is_used = is_declared = true;
+      append_reason(text, reasons, deviation);
+    }
+    if (is_declared) ++declared;
   }
+  if (declared == run.identity_entries.size()) run.identity_deviation = text;
 }
 
 void find_unused_deviations(std::span<const Deviation> deviations, RunReport& run) {
   for (const Deviation& deviation : deviations) {
+    if (deviation.is_used) continue;
     const auto found =
         std::ranges::find_if(run.cases, [&](const CaseResult& result) { return result.row->id == deviation.id; });
     if (found == run.cases.end() || found->verdict != Verdict::passed) continue;

@@ -206,6 +206,7 @@ void run_conformance_test(LiveBus& bus, const ConformanceSettings& settings, Con
     flush_output();
   };
   conform::run_cases(bus, test.sheet(), *stimuli, run, report);
+  conform::apply_deviations(test.deviations.all, report);
   conform::find_unused_deviations(test.deviations.all, report);
   progress.hide();
   write_output(text.summary());

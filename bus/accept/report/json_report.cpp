@@ -83,7 +83,8 @@ std::string json_report(const Acceptance& acceptance) {
     identity.push_back({{"number", row.number->key},
                         {"eds", number_or_null(row.in_eds)},
                         {"device", number_or_null(row.in_device)},
-                        {"differs", row.differs}});
+                        {"differs", row.differs},
+                        {"deviation", text_or_null(row.deviation)}});
   }
   const std::vector<std::string> objections = acceptance.objections();
   const json report = {{"schema", 2},

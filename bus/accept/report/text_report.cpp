@@ -58,9 +58,10 @@ std::string comparison_text(const Acceptance& acceptance, bool color) {
     const auto number = [](const std::optional<std::uint32_t>& value) {
       return value ? fmt::format("{:08X}h", *value) : std::string{"not known"};
     };
-    append_line(
-        out, row.number->name,
-        row.differs ? fmt::format("{}; EDS {}", number(row.in_device), number(row.in_eds)) : number(row.in_device));
+    std::string text = number(row.in_device);
+    if (row.differs) text += "; EDS " + number(row.in_eds);
+    if (!row.deviation.empty()) text += "; declared: " + row.deviation;
+    append_line(out, row.number->name, text);
   }
   for (const Difference& difference : comparison.differences) append_difference(out, difference, acceptance, color);
   for (const std::string& line : comparison.unstable) append_line(out, "unstable", line);

@@ -124,7 +124,7 @@ void add_properties(pugi::xml_node suite, const RunReport& run) {
       {"vendor", run.vendor},
       {"product", run.product},
       {"identity", run.read_identity},
-      {"identity_differences", run.identity},
+      {"identity_differences", identity_sentence(run)},
       {"composition", composition_text(run)},
       {"test", level_text(run)},
       {"seed", fmt::format("{}", run.seed)},

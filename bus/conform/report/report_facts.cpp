@@ -52,6 +52,11 @@ std::string composition_text(const RunReport& run) {
   return text;
 }
 
+std::string identity_sentence(const RunReport& run) {
+  if (run.identity_deviation.empty()) return run.identity;
+  return fmt::format("{}; declared: {}", run.identity, run.identity_deviation);
+}
+
 std::vector<std::string> run_problems(const RunReport& run) {
   std::vector<std::string> problems;
   for (const std::string& unused : run.unused_deviations)

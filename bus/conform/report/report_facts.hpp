@@ -47,6 +47,9 @@ namespace edsc::conform {
 /// the program, without LSS, storage`. Empty for a device on a bus.
 [[nodiscard]] std::string composition_text(const RunReport& run);
 
+/// The differences of the identity from the EDS, and the declared reason; empty: none.
+[[nodiscard]] std::string identity_sentence(const RunReport& run);
+
 /// Other reasons for which a run does not pass: unused deviations, values that could not be restored, an early end.
 [[nodiscard]] std::vector<std::string> run_problems(const RunReport& run);
 

@@ -158,7 +158,7 @@ std::string TextReport::summary() const {
   std::string out = run_.cases.empty() ? std::string{} : table();
   out += '\n';
   if (!run_.read_identity.empty()) append_detail(out, "identity", run_.read_identity);
-  append_detail(out, "differs", run_.identity);
+  append_detail(out, "differs", identity_sentence(run_));
   append_detail(out, "causes", causes_sentence(run_));
   for (const Cause& cause : run_.causes()) {
     append_detail(out, "cause", cause.text);
