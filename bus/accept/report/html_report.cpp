@@ -117,7 +117,7 @@ std::string html_report(const Acceptance& acceptance) {
   for (const ComparedEntry& entry : comparison.entries) entries.push_back(entry_view(entry, comparison));
   View view = conform::run_view(acceptance.run, acceptance.sheet);
   view.update({{"accepted_class", objections.empty() ? "passed" : "failed"},
-               {"accepted", objections.empty() ? "accepted" : "not accepted"},
+               {"accepted", headline(acceptance)},
                {"has_objections", !objections.empty()},
                {"objections", objections},
                {"check_sentence", findings_sentence(acceptance.findings)},

@@ -72,8 +72,8 @@ std::string comparison_text(const Acceptance& acceptance, bool color) {
 
 std::string verdict_text(const Acceptance& acceptance, bool color) {
   const std::vector<std::string> objections = acceptance.objections();
-  if (objections.empty()) return colored("accepted", "\x1b[32m", color) + '\n';
-  std::string out = colored("not accepted", "\x1b[1;31m", color) + ":\n";
+  if (objections.empty()) return colored(headline(acceptance), "\x1b[32m", color) + '\n';
+  std::string out = colored(headline(acceptance), "\x1b[1;31m", color) + ":\n";
   for (const std::string& objection : objections) out += fmt::format("  {}\n", printable(objection));
   return out;
 }
