@@ -116,7 +116,8 @@ CaseResult run_case(const CaseRow& row, Dut& dut, RunReport& report) {
   if (std::string reason = why_lost(second, dut); !reason.empty()) end_run(second, std::move(reason), report);
   if (second.verdict == Verdict::failed) return second;
   const auto frames = first.verdict_frames();
-  second.first_run = FirstRun{std::move(first.expected), std::move(first.got), {frames.begin(), frames.end()}};
+  second.first_run = FirstRun{
+      std::move(first.expected), std::move(first.got), {frames.begin(), frames.end()}, std::move(first.failed_frames)};
   if (second.verdict != Verdict::inconclusive) {
     second.reason = fmt::format("failed, and the repetition has the verdict {}", row_of(second.verdict).text);
     second.verdict = Verdict::inconclusive;

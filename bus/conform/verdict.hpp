@@ -1,8 +1,10 @@
 /// Results of a case and of a run, as reports show them.
 #pragma once
 
+#include <canopen/base/abort_code.hpp>
 #include <canopen/base/clock.hpp>
 #include <canopen/can/frame.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -52,11 +54,21 @@ struct SeenFrame {
   bool sent = false;     ///< by the test
 };
 
+/// A write through the default SDO that the device has refused.
+struct RefusedWrite {
+  std::uint16_t index = 0;
+  std::uint8_t sub_index = 0;
+  canopen::AbortCode code{};
+
+  friend bool operator==(const RefusedWrite&, const RefusedWrite&) = default;
+};
+
 /// A failure that a repetition of the case did not confirm.
 struct FirstRun {
   std::string expected;
   std::string got;
-  std::vector<SeenFrame> frames;  ///< until the failure
+  std::vector<SeenFrame> frames;                ///< until the failure
+  std::vector<std::size_t> failed_frames = {};  ///< positions in `frames`, as in CaseResult
 };
 
 struct CaseResult {
@@ -72,6 +84,8 @@ struct CaseResult {
   std::vector<std::string> warnings;         ///< accepted differences from CiA 301
   std::vector<SeenFrame> frames;
   std::optional<std::size_t> until_failure;  ///< number of frames before it; the others restore values
+  std::vector<std::size_t> failed_frames;    ///< positions of the frames that the failed check names, ascending
+  std::vector<RefusedWrite> refused_writes;  ///< of a failure that consists of refused writes
   std::string deviation;                     ///< the reason in the file of deviations
   std::vector<std::string> not_restored;     ///< changed by the case and could not be restored
   std::uint64_t began = 0;                   ///< microseconds since the run began

@@ -37,7 +37,10 @@ json frame_object(const SeenFrame& seen, const Message& message) {
 json first_run_object(const CaseResult& result, const RunReport& run, const Device& sheet) {
   if (!result.first_run) return nullptr;
   const FirstRun& first = *result.first_run;
-  return {{"expected", first.expected}, {"got", first.got}, {"frames", frame_objects(first.frames, run.node, sheet)}};
+  return {{"expected", first.expected},
+          {"got", first.got},
+          {"failed_frames", first.failed_frames},
+          {"frames", frame_objects(first.frames, run.node, sheet)}};
 }
 
 json ids(const std::vector<const CaseResult*>& cases) {
@@ -99,6 +102,7 @@ json case_object(const CaseResult& result, const RunReport& run, const Device& s
           {"lag_us", result.lag},
           {"repeat", repeat_command(run, row)},
           {"first_run", first_run_object(result, run, sheet)},
+          {"failed_frames", result.failed_frames},
           {"frames", frame_objects(result.verdict_frames(), run.node, sheet)}};
 }
 

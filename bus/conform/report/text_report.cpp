@@ -104,23 +104,25 @@ std::string TextReport::of(const CaseResult& result) const {
   append_detail(out, "reason", result.deviation);
   for (const std::string& warning : result.warnings) append_detail(out, "warning", warning);
   for (const std::string& left : result.not_restored) append_detail(out, "not restored", left);
-  if (result.first_run) append_frames(out, "first run", first_run_text(*result.first_run), result.first_run->frames);
+  if (result.first_run)
+    append_frames(out, "first run", first_run_text(*result.first_run), result.first_run->frames,
+                  result.first_run->failed_frames);
   if (result.verdict != Verdict::failed) return out;
   append_detail(out, "clause", row.clause);
   append_detail(out, "expected", result.expected);
   append_detail(out, "got", result.got);
   if (!result.rule.text().empty())
     append_detail(out, "EDS", fmt::format("rule {} of edsc check reports it", result.rule.text()));
-  append_frames(out, "", "", result.verdict_frames());
+  append_frames(out, "", "", result.verdict_frames(), result.failed_frames);
   append_detail(out, "repeat with", repeat_command(run_, row));
   return out;
 }
 
 void TextReport::append_frames(std::string& out, std::string_view name, std::string_view text,
-                               std::span<const SeenFrame> frames) const {
+                               std::span<const SeenFrame> frames, std::span<const std::size_t> named) const {
   append_detail(out, name, text);
   name = "frames";
-  for (const std::string& line : frame_lines(frames, run_.node, sheet_, max_frames)) {
+  for (const std::string& line : frame_lines(frames, run_.node, sheet_, max_frames, named)) {
     append_detail(out, name, line);
     name = "";
   }

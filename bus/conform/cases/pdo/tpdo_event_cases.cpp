@@ -25,7 +25,7 @@ SeenFrame ask(Dut& dut, const Tpdo& tpdo) {
   if (dut.wait_for(tpdo.frames(), to_send, since)) {
     dut.pass_time(silence);
     const std::vector<SeenFrame> all = dut.received_since(since, tpdo.frames());
-    dut.expect(all.size() == 1, fmt::format("one {} after a remote frame", tpdo.name()), frames_text(all));
+    dut.expect(all.size() == 1, fmt::format("one {} after a remote frame", tpdo.name()), frames_text(all), all);
     dut.note_remote_frame_answered();
     return all.front();
   }
@@ -68,7 +68,7 @@ void cause_event(Dut& dut, const Tpdo& tpdo, Event& event) {
 void expect_one_event(Dut& dut, const Tpdo& tpdo, const std::vector<SeenFrame>& frames, const std::string& when) {
   for (std::size_t i = 1; i < frames.size(); ++i) {
     dut.expect(!(frames[i].frame == frames[i - 1].frame), fmt::format("one {} {}", tpdo.name(), when),
-               frames_text(frames));
+               frames_text(frames), frames);
   }
 }
 
@@ -187,7 +187,7 @@ void sends_by_event_timer(Dut& dut) {
     const std::vector<SeenFrame> frames = dut.received_since(since, tpdo.frames());
     dut.expect(frames.size() >= periods,
                fmt::format("{} {} times in {} periods of its event timer", tpdo.name(), periods, periods),
-               frames_text(frames));
+               frames_text(frames), frames);
     expect_period(dut, tpdo, frames, period_us);
     expect_present_data(dut, tpdo, frames.back(), before);
     if (within_limits(dut, tpdo.index, timer_parameter, 0) == 0) {

@@ -13,7 +13,7 @@ namespace {
 bool is_sent_at_sync(Dut& dut, const Tpdo& tpdo, SyncSource& sync, std::uint64_t window_us) {
   const Image before = read_image(dut, tpdo.mapping);
   const std::vector<SeenFrame> frames = sync.send_and_collect(tpdo.frames());
-  dut.expect(frames.size() <= 1, fmt::format("at most one {} after a SYNC", tpdo.name()), frames_text(frames));
+  dut.expect(frames.size() <= 1, fmt::format("at most one {} after a SYNC", tpdo.name()), frames_text(frames), frames);
   if (frames.empty()) return false;
   expect_present_data(dut, tpdo, frames.front(), before);
   if (window_us != 0) {
