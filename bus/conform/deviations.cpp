@@ -45,7 +45,11 @@ std::string set_text(Deviation& deviation, const std::string& text) {
 
 constexpr DeviationMember members[] = {
     {"case", true, "^[0-9]+\\.[0-9]+$", "number of the case, as printed by edsc conform --list", set_case},
-    {"object", false, "^[0-9A-Fa-f]{4}h(:[0-9A-Fa-f]{2})?$",
+    {"object", false,
+     // As parse_entry_address() reads it: the sub-index is decimal after an index with 0x, else hexadecimal.
+     R"(^\s*(0[xX][0-9A-Fa-f]{4}(:(0[xX]0*[0-9A-Fa-f]{1,2}|0*[0-9A-Fa-f]{1,2}[hH]|)"
+     R"(0*([0-9]|[1-9][0-9]|1[0-9]{2}|2[0-4][0-9]|25[0-5])))?|)"
+     R"([0-9A-Fa-f]{4}[hH]?(:(0[xX]0*[0-9A-Fa-f]{1,2}|0*[0-9A-Fa-f]{1,2}[hH]?))?)\s*$)",
      "object or entry for which the failure is expected; if missing, all", set_object},
     {"reason", true, "\\S", "behaviour of the device, and why", set_text<&Deviation::reason>},
     {"source", false, "\\S", "where it is documented: the manual, its page or line", set_text<&Deviation::source>},
