@@ -268,6 +268,8 @@ void confirm(DictionaryReader& reader, Readings& readings, const std::vector<Dif
 
 void compare(LiveBus& bus, const Device& sheet, const DataSheet& data, const ComparisonSettings& settings,
              Comparison& result) {
+  DictionaryReader reader{bus, sheet, settings.node, settings.sdo};
+  reader.on_record = [&result](const conform::SeenFrame& seen) { result.frames.push_back(seen); };
   {
     SdoAccess access{bus, settings.node, settings.sdo};
     const ReadIdentity read = read_identity(access);
@@ -277,7 +279,6 @@ void compare(LiveBus& bus, const Device& sheet, const DataSheet& data, const Com
       return;
     }
   }
-  DictionaryReader reader{bus, sheet, settings.node, settings.sdo};
   Readings readings = reader.read_all(settings.progress);
   Pass first{sheet, data, settings.node, readings};
   first.run();
@@ -301,6 +302,7 @@ void compare(LiveBus& bus, const Device& sheet, const DataSheet& data, const Com
                                           row_of(one.kind).text, one.in_device));
   }
   std::ranges::copy_if(second.differences, std::back_inserter(result.differences), in_first);
+  result.clock = reader.clock();
 }
 
 }  // namespace

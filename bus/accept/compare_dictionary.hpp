@@ -5,11 +5,14 @@
 #include <canopen/can/node_id.hpp>
 #include <cstddef>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "accept/dictionary_reader.hpp"
 #include "accept/difference.hpp"
+#include "conform/dut/case_frames.hpp"
+#include "conform/verdict.hpp"
 #include "device/device.hpp"
 #include "eds/data_sheet.hpp"
 #include "online/identity.hpp"
@@ -24,7 +27,9 @@ struct Comparison {
   std::array<std::string, std::size(identity_numbers)> identity_deviations;
   std::vector<ComparedEntry> entries;  ///< ascending
   std::vector<Difference> differences;
-  std::vector<std::string> unstable;  ///< differences of a first read that a second read did not show
+  std::vector<std::string> unstable;       ///< differences of a first read that a second read did not show
+  std::vector<conform::SeenFrame> frames;  ///< all, with times since the comparison began
+  std::optional<conform::RunClock> clock;  ///< at the end of a complete comparison, for the rest of the run
   bool interrupted = false;
   std::string lost;  ///< why the comparison ended early; empty: it is complete
 

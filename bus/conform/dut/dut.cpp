@@ -84,7 +84,7 @@ std::string milliseconds_text(std::uint64_t time_us) {
 }
 
 Dut::Dut(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const DutSettings& settings)
-    : CaseFrames{bus},
+    : CaseFrames{bus, settings.clock},
       sheet_{sheet},
       stimuli_{stimuli},
       settings_{settings},

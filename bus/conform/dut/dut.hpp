@@ -76,6 +76,7 @@ struct DutSettings {
   std::uint32_t seed = 1;
   /// Findings of `edsc check` in the EDS; std::nullopt if it was not checked.
   std::optional<SheetFindings> findings{};
+  std::optional<RunClock> clock{};  ///< of a run that has begun; std::nullopt: it begins now
 };
 
 class Dut : public CaseFrames {

@@ -145,7 +145,7 @@ class Accept(unittest.TestCase):
     def test_each_planted_difference_has_its_mark(self) -> None:
         self.start_slave()
         result = self.accept("--html", "report.html", "--json", "report.json", "--junit", "report.xml", "--only", "2.1", "--title",
-                             "A <title>", "--operator", "Ada", "--place", "Hall", timeout_ms=SILENCE_MS)
+                             "A <title>", "--operator", "Ada", "--place", "Hall", "--log", "frames.log", timeout_ms=SILENCE_MS)
         self.assertEqual(result.returncode, 1, result.stderr)
         report = self.report()
         self.assertFalse(report["accepted"])
@@ -156,6 +156,7 @@ class Accept(unittest.TestCase):
         for kind in ("object_missing", "sub_index_missing", "not_in_eds", "length", "access", "value", "limit"):
             self.assertEqual({mark for of, mark in marks if of == kind}, {"eds_wrong", "device_wrong", "undecided"}, kind)
         self.check_corrections(differences)
+        self.check_log(report)
         self.check_frames(differences)
         self.check_values(report["comparison"]["entries"])
         self.assertEqual((report["title"], report["operator"], report["place"]), ("A <title>", "Ada", "Hall"))
@@ -176,6 +177,17 @@ class Accept(unittest.TestCase):
                 self.assertEqual(one["corrections"], [])
             if one["mark"] == "eds_wrong":
                 self.assertNotEqual(one["corrections"], [])
+
+    def check_log(self, report: dict) -> None:
+        """The log has each frame of the comparison and of the cases, with its time, in the order of the bus."""
+        lines = re.findall(r"\((\d+)\.(\d{6})\) \S+ ([0-9A-F]{3})#([0-9A-F]*)", (self.folder / "frames.log").read_text(encoding="utf-8"))
+        log = [(int(seconds) * 1_000_000 + int(micro), int(can_id, 16), data) for seconds, micro, can_id, data in lines]
+        self.assertEqual([time for time, _, _ in log], sorted(time for time, _, _ in log))
+        of_differences = [frame for one in report["comparison"]["differences"] for frame in one["frames"]]
+        of_cases = [frame for case in report["conform"]["cases"] for frame in case["frames"]]
+        for frame in of_differences + of_cases:
+            self.assertIn((frame["at_us"], frame["can_id"], frame["data"]), log)
+        self.assertLess(max(frame["at_us"] for frame in of_differences), min(frame["at_us"] for frame in of_cases))
 
     def check_frames(self, differences: list[dict]) -> None:
         """The request and the response of each difference are those of the entry."""
