@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <utility>
 
 #include "conform/report/report_facts.hpp"
@@ -10,15 +12,6 @@
 
 namespace edsc::accept {
 namespace {
-
-/// The area of the cases about the object dictionary.
-constexpr std::string_view dictionary_cases = "4.";
-
-bool covers(const conform::Deviation& deviation, const Difference& difference) {
-  if (!deviation.id.starts_with(dictionary_cases) || !deviation.object) return false;
-  const EntryAddress& object = *deviation.object;
-  return object.index == difference.index && (!object.sub_index || *object.sub_index == difference.sub_index);
-}
 
 /// An identity that no entry of the comparison shows, such as a number of [DeviceInfo] without 1018h.
 bool is_shown(const Comparison& comparison, const IdentityNumber& number) {
@@ -31,9 +24,10 @@ bool is_shown(const Comparison& comparison, const IdentityNumber& number) {
 
 std::vector<IdentityRow> Acceptance::identity() const {
   std::vector<IdentityRow> rows;
-  for (const IdentityNumber& number : identity_numbers) {
-    IdentityRow row{&number, comparison.in_eds.*number.value, comparison.in_device.*number.value, false};
-    row.differs = row.in_eds && row.in_device && row.in_eds != row.in_device;
+  for (std::size_t i = 0; i != std::size(identity_numbers); ++i) {
+    const IdentityNumber& number = identity_numbers[i];
+    IdentityRow row{&number, comparison.in_eds.*number.value, comparison.in_device.*number.value,
+                    comparison.differs(number), comparison.identity_deviations[i]};
     if (row.in_eds || row.in_device) rows.push_back(row);
   }
   return rows;
@@ -45,7 +39,7 @@ std::vector<std::string> Acceptance::objections() const {
   if (!comparison.lost.empty()) list.push_back(fmt::format("the comparison ended early: {}", comparison.lost));
   if (comparison.interrupted) list.emplace_back("the comparison was interrupted");
   for (const IdentityRow& row : identity()) {
-    if (row.differs && !is_shown(comparison, *row.number)) {
+    if (row.differs && row.deviation.empty() && !is_shown(comparison, *row.number)) {
       list.push_back(
           fmt::format("{} {:08X}h differs from the EDS, {:08X}h", row.number->name, *row.in_device, *row.in_eds));
     }
@@ -53,17 +47,14 @@ std::vector<std::string> Acceptance::objections() const {
   if (const std::size_t count = comparison.undeclared(); count > 0) {
     list.push_back(fmt::format("the dictionary of the device and the EDS have {}", counted(count, "difference")));
   }
-  if (!run.passed()) list.push_back(fmt::format("conformance test failed: {}", conform::result_sentence(run)));
+  if (!run.passed()) list.push_back(fmt::format("conformance test failed: {}", conform::verdict_sentence(run)));
   return list;
 }
 
-void apply_deviations(std::span<const conform::Deviation> deviations, Comparison& comparison) {
-  for (Difference& difference : comparison.differences) {
-    const auto found = std::ranges::find_if(
-        deviations, [&](const conform::Deviation& deviation) { return covers(deviation, difference); });
-    if (found == deviations.end()) continue;
-    difference.deviation = found->source.empty() ? found->reason : fmt::format("{} ({})", found->reason, found->source);
-  }
+std::string headline(const Acceptance& acceptance) {
+  if (!acceptance.objections().empty()) return "not accepted";
+  const std::string coverage = conform::coverage_text(acceptance.run);
+  return coverage.empty() ? "accepted" : fmt::format("accepted ({})", coverage);
 }
 
 std::string differences_sentence(const Comparison& comparison) {

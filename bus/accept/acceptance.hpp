@@ -4,13 +4,11 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "accept/compare_dictionary.hpp"
-#include "conform/deviations.hpp"
 #include "conform/verdict.hpp"
 #include "diagnostics/diagnostics.hpp"
 #include "online/identity.hpp"
@@ -22,6 +20,7 @@ struct IdentityRow {
   const IdentityNumber* number = nullptr;
   std::optional<std::uint32_t> in_eds, in_device;
   bool differs = false;
+  std::string deviation;  ///< the reason in the file of deviations; empty: not declared
 };
 
 struct Acceptance {
@@ -35,8 +34,8 @@ struct Acceptance {
   [[nodiscard]] std::vector<std::string> objections() const;
 };
 
-/// Declares differences by the deviations of area 4, the object dictionary, whose object or entry they name.
-void apply_deviations(std::span<const conform::Deviation> deviations, Comparison& comparison);
+/// `accepted`, `accepted (level read: 26 of 207 cases run)`, `not accepted`
+[[nodiscard]] std::string headline(const Acceptance& acceptance);
 
 /// `2 differences: 1 EDS wrong, 1 undecided`; `no difference`; `not complete`
 [[nodiscard]] std::string differences_sentence(const Comparison& comparison);

@@ -15,10 +15,12 @@
 #include "conform/cases/shared/entry_values.hpp"
 #include "conform/cases/shared/product_values.hpp"
 #include "device/entry_text.hpp"
+#include "diagnostics/diagnostics.hpp"
 #include "online/interruption.hpp"
 #include "text/counted.hpp"
 #include "values/append.hpp"
 #include "values/little_endian.hpp"
+#include "values/read_value.hpp"
 
 namespace edsc::accept {
 namespace {
@@ -41,6 +43,15 @@ std::string access_name(const LiveEntry& entry) { return std::string{canopen::ro
 
 bool has_type_length(const LiveEntry& entry, const SdoOutcome& outcome) {
   return entry.type->bits == 0 || !outcome.size_told || outcome.bytes.size() == bytes_for(entry.type->bits);
+}
+
+/// A value as the EDS has it, and what a formula is for this node: `$NODEID+0x620 (00000625h)`.
+std::string written_text(std::string text, const LiveEntry& entry, canopen::NodeId node) {
+  if (text.find('$') == std::string::npos || entry.type->bits == 0) return text;
+  Diagnostics ignored;
+  const auto number = parse_value({text, {}, true}, *entry.type, node.value(), ignored);
+  if (!number) return text;
+  return fmt::format("{} ({})", text, value_of(entry, bytes_of(number->bits, bytes_for(entry.type->bits))));
 }
 
 /// The value that the device sent, or the reason why it sent none.
@@ -110,7 +121,7 @@ class Pass {
     if (const auto value = eds_value(entry)) {
       row.default_value = value_of(entry, *value);
     } else if (const auto written = written_value(data_, *object_of(reading), entry.sub_index)) {
-      row.default_value = *written;  // edsc itself uses the value of CiA 301
+      row.default_value = written_text(*written, entry, node_);  // edsc itself uses the value of CiA 301
     }
     return row;
   }
@@ -257,6 +268,8 @@ void confirm(DictionaryReader& reader, Readings& readings, const std::vector<Dif
 
 void compare(LiveBus& bus, const Device& sheet, const DataSheet& data, const ComparisonSettings& settings,
              Comparison& result) {
+  DictionaryReader reader{bus, sheet, settings.node, settings.sdo};
+  reader.on_record = [&result](const conform::SeenFrame& seen) { result.frames.push_back(seen); };
   {
     SdoAccess access{bus, settings.node, settings.sdo};
     const ReadIdentity read = read_identity(access);
@@ -266,7 +279,6 @@ void compare(LiveBus& bus, const Device& sheet, const DataSheet& data, const Com
       return;
     }
   }
-  DictionaryReader reader{bus, sheet, settings.node, settings.sdo};
   Readings readings = reader.read_all(settings.progress);
   Pass first{sheet, data, settings.node, readings};
   first.run();
@@ -290,6 +302,7 @@ void compare(LiveBus& bus, const Device& sheet, const DataSheet& data, const Com
                                           row_of(one.kind).text, one.in_device));
   }
   std::ranges::copy_if(second.differences, std::back_inserter(result.differences), in_first);
+  result.clock = reader.clock();
 }
 
 }  // namespace
@@ -300,6 +313,11 @@ std::size_t Comparison::count(Mark mark) const {
 
 std::size_t Comparison::undeclared() const {
   return static_cast<std::size_t>(std::ranges::count(differences, false, &Difference::is_declared));
+}
+
+bool Comparison::differs(const IdentityNumber& number) const {
+  const auto &stated = in_eds.*number.value, &found = in_device.*number.value;
+  return stated && found && *stated != *found;
 }
 
 Comparison compare_dictionary(LiveBus& bus, const Device& sheet, const DataSheet& data,

@@ -159,6 +159,24 @@ std::optional<std::uint16_t> profile_of(const Facts& facts) {
   return profile == static_cast<std::uint16_t>(entry->default_value->bits) ? std::optional{profile} : std::nullopt;
 }
 
+/// The profile that the device states, and what it says about the value of this entry.
+struct ProfileRow {
+  const MeaningProfile* profile = nullptr;
+  const ProfileObject* object = nullptr;
+};
+
+/// Nothing for sub-index 0 and FFh of an object with sub-indices, and where the elements of an object differ.
+std::optional<ProfileRow> profile_row(const Facts& facts) {
+  const auto number = profile_of(facts);
+  const MeaningProfile* const profile = number ? find_profile(*number) : nullptr;
+  const ProfileObject* const row = profile != nullptr ? profile->find(profile->place_of(facts.index()).index) : nullptr;
+  if (row == nullptr || row->type == nullptr) return std::nullopt;
+  const bool has_sub_indices = facts.object != nullptr && facts.object->has_sub_indices();
+  if (row->has_sub_indices() != has_sub_indices) return std::nullopt;
+  if (has_sub_indices && (facts.sub_index() == 0 || facts.sub_index() == 0xFF)) return std::nullopt;
+  return ProfileRow{profile, row};
+}
+
 std::optional<RequiredType> required_type(const Facts& facts) {
   const bool has_sub_indices = facts.object != nullptr && facts.object->has_sub_indices();
   if (has_sub_indices && facts.sub_index() == 0)
@@ -168,11 +186,9 @@ std::optional<RequiredType> required_type(const Facts& facts) {
   if (const StandardEntry* const entry = standard_entry(facts)) {
     return RequiredType{row_of(entry->type), clause_of(*standard_object(facts))};
   }
-  const auto number = profile_of(facts);
-  const MeaningProfile* const profile = number ? find_profile(*number) : nullptr;
-  const ProfileObject* const row = profile != nullptr ? profile->find(facts.index()) : nullptr;
-  if (row == nullptr || row->type == nullptr) return std::nullopt;
-  return RequiredType{row->type, fmt::format("CiA {}", profile->number)};
+  const auto row = profile_row(facts);
+  if (!row) return std::nullopt;
+  return RequiredType{row->object->type, fmt::format("CiA {}", row->profile->number)};
 }
 
 // ---- evidence ----
@@ -298,16 +314,32 @@ bool device_is_write_only(const Facts& facts) {
   return facts.reading.outcome.end == SdoEnd::refused && facts.reading.outcome.code == AbortCode::write_only;
 }
 
-bool standard_allows_device(const Facts& facts) {
-  return standard_entry(facts)->access.has(Access::wo) == device_is_write_only(facts);
+/// Whether a standard allows the access of each. A read shows of the device only whether it is write-only.
+struct AllowedAccess {
+  bool of_eds = false, of_device = false;
+};
+
+/// Nothing if neither CiA 301 nor the profile defines the access.
+std::optional<AllowedAccess> allowed_access(const Facts& facts) {
+  const Access of_eds = facts.reading.entry.entry->access;
+  const bool is_write_only = device_is_write_only(facts);
+  if (const StandardEntry* const entry = standard_entry(facts)) {
+    return AllowedAccess{entry->access.has(of_eds), entry->access.has(Access::wo) == is_write_only};
+  }
+  const auto row = profile_row(facts);
+  if (!row) return std::nullopt;
+  const bool may_be_write_only = fits(row->object->use, Access::wo);
+  return AllowedAccess{fits(row->object->use, of_eds),
+                       is_write_only ? may_be_write_only : canopen::readable(row->object->access)};
 }
+
 bool standard_has_access_of_eds(const Facts& facts) {
-  const StandardEntry* const entry = standard_entry(facts);
-  return entry != nullptr && entry->access.has(facts.reading.entry.entry->access) && !standard_allows_device(facts);
+  const auto allowed = allowed_access(facts);
+  return allowed && allowed->of_eds && !allowed->of_device;
 }
 bool standard_has_access_of_device(const Facts& facts) {
-  const StandardEntry* const entry = standard_entry(facts);
-  return entry != nullptr && !entry->access.has(facts.reading.entry.entry->access) && standard_allows_device(facts);
+  const auto allowed = allowed_access(facts);
+  return allowed && !allowed->of_eds && allowed->of_device;
 }
 
 /// The number of [DeviceInfo] that 1018h has too; 0: none.
@@ -382,8 +414,9 @@ bool is_default_outside_limits(const Facts& facts) {
 
 std::string new_access(const Facts& facts) {
   if (device_is_write_only(facts)) return "wo";
-  const StandardEntry* const entry = standard_entry(facts);
-  return entry == nullptr || entry->access.has(Access::rw) ? "rw" : "ro";
+  if (const StandardEntry* const entry = standard_entry(facts)) return entry->access.has(Access::rw) ? "rw" : "ro";
+  const auto row = profile_row(facts);
+  return std::string{canopen::row_of(row ? row->object->access : Access::rw).name};
 }
 Corrections set_access(const Facts& facts) {
   return {key_of(facts, "AccessType", &EntryDescription::access_type, new_access(facts))};
@@ -487,9 +520,9 @@ constexpr Decision decision_rows[] = {
     {Kind::length, "free-type", "none: no standard defines the data type", undecided, always,
      "no standard defines the data type of {entry}; the frames do not show which length is intended", set_type_of_size},
 
-    {Kind::access, "standard-access", "CiA 301 allows the access of the EDS and excludes the access of the device", device_wrong, standard_has_access_of_eds,
+    {Kind::access, "standard-access", "CiA 301 or the profile allows the access of the EDS and excludes the access of the device", device_wrong, standard_has_access_of_eds,
      "{clause} allows the access of the EDS, {eds}, and not the access of the device"},
-    {Kind::access, "eds-access", "CiA 301 excludes the access of the EDS and allows the access of the device", eds_wrong, standard_has_access_of_device,
+    {Kind::access, "eds-access", "CiA 301 or the profile excludes the access of the EDS and allows the access of the device", eds_wrong, standard_has_access_of_device,
      "{clause} does not allow the access of the EDS, {eds}, and allows the access of the device", set_access},
     {Kind::access, "free-access", "none: no standard defines the access", undecided, always,
      "no standard defines the access of {entry}; the frames do not show which is intended", set_access},
@@ -556,6 +589,9 @@ std::string clause_of(const Facts& facts) {
   if (const CobIdParameter* const parameter = find_cob_id_parameter(facts.index(), facts.sub_index());
       parameter != nullptr && facts.kind == Kind::value) {
     return fmt::format("CiA 301, {}", parameter->clause);
+  }
+  if (facts.kind == Kind::access && standard_entry(facts) == nullptr) {
+    if (const auto row = profile_row(facts)) return fmt::format("CiA {}", row->profile->number);
   }
   const bool is_count = facts.kind == Kind::sub_index_missing && facts.sub_index() == 0;
   const StandardObject* const standard = find_standard_object(facts.index());

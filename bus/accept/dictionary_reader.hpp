@@ -41,6 +41,8 @@ class DictionaryReader : private conform::CaseFrames {
  public:
   DictionaryReader(LiveBus& bus, const Device& sheet, canopen::NodeId node, SdoSettings settings);
 
+  using CaseFrames::clock;
+  using CaseFrames::on_record;
   using Progress = std::function<void(std::size_t done, std::size_t of)>;
 
   /// Reads each entry of the EDS, also write-only ones, unless its ObjFlags exclude it; the sub-indices up to sub-index

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <iterator>
 #include <set>
 #include <string_view>
 #include <utility>
 
+#include "conform/named_entries.hpp"
 #include "device/device.hpp"
 #include "diagnostics/place.hpp"
 #include "json/json_file.hpp"
@@ -43,7 +45,11 @@ std::string set_text(Deviation& deviation, const std::string& text) {
 
 constexpr DeviationMember members[] = {
     {"case", true, "^[0-9]+\\.[0-9]+$", "number of the case, as printed by edsc conform --list", set_case},
-    {"object", false, "^[0-9A-Fa-f]{4}h(:[0-9A-Fa-f]{2})?$",
+    {"object", false,
+     // As parse_entry_address() reads it: the sub-index is decimal after an index with 0x, else hexadecimal.
+     R"(^\s*(0[xX][0-9A-Fa-f]{4}(:(0[xX]0*[0-9A-Fa-f]{1,2}|0*[0-9A-Fa-f]{1,2}[hH]|)"
+     R"(0*([0-9]|[1-9][0-9]|1[0-9]{2}|2[0-4][0-9]|25[0-5])))?|)"
+     R"([0-9A-Fa-f]{4}[hH]?(:(0[xX]0*[0-9A-Fa-f]{1,2}|0*[0-9A-Fa-f]{1,2}[hH]?))?)\s*$)",
      "object or entry for which the failure is expected; if missing, all", set_object},
     {"reason", true, "\\S", "behaviour of the device, and why", set_text<&Deviation::reason>},
     {"source", false, "\\S", "where it is documented: the manual, its page or line", set_text<&Deviation::source>},
@@ -126,20 +132,6 @@ class DeviationsReader {
   std::vector<Deviation> deviations_;
 };
 
-/// The entries that a text names as `1800h:02`.
-std::vector<EntryAddress> entries_in(std::string_view text) {
-  constexpr std::size_t label_size = std::string_view{"1800h:02"}.size();
-  std::vector<EntryAddress> entries;
-  for (std::size_t colon = text.find("h:"); colon != std::string_view::npos; colon = text.find("h:", colon + 1)) {
-    if (colon < 4) continue;
-    const bool begins = colon == 4 || !is_hex_digit(text[colon - 5]);
-    const std::string_view label = text.substr(colon - 4, label_size);
-    const auto address = begins && label.size() == label_size ? parse_entry_address(label) : std::nullopt;
-    if (address) entries.push_back(*address);
-  }
-  return entries;
-}
-
 bool covers(const EntryAddress& declared, const EntryAddress& entry) {
   return declared.index == entry.index && (!declared.sub_index || declared.sub_index == entry.sub_index);
 }
@@ -150,13 +142,23 @@ bool applies(const Deviation& deviation, const CaseResult& result, const std::ve
   return std::ranges::any_of(named, [&](const EntryAddress& entry) { return covers(*deviation.object, entry); });
 }
 
-std::string reason_of(const Deviation& deviation) {
-  return deviation.source.empty() ? deviation.reason : fmt::format("{} ({})", deviation.reason, deviation.source);
+/// The case that compares the constants of 1000h to 1FFFh, of which the identity is a part.
+constexpr std::string_view constants_case = "4.2";
+
+void append_reason(std::string& text, std::set<std::string>& reasons, const Deviation& deviation) {
+  const std::string reason = reason_of(deviation);
+  if (!reasons.insert(reason).second) return;
+  if (!text.empty()) text += "; ";
+  text += reason;
 }
 
 }  // namespace
 
 std::span<const DeviationMember> deviation_members() { return members; }
+
+std::string reason_of(const Deviation& deviation) {
+  return deviation.source.empty() ? deviation.reason : fmt::format("{} ({})", deviation.reason, deviation.source);
+}
 
 std::vector<Deviation> read_deviations(const SourceFile& source, Diagnostics& diagnostics) {
   return DeviationsReader{source, diagnostics}.read();
@@ -178,16 +180,28 @@ void apply_deviations(std::span<const Deviation> deviations, CaseResult& result)
   if (declared.empty() || (knows_each && !std::ranges::all_of(named, is_declared))) return;
   result.verdict = Verdict::deviates;
   std::set<std::string> reasons;
-  for (const Deviation* row : declared) {
-    const std::string reason = reason_of(*row);
-    if (!reasons.insert(reason).second) continue;
-    if (!result.deviation.empty()) result.deviation += "; ";
-    result.deviation += reason;
+  for (const Deviation* row : declared) append_reason(result.deviation, reasons, *row);
+}
+
+void apply_deviations(std::span<Deviation> deviations, RunReport& run) {
+  std::string text;
+  std::set<std::string> reasons;
+  std::size_t declared = 0;
+  for (const EntryAddress& entry : run.identity_entries) {
+    bool is_declared = false;
+    for (Deviation& deviation : deviations) {
+      if (deviation.id != constants_case || !deviation.object || !covers(*deviation.object, entry)) continue;
+      deviation.is_used = is_declared = true;
+      append_reason(text, reasons, deviation);
+    }
+    if (is_declared) ++declared;
   }
+  if (declared == run.identity_entries.size()) run.identity_deviation = text;
 }
 
 void find_unused_deviations(std::span<const Deviation> deviations, RunReport& run) {
   for (const Deviation& deviation : deviations) {
+    if (deviation.is_used) continue;
     const auto found =
         std::ranges::find_if(run.cases, [&](const CaseResult& result) { return result.row->id == deviation.id; });
     if (found == run.cases.end() || found->verdict != Verdict::passed) continue;

@@ -18,8 +18,9 @@ struct Deviation {
   std::string id;                      ///< of the case: `3.7`
   std::optional<EntryAddress> object;  ///< restricts the deviation to this object or entry
   std::string reason;
-  std::string source;  ///< `manual, page 12`; may be empty
-  Position position;   ///< in the SourceFile, which must outlive this
+  std::string source;    ///< `manual, page 12`; may be empty
+  Position position;     ///< in the SourceFile, which must outlive this
+  bool is_used = false;  ///< it covers a difference of the object dictionary or of the identity
 };
 
 /// A member of a declaration in the file. Each is a text.
@@ -42,7 +43,13 @@ struct DeviationMember {
 /// failure that names only other entries. If the case tries many entries, each that failed must be declared.
 void apply_deviations(std::span<const Deviation> deviations, CaseResult& result);
 
-/// Fills `unused_deviations` with the declarations whose case passed.
+/// Declares the differences of the identity if deviations of the case that compares these constants cover each of them.
+void apply_deviations(std::span<Deviation> deviations, RunReport& run);
+
+/// Fills `unused_deviations` with the declarations whose case passed, unless they cover another difference.
 void find_unused_deviations(std::span<const Deviation> deviations, RunReport& run);
+
+/// The reason with its source: `at every SYNC (manual, page 12)`.
+[[nodiscard]] std::string reason_of(const Deviation& deviation);
 
 }  // namespace edsc::conform

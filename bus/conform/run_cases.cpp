@@ -1,6 +1,7 @@
 #include "conform/run_cases.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -12,17 +13,19 @@
 namespace edsc::conform {
 namespace {
 
-/// The first option that the case needs and the run does not have; empty: none.
+/// The options that the case needs and the run does not have: `needs --level communication, --store and --outputs`;
+/// empty: none.
 std::string missing_permission(const CaseRow& row, const DutSettings& settings) {
-  if (row.level > settings.level) {
-    return fmt::format("needs --level {}", row_of(row.level).name);
-  }
+  std::vector<std::string> missing;
+  if (row.level > settings.level) missing.push_back(fmt::format("--level {}", row_of(row.level).name));
   for (const PermissionRow& option : permission_options) {
-    if (includes(row.needs, option.permission) && !includes(settings.permissions, option.permission)) {
-      return fmt::format("needs {}", option.option);
-    }
+    if (row.level >= Level::all || includes(settings.permissions, option.permission)) continue;
+    if (includes(row.needs, option.permission)) missing.emplace_back(option.option);
   }
-  return {};
+  if (missing.empty()) return {};
+  const std::string last = std::move(missing.back());
+  missing.pop_back();
+  return missing.empty() ? "needs " + last : fmt::format("needs {} and {}", fmt::join(missing, ", "), last);
 }
 
 bool is_selected(const CaseRow& row, const std::vector<std::string>& only) {
@@ -113,7 +116,8 @@ CaseResult run_case(const CaseRow& row, Dut& dut, RunReport& report) {
   if (std::string reason = why_lost(second, dut); !reason.empty()) end_run(second, std::move(reason), report);
   if (second.verdict == Verdict::failed) return second;
   const auto frames = first.verdict_frames();
-  second.first_run = FirstRun{std::move(first.expected), std::move(first.got), {frames.begin(), frames.end()}};
+  second.first_run = FirstRun{
+      std::move(first.expected), std::move(first.got), {frames.begin(), frames.end()}, std::move(first.failed_frames)};
   if (second.verdict != Verdict::inconclusive) {
     second.reason = fmt::format("failed, and the repetition has the verdict {}", row_of(second.verdict).text);
     second.verdict = Verdict::inconclusive;
@@ -160,9 +164,36 @@ void refuse_enabled_drive(SdoAccess& node, const Device& sheet, const Identity& 
                   settings.node.value(), reason)};
 }
 
-/// Reads the identity of the device. Returns false if the run cannot begin: the device does not respond in time, or two
-/// devices respond.
-bool find_device(LiveBus& bus, const Device& sheet, const DutSettings& settings, Dut& dut, RunReport& report) {
+/// The numbers that both state and that differ.
+std::vector<IdentityNumber> differing_numbers(const Identity& stated, const Identity& found) {
+  std::vector<IdentityNumber> numbers;
+  for (const IdentityNumber& number : identity_numbers) {
+    const auto &in_eds = stated.*number.value, &in_device = found.*number.value;
+    if (in_eds && in_device && *in_eds != *in_device) numbers.push_back(number);
+  }
+  return numbers;
+}
+
+/// Why the run must not write to the device: it is another product. Empty: it may. Nothing can be damaged in simulated
+/// time.
+std::string why_not_written(const Identity& stated, const Identity& found, const RunSettings& settings,
+                            const RunReport& report) {
+  const bool writes = settings.dut.level != Level::read || settings.dut.permissions != Permission::none;
+  if (!writes || settings.force || settings.dut.simulated) return {};
+  const auto numbers = differing_numbers(stated, found);
+  const bool is_other_product = std::ranges::any_of(numbers, [](const IdentityNumber& number) {
+    return number.value == &Identity::vendor_id || number.value == &Identity::product_code;
+  });
+  if (!is_other_product) return {};
+  return fmt::format(
+      "node {} is not the device of {}: {}; nothing was written; --level read only reads, --force writes anyway",
+      report.node, report.sheet, report.identity);
+}
+
+/// Reads the identity of the device. Returns false if the run cannot begin: the device does not respond in time, two
+/// devices respond, or it is another product.
+bool find_device(LiveBus& bus, const Device& sheet, const RunSettings& run, Dut& dut, RunReport& report) {
+  const DutSettings& settings = run.dut;
   SdoAccess access{bus, settings.node, settings.sdo};
   if (access.upload(device_type, 0).end == SdoEnd::no_answer) {
     report.lost = fmt::format("node {} does not respond within {} ms", settings.node.value(), settings.sdo.timeout_ms);
@@ -180,7 +211,13 @@ bool find_device(LiveBus& bus, const Device& sheet, const DutSettings& settings,
   }
   const Identity found = read_identity(access).identity;
   report.read_identity = identity_text(found);
-  report.identity = identity_differences(identity_of(sheet), found);
+  const Identity stated = identity_of(sheet);
+  report.identity = identity_differences(stated, found);
+  for (const IdentityNumber& number : differing_numbers(stated, found)) {
+    report.identity_entries.push_back({number.index, number.sub_index});
+  }
+  report.lost = why_not_written(stated, found, run, report);
+  if (!report.lost.empty()) return false;
   refuse_enabled_drive(access, sheet, found, settings);
   return true;
 }
@@ -191,13 +228,14 @@ void run_cases(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const RunSet
   report.node = settings.dut.node.value();
   report.level = settings.dut.level;
   report.permissions = settings.dut.permissions;
+  report.force = settings.force;
   report.seed = settings.dut.seed;
   std::vector<const CaseRow*> rows = all_cases();
   std::erase_if(rows, [&](const CaseRow* row) { return !is_selected(*row, settings.only); });
   try {
     Dut dut{bus, sheet, stimuli, settings.dut};
     dut.on_record = [&report](const SeenFrame& seen) { report.frames.push_back(seen); };
-    if (!find_device(bus, sheet, settings.dut, dut, report)) return;
+    if (!find_device(bus, sheet, settings, dut, report)) return;
     try {
       report.not_restored = dut.find_state();
       run_selected(rows, dut, settings, report);

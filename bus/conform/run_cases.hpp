@@ -15,6 +15,7 @@ namespace edsc::conform {
 
 struct RunSettings {
   DutSettings dut;
+  bool force = false;             ///< also writes a device with another vendor-ID or product code than the EDS
   std::vector<std::string> only;  ///< patterns such as `3.*`; empty: all cases
   /// Before each case.
   std::function<void(const CaseRow& row, std::size_t done, std::size_t of)> began = [](const CaseRow&, std::size_t,

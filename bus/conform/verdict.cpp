@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "device/device.hpp"
+#include "online/sdo_access.hpp"
 #include "text/ascii.hpp"
 
 namespace edsc::conform {
@@ -48,6 +50,26 @@ std::string cause_text(const CaseResult& root) {
   return fmt::format("{} {}: {}", root.row->id, root.row->title, root.got);
 }
 
+/// Whether a failure consists of refused writes that are a part of another failure.
+bool is_part_of(const CaseResult& failed, const CaseResult& other) {
+  return !failed.refused_writes.empty() && std::ranges::all_of(failed.refused_writes, [&](const RefusedWrite& write) {
+    return std::ranges::find(other.refused_writes, write) != other.refused_writes.end();
+  });
+}
+
+/// `the device refuses to write 1015h:00: 0601 0002h, write of a read-only object`
+std::string refused_text(const CaseResult& root) {
+  constexpr std::size_t max_named = 5;
+  std::string text;
+  const std::size_t count = root.refused_writes.size();
+  for (std::size_t i = 0; i != std::min(count, max_named); ++i) {
+    const RefusedWrite& write = root.refused_writes[i];
+    fmt::format_to(std::back_inserter(text), "{}{}: {}", text.empty() ? "the device refuses to write " : "; ",
+                   entry_label(write.index, write.sub_index), abort_text(write.code));
+  }
+  return count <= max_named ? text : fmt::format("{}; and {} more", text, count - max_named);
+}
+
 }  // namespace
 
 std::vector<Cause> RunReport::causes() const {
@@ -57,13 +79,15 @@ std::vector<Cause> RunReport::causes() const {
     if (result.verdict != Verdict::failed) continue;
     const CaseResult& root = root_of(cases, result);
     const auto has_same_cause = [&](const CaseResult* other) {
-      return other == &root || (!root.rule.text().empty() && other->rule.text() == root.rule.text());
+      return other == &root || (!root.rule.text().empty() && other->rule.text() == root.rule.text()) ||
+             is_part_of(root, *other);
     };
     const auto number = static_cast<std::size_t>(std::ranges::find_if(roots, has_same_cause) - roots.begin());
     if (number == roots.size()) {
       roots.push_back(&root);
       found.push_back({cause_text(root), {}});
     }
+    if (roots[number] != &root && is_part_of(root, *roots[number])) found[number].text = refused_text(*roots[number]);
     found[number].cases.push_back(&result);
   }
   return found;
@@ -102,6 +126,7 @@ std::string repeat_command(const RunReport& run, const CaseRow& row) {
     if (level >= Level::all || !includes(permissions, permission.permission)) continue;
     fmt::format_to(std::back_inserter(command), " {}", permission.option);
   }
+  if (run.force) command += " --force";
   fmt::format_to(std::back_inserter(command), " --only {} --seed {}", row.id, run.seed);
   return command;
 }

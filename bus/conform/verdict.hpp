@@ -1,8 +1,10 @@
 /// Results of a case and of a run, as reports show them.
 #pragma once
 
+#include <canopen/base/abort_code.hpp>
 #include <canopen/base/clock.hpp>
 #include <canopen/can/frame.hpp>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -52,11 +54,21 @@ struct SeenFrame {
   bool sent = false;     ///< by the test
 };
 
+/// A write through the default SDO that the device has refused.
+struct RefusedWrite {
+  std::uint16_t index = 0;
+  std::uint8_t sub_index = 0;
+  canopen::AbortCode code{};
+
+  friend bool operator==(const RefusedWrite&, const RefusedWrite&) = default;
+};
+
 /// A failure that a repetition of the case did not confirm.
 struct FirstRun {
   std::string expected;
   std::string got;
-  std::vector<SeenFrame> frames;  ///< until the failure
+  std::vector<SeenFrame> frames;                ///< until the failure
+  std::vector<std::size_t> failed_frames = {};  ///< positions in `frames`, as in CaseResult
 };
 
 struct CaseResult {
@@ -72,6 +84,8 @@ struct CaseResult {
   std::vector<std::string> warnings;         ///< accepted differences from CiA 301
   std::vector<SeenFrame> frames;
   std::optional<std::size_t> until_failure;  ///< number of frames before it; the others restore values
+  std::vector<std::size_t> failed_frames;    ///< positions of the frames that the failed check names, ascending
+  std::vector<RefusedWrite> refused_writes;  ///< of a failure that consists of refused writes
   std::string deviation;                     ///< the reason in the file of deviations
   std::vector<std::string> not_restored;     ///< changed by the case and could not be restored
   std::uint64_t began = 0;                   ///< microseconds since the run began
@@ -97,6 +111,12 @@ struct MissingCondition {
   std::vector<const CaseResult*> cases;
 };
 
+/// A file that a run uses.
+struct InputFile {
+  std::string path;  ///< as it was given or found; empty: there is none
+  std::string hash;  ///< SHA-256, hexadecimal digits; empty if the file cannot be read again, such as standard input
+};
+
 /// The results of a run, as its reports show them.
 struct RunReport {
   std::string title;          ///< of the report, as the user gives it; may be empty
@@ -106,15 +126,20 @@ struct RunReport {
   std::int64_t started = 0;   ///< seconds since 1970-01-01 00:00 UTC; 0: not known
   std::string bus;            ///< the address
   std::uint8_t node = 0;
-  std::string sheet;            ///< path as it was given
-  std::string options;          ///< path of the options file if it was given
-  std::string sheet_hash;       ///< SHA-256 of the file, hexadecimal digits
-  std::string product, vendor;  ///< as in the EDS
-  std::string identity;         ///< differences from the EDS; empty: none
-  std::string read_identity;    ///< as read from the device: `vendor-ID 0000 0319h, product code ...`
+  std::string sheet;       ///< path as it was given
+  std::string options;     ///< path of the options file if it was given
+  std::string sheet_hash;  ///< SHA-256 of the file, hexadecimal digits
+  InputFile options_file;  ///< that was used: the one that was given, or the one beside the EDS
+  InputFile deviations_file;
+  std::string product, vendor;                 ///< as in the EDS
+  std::string identity;                        ///< differences from the EDS; empty: none
+  std::vector<EntryAddress> identity_entries;  ///< the entries of the numbers that differ
+  std::string identity_deviation;              ///< why all of them are declared; empty: they are not
+  std::string read_identity;                   ///< as read from the device: `vendor-ID 0000 0319h, product code ...`
   std::optional<SimulatedComposition> composition;  ///< of a simulated device
   Level level = Level::read;
   Permission permissions = Permission::none;
+  bool force = false;  ///< also a device with another vendor-ID or product code than the EDS is written
   std::uint32_t seed = 0;
   std::string version;  ///< of edsc
   std::vector<CaseResult> cases;

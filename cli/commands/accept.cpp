@@ -49,6 +49,8 @@ int run_accept(const Settings& settings) {
   return with_bus(settings.bus, [&](LiveBus& bus) {
     test->report.node = settings.node;
     accept::Acceptance acceptance{test->findings, test->sheet(), test->report, compare_dictionaries(bus, *test)};
+    test->report.frames = acceptance.comparison.frames;
+    test->run.dut.clock = acceptance.comparison.clock;
     const bool color = settings.color.on(stdout);
     write_output(accept::comparison_text(acceptance, color));
     flush_output();

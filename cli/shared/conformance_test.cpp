@@ -43,22 +43,29 @@ class CommandStimuli final : public conform::Stimuli {
     }
   }
 
-  void begin_case(std::string_view id) override { case_ = id; }
+  void begin_case(std::string_view id) override {
+    case_ = id;
+    failed_ = false;
+  }
   bool set(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) override { return run("change"); }
   bool emergency(std::uint16_t, std::uint8_t) override { return run("error"); }
   bool emergency_over(std::uint8_t) override { return run("error_over"); }
   bool power_cycle() override { return run("power_cycle"); }
+  [[nodiscard]] bool command_failed() const override { return failed_; }
 
  private:
   /// The command gets the requested stimulus in EDSC_STIMULUS.
   bool run(const char* what) {
     const auto found = commands_.find(case_);
     if (found == commands_.end()) return false;
-    return run_command_line(found->second, "EDSC_STIMULUS", what);
+    const bool succeeds = run_command_line(found->second, "EDSC_STIMULUS", what);
+    failed_ = !succeeds;
+    return succeeds;
   }
 
   std::map<std::string, std::string, std::less<>> commands_;
   std::string case_;
+  bool failed_ = false;
 };
 
 /// A simulated device receives stimuli through its program.
@@ -117,6 +124,8 @@ std::string hash_of_file(const std::string& path) {
   return conform::sha256({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
+conform::InputFile input_file(const std::string& path) { return {path, hash_of_file(path)}; }
+
 /// Returns false if the file has an error, which is printed.
 bool load_deviations(const ConformanceSettings& settings, DeclaredDeviations& declared) {
   if (settings.deviations.empty()) return true;
@@ -148,12 +157,15 @@ std::unique_ptr<ConformanceTest> prepare_conformance_test(const ConformanceSetti
   run.dut.level = std::ranges::find(conform::levels, settings.level, &conform::LevelRow::name)->level;
   run.dut.permissions = permissions_of(settings, run.dut.level);
   run.dut.seed = settings.seed;
+  run.force = settings.force;
   run.only = settings.only;
   RunReport& report = test->report;
   report.bus = settings.bus;
   report.sheet = settings.sheet;
   report.options = settings.options;
   report.sheet_hash = hash_of_file(settings.sheet);
+  if (test->loaded->options_source) report.options_file = input_file(test->loaded->options_source->name());
+  if (!settings.deviations.empty()) report.deviations_file = input_file(settings.deviations);
   report.product = test->sheet().product_name;
   report.vendor = test->sheet().vendor_name;
   report.version = EDSC_VERSION;
@@ -194,6 +206,7 @@ void run_conformance_test(LiveBus& bus, const ConformanceSettings& settings, Con
     flush_output();
   };
   conform::run_cases(bus, test.sheet(), *stimuli, run, report);
+  conform::apply_deviations(test.deviations.all, report);
   conform::find_unused_deviations(test.deviations.all, report);
   progress.hide();
   write_output(text.summary());
@@ -214,6 +227,7 @@ void add_conformance_options(Command command, ConformanceSettings& settings) {
   command.add_flag("--store", settings.store, "1010h and 1011h, then restore the original values");
   command.add_flag("--application", settings.application);
   command.add_flag("--outputs", settings.outputs);
+  command.add_flag("--force", settings.force, "the device has another vendor-ID or product code");
   command.add_option("--only", settings.only)
       .one_value_each()
       .check([](const std::string& pattern) {

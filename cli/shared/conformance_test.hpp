@@ -22,6 +22,7 @@ struct ConformanceSettings : NodeSettings {
   std::string options;
   std::string level = "read";
   bool store = false, application = false, outputs = false;
+  bool force = false;
   std::vector<std::string> only;
   std::vector<std::string> stimuli;
   std::string deviations, log;

@@ -26,16 +26,18 @@ View number_view(const std::optional<std::uint32_t>& number) {
 View identity_view(const Acceptance& acceptance) {
   View rows = View::array();
   for (const IdentityRow& row : acceptance.identity()) {
-    const bool compared = row.in_eds && row.in_device;
+    const bool compared = row.in_eds && row.in_device, is_declared = !row.deviation.empty();
     rows.push_back({{"number", row.number->name},
                     {"in_eds", number_view(row.in_eds)},
                     {"in_device", number_view(row.in_device)},
-                    {"identity_class", row.differs ? "failed"
-                                       : compared  ? "passed"
-                                                   : "other"},
-                    {"identity_result", row.differs ? "differs"
-                                        : compared  ? "same"
-                                                    : "not compared"}});
+                    {"identity_class", is_declared   ? "deviates"
+                                       : row.differs ? "failed"
+                                       : compared    ? "passed"
+                                                     : "other"},
+                    {"identity_result", is_declared   ? "differs; declared: " + row.deviation
+                                        : row.differs ? "differs"
+                                        : compared    ? "same"
+                                                      : "not compared"}});
   }
   return rows;
 }
@@ -63,8 +65,8 @@ View difference_view(const Difference& difference, const Acceptance& acceptance)
   return {{"entry", entry_label(difference.index, difference.sub_index)},
           {"entry_name", difference.name},
           {"kind", row_of(difference.kind).text},
-          {"mark", row_of(difference.mark).text},
-          {"mark_class", row_of(difference.mark).name},
+          {"mark", fmt::format("{}{}", row_of(difference.mark).text, difference.is_declared() ? ", declared" : "")},
+          {"mark_class", difference.is_declared() ? "deviates" : row_of(difference.mark).name},
           {"in_eds", difference.in_eds},
           {"in_device", difference.in_device},
           {"reason", difference.reason},
@@ -73,20 +75,32 @@ View difference_view(const Difference& difference, const Acceptance& acceptance)
           {"frames", conform::frames_view(difference.frames, acceptance.run.node, acceptance.sheet)}};
 }
 
-std::string_view class_of(const ComparedEntry& entry) {
-  if (differs(entry)) return "failed";
+/// Whether the entry is in a difference that is not declared. A missing object is one difference, with its first entry.
+bool has_undeclared(const ComparedEntry& entry, const Comparison& comparison) {
+  bool any = false;
+  for (const Difference& difference : comparison.differences) {
+    const bool of_object = difference.kind == Kind::object_missing;
+    if (difference.index != entry.index || (!of_object && difference.sub_index != entry.sub_index)) continue;
+    if (!difference.is_declared()) return true;
+    any = true;
+  }
+  return !any;
+}
+
+std::string_view class_of(const ComparedEntry& entry, const Comparison& comparison) {
+  if (differs(entry)) return has_undeclared(entry, comparison) ? "failed" : "deviates";
   if (entry.value == Aspect::may_differ) return "deviates";
   return entry.exists == Aspect::same ? "passed" : "other";
 }
 
-View entry_view(const ComparedEntry& entry) {
+View entry_view(const ComparedEntry& entry, const Comparison& comparison) {
   return {{"entry", entry_label(entry.index, entry.sub_index)},
           {"entry_name", entry.name},
           {"type", entry.type},
           {"access", entry.access},
           {"default_value", entry.default_value},
           {"device_value", entry.device_value},
-          {"entry_class", class_of(entry)},
+          {"entry_class", class_of(entry, comparison)},
           {"entry_result", result_text(entry)}};
 }
 
@@ -100,10 +114,10 @@ std::string html_report(const Acceptance& acceptance) {
     differences.push_back(difference_view(difference, acceptance));
   }
   View entries = View::array();
-  for (const ComparedEntry& entry : comparison.entries) entries.push_back(entry_view(entry));
+  for (const ComparedEntry& entry : comparison.entries) entries.push_back(entry_view(entry, comparison));
   View view = conform::run_view(acceptance.run, acceptance.sheet);
   view.update({{"accepted_class", objections.empty() ? "passed" : "failed"},
-               {"accepted", objections.empty() ? "accepted" : "not accepted"},
+               {"accepted", headline(acceptance)},
                {"has_objections", !objections.empty()},
                {"objections", objections},
                {"check_sentence", findings_sentence(acceptance.findings)},

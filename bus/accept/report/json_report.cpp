@@ -83,7 +83,8 @@ std::string json_report(const Acceptance& acceptance) {
     identity.push_back({{"number", row.number->key},
                         {"eds", number_or_null(row.in_eds)},
                         {"device", number_or_null(row.in_device)},
-                        {"differs", row.differs}});
+                        {"differs", row.differs},
+                        {"deviation", text_or_null(row.deviation)}});
   }
   const std::vector<std::string> objections = acceptance.objections();
   const json report = {{"schema", 2},
@@ -97,6 +98,8 @@ std::string json_report(const Acceptance& acceptance) {
                        {"bus", run.bus},
                        {"node_id", run.node},
                        {"eds", {{"file", run.sheet}, {"sha256", text_or_null(run.sheet_hash)}}},
+                       {"options", conform::file_object(run.options_file)},
+                       {"deviations", conform::file_object(run.deviations_file)},
                        {"check",
                         {{"errors", findings.errors()},
                          {"warnings", findings.warnings()},

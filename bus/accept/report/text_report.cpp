@@ -58,9 +58,10 @@ std::string comparison_text(const Acceptance& acceptance, bool color) {
     const auto number = [](const std::optional<std::uint32_t>& value) {
       return value ? fmt::format("{:08X}h", *value) : std::string{"not known"};
     };
-    append_line(
-        out, row.number->name,
-        row.differs ? fmt::format("{}; EDS {}", number(row.in_device), number(row.in_eds)) : number(row.in_device));
+    std::string text = number(row.in_device);
+    if (row.differs) text += "; EDS " + number(row.in_eds);
+    if (!row.deviation.empty()) text += "; declared: " + row.deviation;
+    append_line(out, row.number->name, text);
   }
   for (const Difference& difference : comparison.differences) append_difference(out, difference, acceptance, color);
   for (const std::string& line : comparison.unstable) append_line(out, "unstable", line);
@@ -71,8 +72,8 @@ std::string comparison_text(const Acceptance& acceptance, bool color) {
 
 std::string verdict_text(const Acceptance& acceptance, bool color) {
   const std::vector<std::string> objections = acceptance.objections();
-  if (objections.empty()) return colored("accepted", "\x1b[32m", color) + '\n';
-  std::string out = colored("not accepted", "\x1b[1;31m", color) + ":\n";
+  if (objections.empty()) return colored(headline(acceptance), "\x1b[32m", color) + '\n';
+  std::string out = colored(headline(acceptance), "\x1b[1;31m", color) + ":\n";
   for (const std::string& objection : objections) out += fmt::format("  {}\n", printable(objection));
   return out;
 }

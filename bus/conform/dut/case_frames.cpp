@@ -10,7 +10,11 @@ namespace edsc::conform {
 using canopen::Frame;
 using canopen::TimePoint;
 
-CaseFrames::CaseFrames(LiveBus& bus) : bus_{bus}, last_time_{bus.now()} {
+CaseFrames::CaseFrames(LiveBus& bus, std::optional<RunClock> clock) : bus_{bus}, last_time_{bus.now()} {
+  if (clock) {
+    last_time_ = clock->at;
+    elapsed_ = clock->elapsed;
+  }
   bus_.on_frame = [this](const Frame& frame, TimePoint) { record(frame, bus_.received_at(), false); };
   bus_.on_sent = [this](const Frame& frame, TimePoint at) { record(frame, at, true); };
 }

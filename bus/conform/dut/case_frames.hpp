@@ -17,6 +17,12 @@ namespace edsc::conform {
 
 using canopen::Duration;
 
+/// The time since the run began, at a point in time of the bus. Parts of a run pass it on.
+struct RunClock {
+  canopen::TimePoint at;
+  std::uint64_t elapsed = 0;  ///< microseconds
+};
+
 /// Records each frame of a case. Time passes only while a member waits.
 class CaseFrames {
  public:
@@ -24,7 +30,8 @@ class CaseFrames {
   using Mark = std::size_t;
   using Match = std::function<bool(const canopen::Frame&)>;
 
-  explicit CaseFrames(LiveBus& bus);
+  /// Without a clock the run begins now.
+  explicit CaseFrames(LiveBus& bus, std::optional<RunClock> clock = {});
   ~CaseFrames();
   CaseFrames(const CaseFrames&) = delete;
   CaseFrames& operator=(const CaseFrames&) = delete;
@@ -45,6 +52,7 @@ class CaseFrames {
   /// Frames received since the mark.
   [[nodiscard]] std::vector<SeenFrame> received_since(Mark since, const Match& match) const;
   [[nodiscard]] std::uint64_t now() const;  ///< microseconds since the run began
+  [[nodiscard]] RunClock clock() const { return {last_time_, elapsed_}; }
 
   [[nodiscard]] static Match with_id(std::uint32_t can_id);
   /// Matches data frames with the CAN-ID of a COB-ID as an object holds it. Ignores bit 31 (valid).

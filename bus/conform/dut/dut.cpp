@@ -11,6 +11,8 @@
 #include "configure/configuration_plan.hpp"
 #include "configure/configure_node.hpp"
 #include "configure/read_configuration.hpp"
+#include "conform/dut/sdo_transfers.hpp"
+#include "conform/named_entries.hpp"
 #include "online/interruption.hpp"
 #include "values/little_endian.hpp"
 
@@ -82,7 +84,7 @@ std::string milliseconds_text(std::uint64_t time_us) {
 }
 
 Dut::Dut(LiveBus& bus, const Device& sheet, Stimuli& stimuli, const DutSettings& settings)
-    : CaseFrames{bus},
+    : CaseFrames{bus, settings.clock},
       sheet_{sheet},
       stimuli_{stimuli},
       settings_{settings},
@@ -345,6 +347,20 @@ void Dut::expect_state(NmtState expected) {
 
 // ---- verdicts ----
 
+void Dut::name_frames(std::span<const SeenFrame> seen) {
+  for (const SeenFrame& one : seen) {
+    const auto found = std::ranges::find_if(frames(), [&](const SeenFrame& other) {
+      return other.at == one.at && other.sent == one.sent && other.frame == one.frame;
+    });
+    if (found != frames().end()) failed_frames_.push_back(static_cast<Mark>(found - frames().begin()));
+  }
+}
+
+void Dut::name_transfer(std::uint16_t index, std::uint8_t sub_index) {
+  const std::vector<std::size_t> found = last_transfer(frames(), node(), index, sub_index);
+  failed_frames_.insert(failed_frames_.end(), found.begin(), found.end());
+}
+
 void Dut::fail(std::string expected, std::string got, std::vector<EntryAddress> failed_entries) {
   failed_ = mark();
   throw CaseEnd{Verdict::failed, {}, std::move(expected), std::move(got), {}, std::move(failed_entries)};
@@ -356,6 +372,7 @@ void Dut::fail_by_sheet(AnyRule rule, std::string expected, std::string got) {
 void Dut::not_applicable(std::string reason) { throw CaseEnd{Verdict::not_applicable, std::move(reason), {}, {}}; }
 void Dut::inconclusive(std::string reason) { inconclusive(Condition::none, std::move(reason)); }
 void Dut::inconclusive(Condition condition, std::string reason) {
+  if (condition == Condition::stimulus && stimuli_.command_failed()) reason += "; the command of --stimulus failed";
   throw CaseEnd{Verdict::inconclusive, std::move(reason), {}, {}, {}, {}, condition};
 }
 
@@ -442,6 +459,7 @@ void Dut::begin_case(const CaseRow& row) {
   warnings_.clear();
   next_answer_ = 0;
   failed_.reset();
+  failed_frames_.clear();
   commanded_.reset();
   case_began_ = now();
   random_.seed(seed_of(settings_.seed, row.id));
@@ -599,6 +617,23 @@ void Dut::start_again() {
   pass_time(to_follow);
 }
 
+/// Call it before frames are received that do not belong to the case.
+void Dut::set_failed_frames(CaseResult& result) {
+  if (!failed_) return;
+  const std::span<const SeenFrame> until_failure = std::span{frames()}.first(*failed_);
+  if (failed_frames_.empty()) {
+    for (const EntryAddress& entry : entries_in(result.expected + ' ' + result.got)) {
+      const std::vector<std::size_t> found =
+          last_transfer(until_failure, node(), entry.index, entry.sub_index.value_or(0));
+      failed_frames_.insert(failed_frames_.end(), found.begin(), found.end());
+    }
+  }
+  std::ranges::sort(failed_frames_);
+  failed_frames_.erase(std::unique(failed_frames_.begin(), failed_frames_.end()), failed_frames_.end());
+  result.failed_frames = failed_frames_;
+  result.refused_writes = refused_writes(until_failure, node(), failed_frames_);
+}
+
 void Dut::end_case(CaseResult& result) {
   if (transfer_open_) end_transfer();
   result.began = case_began_;
@@ -607,6 +642,7 @@ void Dut::end_case(CaseResult& result) {
   result.warnings = std::move(warnings_);
   result.frames = frames();
   result.until_failure = failed_;
+  set_failed_frames(result);
   result.not_restored = restore_changed();
 }
 

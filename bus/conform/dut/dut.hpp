@@ -76,6 +76,7 @@ struct DutSettings {
   std::uint32_t seed = 1;
   /// Findings of `edsc check` in the EDS; std::nullopt if it was not checked.
   std::optional<SheetFindings> findings{};
+  std::optional<RunClock> clock{};  ///< of a run that has begun; std::nullopt: it begins now
 };
 
 class Dut : public CaseFrames {
@@ -174,6 +175,17 @@ class Dut : public CaseFrames {
   void expect(bool condition, const std::string& expected, const std::string& got) {
     if (!condition) fail(expected, got);
   }
+  /// The same, about these frames.
+  void expect(bool condition, const std::string& expected, const std::string& got, std::span<const SeenFrame> frames) {
+    if (condition) return;
+    name_frames(frames);
+    fail(expected, got);
+  }
+  /// Names the frames that a failure is about: reports show and mark them. Without this call, these are the last SDO
+  /// transfers of the entries that the text of the failure names.
+  void name_frames(std::span<const SeenFrame> frames);
+  /// The same for the last SDO transfer of an entry.
+  void name_transfer(std::uint16_t index, std::uint8_t sub_index);
   /// Expects an SDO abort with a code of the rule.
   void expect_abort(const SdoOutcome& outcome, const AbortRule& rule, const std::string& what = {});
   /// Expects an abort as the answer to `exchange`.
@@ -245,6 +257,7 @@ class Dut : public CaseFrames {
   [[nodiscard]] std::optional<std::string> late() const;
   [[nodiscard]] bool is_within(std::uint64_t measured, std::uint64_t low, std::uint64_t high) const;
   void measure_device_lag();
+  void set_failed_frames(CaseResult& result);
   [[nodiscard]] bool answers_guarding();
   void probe_remote_frames();
 
@@ -262,6 +275,7 @@ class Dut : public CaseFrames {
   canopen::sdo::Data last_request_{};
   Mark requested_at_ = 0;
   std::optional<Mark> failed_;                    ///< where the case failed
+  std::vector<Mark> failed_frames_;               ///< of `name_frames`
   bool guarded_ = false;                          ///< the state is read by node guarding
   bool remote_frames_carried_ = false;            ///< seen in this run
   bool remote_frames_probed_ = false;             ///< by node guarding

@@ -26,6 +26,8 @@ class Stimuli {
   [[nodiscard]] virtual bool emergency(std::uint16_t /*code*/, std::uint8_t /*error_register*/) { return false; }
   [[nodiscard]] virtual bool emergency_over(std::uint8_t /*error_register*/) { return false; }
   [[nodiscard]] virtual bool power_cycle() { return false; }
+  /// Whether the user has a command for the case, and it did not succeed.
+  [[nodiscard]] virtual bool command_failed() const { return false; }
 };
 
 }  // namespace edsc::conform

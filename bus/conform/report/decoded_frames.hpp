@@ -18,10 +18,16 @@ namespace edsc::conform {
 void decode_frames(std::span<const SeenFrame> frames, std::uint8_t node, const Device& sheet,
                    const std::function<void(const SeenFrame&, const Message&)>& use);
 
-/// The last of the frames, one per line, without line end: `12.003481 TX 705 05    HEART    node 5  operational`. If
-/// earlier frames are ignored, the first line has their number.
+/// Positions of the frames that a report shows, ascending: those that the failed check names and the frames around
+/// them; without such frames the last ones.
+[[nodiscard]] std::vector<std::size_t> shown_frames(std::size_t count, std::span<const std::size_t> named,
+                                                    std::size_t max_frames);
+
+/// Frames, one per line, without line end: `12.003481 TX 705 05    HEART    node 5  operational`. A line between them
+/// has the number of frames that are not shown. If frames are named, their lines begin with `> `, others with blanks.
 [[nodiscard]] std::vector<std::string> frame_lines(std::span<const SeenFrame> frames, std::uint8_t node,
-                                                   const Device& sheet, std::size_t max_frames);
+                                                   const Device& sheet, std::size_t max_frames,
+                                                   std::span<const std::size_t> named = {});
 
 /// TX: sent by the test; RX: received.
 [[nodiscard]] constexpr std::string_view direction_text(const SeenFrame& seen) { return seen.sent ? "TX" : "RX"; }

@@ -27,7 +27,7 @@ std::string data_text(const canopen::Frame& frame) {
   return hex_bytes(data_of(frame));
 }
 
-json frame_view(const SeenFrame& seen, const Message& message) {
+json frame_view(const SeenFrame& seen, const Message& message, bool is_named) {
   const bool received = !seen.sent && !message.problem;
   return {{"at", time_text(seen.at)},
           {"direction", direction_text(seen)},
@@ -35,14 +35,17 @@ json frame_view(const SeenFrame& seen, const Message& message) {
           {"data", data_text(seen.frame)},
           {"service", service_label(message)},
           {"meaning", message.text},
+          {"is_named", is_named},
           {"frame_class", message.problem ? "failed"
                           : received      ? "received"
                                           : "sent"}};
 }
 
-std::string frames_remark(std::size_t frames) {
-  if (frames <= max_html_frames) return {};
-  return fmt::format("{} not shown; --log writes all frames", counted(frames - max_html_frames, "earlier frame"));
+std::string frames_remark(std::size_t frames, bool are_named) {
+  std::string text = are_named ? "marked: the frames that the failed check names" : "";
+  if (frames <= max_html_frames) return text;
+  const std::string hidden = counted(frames - max_html_frames, are_named ? "other frame" : "earlier frame");
+  return fmt::format("{}{}{} not shown; --log writes all frames", text, text.empty() ? "" : "; ", hidden);
 }
 
 /// The note of a case whose details are closed.
@@ -53,12 +56,12 @@ std::string note_of(const CaseResult& result) {
 }
 
 /// Adds the frames, if there are any, under a heading.
-void add_frames(json& tables, std::string_view heading, std::span<const SeenFrame> frames, const RunReport& run,
-                const Device& sheet) {
+void add_frames(json& tables, std::string_view heading, std::span<const SeenFrame> frames,
+                std::span<const std::size_t> named, const RunReport& run, const Device& sheet) {
   if (frames.empty()) return;
   tables.push_back({{"heading", heading},
-                    {"remark", shown(frames_remark(frames.size()))},
-                    {"frames", frames_view(frames, run.node, sheet)}});
+                    {"remark", shown(frames_remark(frames.size(), !named.empty()))},
+                    {"frames", frames_view(frames, run.node, sheet, named)}});
 }
 
 json case_link(const CaseResult* result) { return {{"id", result->row->id}}; }
@@ -87,8 +90,11 @@ json case_view(const CaseResult& result, const RunReport& run, const Device& she
   const CaseRow& row = *result.row;
   const bool ran = result.verdict != Verdict::not_run;
   json tables = json::array();
-  if (result.first_run) add_frames(tables, "first run", result.first_run->frames, run, sheet);
-  add_frames(tables, result.first_run ? "repetition" : "frames", result.verdict_frames(), run, sheet);
+  if (result.first_run) {
+    add_frames(tables, "first run", result.first_run->frames, result.first_run->failed_frames, run, sheet);
+  }
+  add_frames(tables, result.first_run ? "repetition" : "frames", result.verdict_frames(), result.failed_frames, run,
+             sheet);
   return {{"id", row.id},
           {"title", row.title},
           {"verdict", row_of(result.verdict).name},
@@ -133,15 +139,17 @@ json area_view(const AreaCount& area, const RunReport& run, const Device& sheet)
 
 }  // namespace
 
-json frames_view(std::span<const SeenFrame> seen_frames, std::uint8_t node, const Device& sheet) {
-  std::size_t left_out = seen_frames.size() - std::min(seen_frames.size(), max_html_frames);
+json frames_view(std::span<const SeenFrame> seen_frames, std::uint8_t node, const Device& sheet,
+                 std::span<const std::size_t> named) {
+  const std::vector<std::size_t> shown = shown_frames(seen_frames.size(), named, max_html_frames);
   json frames = json::array();
+  std::size_t position = 0;
+  auto next = shown.begin();
   decode_frames(seen_frames, node, sheet, [&](const SeenFrame& seen, const Message& message) {
-    if (left_out > 0) {
-      --left_out;
-    } else {
-      frames.push_back(frame_view(seen, message));
-    }
+    const std::size_t present = position++;
+    if (next == shown.end() || *next != present) return;
+    ++next;
+    frames.push_back(frame_view(seen, message, std::ranges::find(named, present) != named.end()));
   });
   return frames;
 }
@@ -157,7 +165,7 @@ json run_view(const RunReport& run, const Device& sheet) {
   json areas = json::array();
   for (const AreaCount& area : count_by_area(run)) areas.push_back(area_view(area, run, sheet));
   return {{"result", run.passed() ? "passed" : "failed"},
-          {"sentence", result_sentence(run)},
+          {"sentence", verdict_sentence(run)},
           {"has_problems", !problems.empty()},
           {"problems", problems},
           {"title", shown(run.title)},
@@ -172,9 +180,14 @@ json run_view(const RunReport& run, const Device& sheet) {
           {"product", run.product.empty() ? fmt::format("node {}", run.node) : run.product},
           {"vendor", shown(run.vendor)},
           {"identity", shown(run.read_identity)},
-          {"differences", shown(run.identity)},
+          {"differences", shown(identity_sentence(run))},
+          {"differences_class", run.identity_deviation.empty() ? "differs" : "deviates"},
           {"sheet", run.sheet},
           {"sheet_hash", shown(run.sheet_hash)},
+          {"options_file", shown(run.options_file.path)},
+          {"options_hash", shown(run.options_file.hash)},
+          {"deviations_file", shown(run.deviations_file.path)},
+          {"deviations_hash", shown(run.deviations_file.hash)},
           {"node", run.node},
           {"bus", run.bus},
           {"composition", shown(composition_text(run))},

@@ -37,7 +37,10 @@ json frame_object(const SeenFrame& seen, const Message& message) {
 json first_run_object(const CaseResult& result, const RunReport& run, const Device& sheet) {
   if (!result.first_run) return nullptr;
   const FirstRun& first = *result.first_run;
-  return {{"expected", first.expected}, {"got", first.got}, {"frames", frame_objects(first.frames, run.node, sheet)}};
+  return {{"expected", first.expected},
+          {"got", first.got},
+          {"failed_frames", first.failed_frames},
+          {"frames", frame_objects(first.frames, run.node, sheet)}};
 }
 
 json ids(const std::vector<const CaseResult*>& cases) {
@@ -99,6 +102,7 @@ json case_object(const CaseResult& result, const RunReport& run, const Device& s
           {"lag_us", result.lag},
           {"repeat", repeat_command(run, row)},
           {"first_run", first_run_object(result, run, sheet)},
+          {"failed_frames", result.failed_frames},
           {"frames", frame_objects(result.verdict_frames(), run.node, sheet)}};
 }
 
@@ -117,6 +121,11 @@ json area_object(const AreaCount& count) {
 }
 
 }  // namespace
+
+json file_object(const InputFile& file) {
+  if (file.path.empty()) return nullptr;
+  return {{"file", file.path}, {"sha256", text_or_null(file.hash)}};
+}
 
 json frame_objects(std::span<const SeenFrame> frames, std::uint8_t node, const Device& sheet) {
   json objects = json::array();
@@ -147,7 +156,12 @@ json run_object(const RunReport& run, const Device& sheet) {
                    {"sha256", text_or_null(run.sheet_hash)},
                    {"vendor", run.vendor},
                    {"product", run.product}}},
-                 {"identity", {{"read", text_or_null(run.read_identity)}, {"differences", text_or_null(run.identity)}}},
+                 {"options", file_object(run.options_file)},
+                 {"deviations", file_object(run.deviations_file)},
+                 {"identity",
+                  {{"read", text_or_null(run.read_identity)},
+                   {"differences", text_or_null(run.identity)},
+                   {"deviation", text_or_null(run.identity_deviation)}}},
                  {"composition", composition_object(run)},
                  {"level", row_of(run.level).name},
                  {"permissions", permission_names(run.permissions)},

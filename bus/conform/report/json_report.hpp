@@ -17,6 +17,9 @@ namespace edsc::conform {
 [[nodiscard]] nlohmann::ordered_json frame_objects(std::span<const SeenFrame> frames, std::uint8_t node,
                                                    const Device& sheet);
 
+/// A file with its SHA-256; null if there is none.
+[[nodiscard]] nlohmann::ordered_json file_object(const InputFile& file);
+
 /// The object as text, with a line end.
 [[nodiscard]] std::string json_report(const RunReport& run, const Device& sheet);
 

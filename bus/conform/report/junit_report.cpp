@@ -41,7 +41,8 @@ void add_remarks(pugi::xml_node test, const CaseResult& result, const RunReport&
   for (const std::string& left : result.not_restored) lines.push_back("not restored: " + left);
   if (result.first_run) {
     lines.push_back("first run: " + first_run_text(*result.first_run));
-    const std::vector<std::string> frames = frame_lines(result.first_run->frames, run.node, sheet, max_junit_frames);
+    const std::vector<std::string> frames =
+        frame_lines(result.first_run->frames, run.node, sheet, max_junit_frames, result.first_run->failed_frames);
     lines.insert(lines.end(), frames.begin(), frames.end());
   }
   if (!lines.empty()) set_lines(test.append_child("system-out"), lines);
@@ -53,7 +54,8 @@ void add_failure(pugi::xml_node test, const CaseResult& result, const RunReport&
   set(failure, "type", result.row->clause);
   std::vector<std::string> lines = {fmt::format("clause: {}", result.row->clause),
                                     fmt::format("expected: {}", result.expected), fmt::format("got: {}", result.got)};
-  const std::vector<std::string> frames = frame_lines(result.verdict_frames(), run.node, sheet, max_junit_frames);
+  const std::vector<std::string> frames =
+      frame_lines(result.verdict_frames(), run.node, sheet, max_junit_frames, result.failed_frames);
   lines.insert(lines.end(), frames.begin(), frames.end());
   lines.push_back(fmt::format("repeat with: {}", repeat_command(run, *result.row)));
   set_lines(failure, lines);
@@ -117,10 +119,14 @@ void add_properties(pugi::xml_node suite, const RunReport& run) {
       {"node", fmt::format("{}", run.node)},
       {"eds", run.sheet},
       {"eds_sha256", run.sheet_hash},
+      {"options", run.options_file.path.empty() ? "none" : run.options_file.path},
+      {"options_sha256", run.options_file.hash},
+      {"deviations", run.deviations_file.path.empty() ? "none" : run.deviations_file.path},
+      {"deviations_sha256", run.deviations_file.hash},
       {"vendor", run.vendor},
       {"product", run.product},
       {"identity", run.read_identity},
-      {"identity_differences", run.identity},
+      {"identity_differences", identity_sentence(run)},
       {"composition", composition_text(run)},
       {"test", level_text(run)},
       {"seed", fmt::format("{}", run.seed)},

@@ -52,6 +52,11 @@ std::string composition_text(const RunReport& run) {
   return text;
 }
 
+std::string identity_sentence(const RunReport& run) {
+  if (run.identity_deviation.empty()) return run.identity;
+  return fmt::format("{}; declared: {}", run.identity, run.identity_deviation);
+}
+
 std::vector<std::string> run_problems(const RunReport& run) {
   std::vector<std::string> problems;
   for (const std::string& unused : run.unused_deviations)
@@ -77,6 +82,22 @@ std::string result_sentence(const RunReport& run) {
     separator = ", ";
   }
   return text;
+}
+
+std::string verdict_sentence(const RunReport& run) {
+  std::string result = result_sentence(run);
+  const std::vector<std::string> problems = run_problems(run);
+  if (problems.empty() || run.count(Verdict::failed) > 0) return result;
+  const std::string more =
+      problems.size() == 1 ? "" : fmt::format(", and {}", counted(problems.size() - 1, "other problem"));
+  return fmt::format("{}{}; {}", problems.front(), more, result);
+}
+
+std::string coverage_text(const RunReport& run) {
+  const std::size_t all = all_cases().size();
+  if (run.cases.size() >= all && run.count(Verdict::not_run) == 0) return {};
+  const std::size_t ran = run.cases.size() - run.count(Verdict::not_run) - run.count(Verdict::not_applicable);
+  return fmt::format("{}: {} of {} cases run", level_text(run), ran, all);
 }
 
 std::string causes_sentence(const RunReport& run) {

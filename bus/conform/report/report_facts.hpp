@@ -16,6 +16,13 @@ namespace edsc::conform {
 /// `3 of 127 cases failed; 101 passed, 20 not applicable, 3 not run`
 [[nodiscard]] std::string result_sentence(const RunReport& run);
 
+/// The same, after the problem of the run if no case failed: `unused deviation: pump.json:4: case 8.4 passed: ...; none
+/// of 127 cases failed; 26 passed`.
+[[nodiscard]] std::string verdict_sentence(const RunReport& run);
+
+/// How much of the test has run: `level read: 26 of 207 cases run`. Empty if each case ran or is not applicable.
+[[nodiscard]] std::string coverage_text(const RunReport& run);
+
 /// `18 failed cases, 5 causes`; empty without a failed case.
 [[nodiscard]] std::string causes_sentence(const RunReport& run);
 
@@ -39,6 +46,9 @@ namespace edsc::conform {
 /// The composition of a simulated device: `made by edsc, with all parts that the EDS promises`, `of the program`, `of
 /// the program, without LSS, storage`. Empty for a device on a bus.
 [[nodiscard]] std::string composition_text(const RunReport& run);
+
+/// The differences of the identity from the EDS, and the declared reason; empty: none.
+[[nodiscard]] std::string identity_sentence(const RunReport& run);
 
 /// Other reasons for which a run does not pass: unused deviations, values that could not be restored, an early end.
 [[nodiscard]] std::vector<std::string> run_problems(const RunReport& run);

@@ -45,6 +45,11 @@ void append_detail(std::string& out, std::string_view name, std::string_view tex
   fmt::format_to(std::back_inserter(out), "{:{}}{:<13} {}\n", "", id_width, name, printable(text));
 }
 
+void append_file(std::string& out, std::string_view name, const InputFile& file) {
+  append_detail(out, name, file.path.empty() ? "none" : file.path);
+  append_detail(out, "SHA-256", file.hash);
+}
+
 }  // namespace
 
 std::string TextReport::head() const {
@@ -57,6 +62,8 @@ std::string TextReport::head() const {
   append_detail(out, "device", device);
   append_detail(out, "EDS", run_.sheet);
   append_detail(out, "SHA-256", run_.sheet_hash);
+  append_file(out, "options", run_.options_file);
+  append_file(out, "deviations", run_.deviations_file);
   append_detail(out, "node", fmt::format("{} on {}", run_.node, run_.bus));
   append_detail(out, "composition", composition_text(run_));
   append_detail(out, "test", fmt::format("{}, seed {}, edsc {}", level_text(run_), run_.seed, run_.version));
@@ -97,23 +104,25 @@ std::string TextReport::of(const CaseResult& result) const {
   append_detail(out, "reason", result.deviation);
   for (const std::string& warning : result.warnings) append_detail(out, "warning", warning);
   for (const std::string& left : result.not_restored) append_detail(out, "not restored", left);
-  if (result.first_run) append_frames(out, "first run", first_run_text(*result.first_run), result.first_run->frames);
+  if (result.first_run)
+    append_frames(out, "first run", first_run_text(*result.first_run), result.first_run->frames,
+                  result.first_run->failed_frames);
   if (result.verdict != Verdict::failed) return out;
   append_detail(out, "clause", row.clause);
   append_detail(out, "expected", result.expected);
   append_detail(out, "got", result.got);
   if (!result.rule.text().empty())
     append_detail(out, "EDS", fmt::format("rule {} of edsc check reports it", result.rule.text()));
-  append_frames(out, "", "", result.verdict_frames());
+  append_frames(out, "", "", result.verdict_frames(), result.failed_frames);
   append_detail(out, "repeat with", repeat_command(run_, row));
   return out;
 }
 
 void TextReport::append_frames(std::string& out, std::string_view name, std::string_view text,
-                               std::span<const SeenFrame> frames) const {
+                               std::span<const SeenFrame> frames, std::span<const std::size_t> named) const {
   append_detail(out, name, text);
   name = "frames";
-  for (const std::string& line : frame_lines(frames, run_.node, sheet_, max_frames)) {
+  for (const std::string& line : frame_lines(frames, run_.node, sheet_, max_frames, named)) {
     append_detail(out, name, line);
     name = "";
   }
@@ -151,7 +160,7 @@ std::string TextReport::summary() const {
   std::string out = run_.cases.empty() ? std::string{} : table();
   out += '\n';
   if (!run_.read_identity.empty()) append_detail(out, "identity", run_.read_identity);
-  append_detail(out, "differs", run_.identity);
+  append_detail(out, "differs", identity_sentence(run_));
   append_detail(out, "causes", causes_sentence(run_));
   for (const Cause& cause : run_.causes()) {
     append_detail(out, "cause", cause.text);
@@ -166,7 +175,7 @@ std::string TextReport::summary() const {
   const bool passed = run_.passed();
   const std::string_view color = color_of(passed ? Verdict::passed : Verdict::failed);
   fmt::format_to(std::back_inserter(out), "{}: {}\n", colored(passed ? "passed" : "failed", color_ ? color : ""),
-                 result_sentence(run_));
+                 verdict_sentence(run_));
   return out;
 }
 

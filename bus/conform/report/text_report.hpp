@@ -1,6 +1,7 @@
 /// The report of a run for a terminal, printed in parts during the run.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,7 +16,7 @@ class TextReport {
   /// `run` may still get results. Both must outlive the report.
   TextReport(const RunReport& run, const Device& sheet, bool color) : run_{run}, sheet_{sheet}, color_{color} {}
 
-  /// The maximum number of frames of a failure: the last ones.
+  /// The maximum number of frames of a failure.
   static constexpr std::size_t max_frames = 20;
 
   /// What is tested: device, EDS, bus, level.
@@ -30,9 +31,9 @@ class TextReport {
 
  private:
   [[nodiscard]] std::string table() const;
-  /// A line with the text, and the last frames.
-  void append_frames(std::string& out, std::string_view name, std::string_view text,
-                     std::span<const SeenFrame> frames) const;
+  /// A line with the text, and the frames around those that the failed check names.
+  void append_frames(std::string& out, std::string_view name, std::string_view text, std::span<const SeenFrame> frames,
+                     std::span<const std::size_t> named) const;
 
   const RunReport& run_;
   const Device& sheet_;

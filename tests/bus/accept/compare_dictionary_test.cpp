@@ -8,7 +8,6 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
-#include <memory>
 #include <set>
 #include <sstream>
 #include <string>
@@ -16,55 +15,12 @@
 #include <vector>
 
 #include "accept/decisions.hpp"
+#include "compared.hpp"
 #include "dictionary_port.hpp"
 #include "support/device_from_text.hpp"
 
 namespace edsc::accept {
 namespace {
-
-using Bytes = DictionaryPort::Bytes;
-
-constexpr std::string_view u8 = "0x5", u16 = "0x6", u32 = "0x7", text_type = "0x9";
-
-std::string value(std::string_view number) { return fmt::format("DefaultValue={}\n", number); }
-
-/// The objects that each device has, and those of one drive without a TPDO.
-std::string base_eds(std::string_view product_code = "0x42") {
-  return "[DeviceInfo]\nVendorNumber=0x319\nProductNumber=0x42\nRevisionNumber=0x10000\nNrOfRXPDO=0\nNrOfTXPDO=1\n" +
-         var("1000", "Device type", u32, "ro", value("0x192")) + var("1001", "Error register", u8, "ro") +
-         var("1017", "Producer heartbeat time", u16, "rw", value("0")) + group("1018", "Identity object", "0x9", 4) +
-         var("1018sub0", "Count", u8, "ro", value("3")) + var("1018sub1", "Vendor-ID", u32, "ro", value("0x319")) +
-         var("1018sub2", "Product code", u32, "ro", value(product_code)) +
-         var("1018sub3", "Revision", u32, "ro", value("0x10000"));
-}
-
-/// The device of `base_eds`.
-void fill(DictionaryPort& port) {
-  port.values = {{{0x1000, 0}, {0x92, 1, 0, 0}}, {{0x1001, 0}, {0}},
-                 {{0x1017, 0}, {0, 0}},          {{0x1018, 0}, {3}},
-                 {{0x1018, 1}, {0x19, 3, 0, 0}}, {{0x1018, 2}, {0x42, 0, 0, 0}},
-                 {{0x1018, 3}, {0, 0, 1, 0}}};
-}
-
-struct Compared {
-  std::unique_ptr<DeviceFromText> eds;
-  Comparison comparison;
-  unsigned downloads = 0;
-};
-
-Compared run(const std::string& eds, const std::function<void(DictionaryPort&)>& change) {
-  auto port = std::make_unique<DictionaryPort>();
-  DictionaryPort& device = *port;
-  fill(device);
-  change(device);
-  LiveBus bus{std::move(port)};
-  Compared result{std::make_unique<DeviceFromText>(eds, Options{}, DeviceSettings{{}, DictionaryPort::node_id}), {}, 0};
-  ComparisonSettings settings;
-  settings.node = canopen::NodeId{DictionaryPort::node_id};
-  result.comparison = compare_dictionary(bus, result.eds->device, result.eds->sheet, settings);
-  result.downloads = device.downloads;
-  return result;
-}
 
 /// The ids of the rows that have decided, over all tests.
 std::set<std::string>& used_evidence() {
@@ -382,6 +338,33 @@ TEST(CompareDictionary, TheEdsMakesAnObjectWriteOnlyThatTheStandardMakesReadable
   expect(eds, unchanged, {"1017h:00 access eds_wrong eds-access [1017] AccessType=wo => rw"});
 }
 
+/// CiA 402-2: 6041h and 6064h are ro, 6040h is rw. The objects of the second axis are 800h above.
+TEST(CompareDictionary, AProfileDefinesTheAccess) {
+  expect(base_eds() + var("6064", "Position", i32, "wo"), with_value(0x6064, 0, {1, 0, 0, 0}),
+         {"6064h:00 access eds_wrong eds-access [6064] AccessType=wo => ro"});
+  expect(base_eds() + var("6864", "Position", i32, "wo"), with_value(0x6864, 0, {1, 0, 0, 0}),
+         {"6864h:00 access eds_wrong eds-access [6864] AccessType=wo => ro"});
+  const auto write_only = [](DictionaryPort& device) { device.aborts[{0x6041, 0}] = 0x0601'0001; };
+  expect(base_eds() + var("6041", "Statusword", u16, "ro"), write_only,
+         {"6041h:00 access device_wrong standard-access"});
+  expect(base_eds() + var("6040", "Controlword", u16, "wo"), with_value(0x6040, 0, {0, 0}),
+         {"6040h:00 access undecided free-access [6040] AccessType=wo => rw"});
+  const Compared result = run(base_eds() + var("6064", "Position", i32, "wo"), with_value(0x6064, 0, {1, 0, 0, 0}));
+  EXPECT_EQ(result.comparison.differences.at(0).reason,
+            "CiA 402 does not allow the access of the EDS, wo, and allows the access of the device");
+}
+
+/// Without the profile in 1000h, no standard defines the access.
+TEST(CompareDictionary, AProfileThatTheDeviceDoesNotStateDefinesNothing) {
+  expect(base_eds() + var("6064", "Position", i32, "wo"),
+         [](DictionaryPort& device) {
+           device.values[{0x1000, 0}] = {0x91, 1, 0, 0};
+           device.values[{0x6064, 0}] = {1, 0, 0, 0};
+         },
+         {"1000h:00 value undecided other-identity [1000] DefaultValue=0x192 => 0x00000191",
+          "6064h:00 access undecided free-access [6064] AccessType=wo => rw"});
+}
+
 TEST(CompareDictionary, AnAccessThatNoStandardDefinesIsUndecided) {
   expect(base_eds() + var("2000", "Command", u16, "wo"), with_value(0x2000, 0, {1, 0}),
          {"2000h:00 access undecided free-access [2000] AccessType=wo => rw"});
@@ -437,6 +420,15 @@ std::function<void(DictionaryPort&)> with_default_sdo(std::uint8_t request) {
 TEST(CompareDictionary, TheEdsHasAnotherCobIdOfTheDefaultSdo) {
   expect(base_eds() + default_sdo("0x601"), with_default_sdo(5),
          {"1200h:01 value eds_wrong eds-cob-id [1200sub1] DefaultValue=0x601 => $NODEID+0x600"});
+}
+
+/// 620h and node-ID 5 are 625h.
+TEST(CompareDictionary, AFormulaOfTheEdsHasItsValueForTheNode) {
+  const Compared result = run(base_eds() + default_sdo("$NODEID+0x620"), with_default_sdo(5));
+  ASSERT_EQ(result.comparison.differences.size(), 1U);
+  const Difference& one = result.comparison.differences.front();
+  EXPECT_EQ(one.in_eds, "$NODEID+0x620 (00000625h)");
+  EXPECT_EQ(one.in_device, "00000605h");
 }
 
 TEST(CompareDictionary, TheDeviceHasAnotherCobIdOfTheDefaultSdo) {

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -161,6 +162,51 @@ TEST(ConformDeviations, AreUnusedWhereTheirCasePasses) {
     other.cases = {result_of(sync_row, verdict)};
     find_unused_deviations(read.rows, other);
     EXPECT_TRUE(other.unused_deviations.empty());
+  }
+}
+
+/// Case 4.2 compares the constants of 1000h to 1FFFh, of which the identity is a part.
+TEST(ConformDeviations, DeclareDifferencesOfTheIdentity) {
+  ReadDeviations read{R"({"deviations": [{"case": "4.2", "object": "1018h:03", "reason": "newer", "source": "page 3"},
+                                         {"case": "4.2", "object": "1018h:04", "reason": "x"},
+                                         {"case": "2.1", "object": "1018h:02", "reason": "y"}]})"};
+  RunReport run;
+  run.identity_entries = {{0x1018, std::uint8_t{3}}};
+  apply_deviations(read.rows, run);
+  EXPECT_EQ(run.identity_deviation, "newer (page 3)");
+  EXPECT_TRUE(read.rows[0].is_used);
+  EXPECT_FALSE(read.rows[1].is_used);
+  RunReport other;
+  other.identity_entries = {{0x1018, std::uint8_t{2}}, {0x1018, std::uint8_t{3}}};
+  apply_deviations(read.rows, other);
+  EXPECT_EQ(other.identity_deviation, "") << "the product code is not declared";
+  RunReport same;
+  apply_deviations(read.rows, same);
+  EXPECT_EQ(same.identity_deviation, "");
+}
+
+TEST(ConformDeviations, OfADifferenceAreUsedAlthoughTheirCasePasses) {
+  ReadDeviations read{R"({"deviations": [{"case": "3.7", "reason": "x"}]})"};
+  RunReport run;
+  run.cases = {result_of(sync_row, Verdict::passed)};
+  read.rows[0].is_used = true;
+  find_unused_deviations(read.rows, run);
+  EXPECT_TRUE(run.unused_deviations.empty());
+}
+
+/// The spellings of docs/conform.md, for edsc and for the pattern of the schema.
+TEST(ConformDeviations, HaveTheObjectsThatTheSchemaAllows) {
+  const std::regex pattern{std::string{deviation_members()[1].pattern}};
+  const std::pair<const char*, bool> spellings[] = {
+      {"1018h", true},      {"1018", true},        {"0x1018", true},     {"1018h:02", true},   {"1018:2", true},
+      {"0x1018:2", true},   {"0x1018:0x02", true}, {"1a00h:0A", true},   {"speed", false},     {"18h", false},
+      {"01018h", false},    {"1018h:", false},     {"1018h:123", false}, {"1018h:xx", false},  {"0x1018:256", false},
+      {" 1018h:02 ", true}, {"1018h:002h", true},  {"0x1018:255", true}, {"0x1018:1Fh", true}, {"0x1018h", false}};
+  for (const auto& [text, is_valid] : spellings) {
+    EXPECT_EQ(std::regex_search(text, pattern), is_valid) << text;
+    const ReadDeviations read{
+        fmt::format(R"({{"deviations": [{{"case": "3.7", "reason": "x", "object": "{}"}}]}})", text)};
+    EXPECT_EQ(read.rows.size(), is_valid ? 1U : 0U) << text << ' ' << read.problem();
   }
 }
 

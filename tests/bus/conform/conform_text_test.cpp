@@ -156,6 +156,9 @@ TEST(ConformRun, NamesTheCommandThatRepeatsACase) {
             "edsc conform socketcan:can0 5 eds/pump.eds --level all --only 8.4 --seed 7");
   run.level = Level::read;
   run.permissions = Permission::none;
+  run.force = true;
+  EXPECT_EQ(repeat_command(run, read_row), "edsc conform socketcan:can0 5 eds/pump.eds --force --only 2.6 --seed 7");
+  run.force = false;
   run.sheet = "my pump's.eds";
   EXPECT_EQ(repeat_command(run, read_row), R"(edsc conform socketcan:can0 5 'my pump'\''s.eds' --only 2.6 --seed 7)");
 }
@@ -252,7 +255,56 @@ TEST(ConformText, SaysWhyNoCaseRan) {
             "\n"
             "       test lag      0.0 ms at most\n"
             "       problem       the run ended early: node 5 does not answer\n"
-            "failed: no case ran\n");
+            "failed: the run ended early: node 5 does not answer; no case ran\n");
+}
+
+TEST(ConformText, NamesTheProblemOfARunWithoutFailedCase) {
+  RunReport run = every_verdict();
+  run.cases.erase(run.cases.begin() + 1);
+  const std::string result =
+      "none of 5 cases failed; 1 passed, 1 not applicable, 1 deviates as declared, 1 inconclusive, 1 not run";
+  EXPECT_EQ(verdict_sentence(run), result);
+  run.interrupted = true;
+  EXPECT_EQ(verdict_sentence(run), "the run was interrupted; " + result);
+  run.unused_deviations = {"pump.json:4: case 8.4 passed: x"};
+  EXPECT_EQ(verdict_sentence(run), "unused deviation: pump.json:4: case 8.4 passed: x, and 1 other problem; " + result);
+  const std::string summary = TextReport{run, sheet().device, false}.summary();
+  EXPECT_TRUE(summary.ends_with("failed: " + verdict_sentence(run) + '\n')) << summary;
+  EXPECT_NE(html_report(run, sheet().device).find(verdict_sentence(run)), std::string::npos);
+}
+
+TEST(ConformText, SaysHowMuchOfTheTestHasRun) {
+  RunReport run = every_verdict();
+  const std::size_t all = all_cases().size();
+  EXPECT_EQ(coverage_text(run), "level communication with store: 4 of " + std::to_string(all) + " cases run")
+      << "without the one that is not applicable, and the one that is not run";
+  run.cases.clear();
+  for (const CaseRow* row : all_cases()) run.cases.push_back(result_of(*row, Verdict::passed));
+  EXPECT_EQ(coverage_text(run), "");
+  run.cases.back().verdict = Verdict::not_applicable;
+  EXPECT_EQ(coverage_text(run), "");
+}
+
+TEST(ConformReports, NameTheOptionsAndTheDeviations) {
+  RunReport run = every_verdict();
+  const std::string none = TextReport{run, sheet().device, false}.head();
+  EXPECT_NE(none.find("       options       none\n       deviations    none\n"), std::string::npos) << none;
+  EXPECT_EQ(nlohmann::json::parse(json_report(run, sheet().device))["options"], nullptr);
+  run.options_file = {"pump.options.json", "cd34"};
+  run.deviations_file = {"pump.deviations.json", "ef56"};
+  const std::string head = TextReport{run, sheet().device, false}.head();
+  EXPECT_NE(head.find("       options       pump.options.json\n       SHA-256       cd34\n"
+                      "       deviations    pump.deviations.json\n       SHA-256       ef56\n"),
+            std::string::npos)
+      << head;
+  const auto json = nlohmann::json::parse(json_report(run, sheet().device));
+  EXPECT_EQ(json["options"], (nlohmann::json{{"file", "pump.options.json"}, {"sha256", "cd34"}}));
+  EXPECT_EQ(json["deviations"]["file"], "pump.deviations.json");
+  for (const std::string& report : {html_report(run, sheet().device), junit_report(run, sheet().device)}) {
+    for (const char* text : {"pump.options.json", "cd34", "pump.deviations.json", "ef56"}) {
+      EXPECT_NE(report.find(text), std::string::npos) << text;
+    }
+  }
 }
 
 TEST(ConformText, NamesWhatTheRunMayDo) {

@@ -10,6 +10,7 @@ blocks without a language must be in the output of the commands before them.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -53,6 +54,10 @@ def without_foreign(node: object) -> object:
         foreign = node.get("$ref", "").startswith("urn:") if isinstance(node.get("$ref"), str) else False
         return {} if foreign else {name: without_foreign(value) for name, value in node.items()}
     return [without_foreign(value) for value in node] if isinstance(node, list) else node
+
+
+def sha256(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def validate(report: dict) -> None:
@@ -140,7 +145,7 @@ class Accept(unittest.TestCase):
     def test_each_planted_difference_has_its_mark(self) -> None:
         self.start_slave()
         result = self.accept("--html", "report.html", "--json", "report.json", "--junit", "report.xml", "--only", "2.1", "--title",
-                             "A <title>", "--operator", "Ada", "--place", "Hall", timeout_ms=SILENCE_MS)
+                             "A <title>", "--operator", "Ada", "--place", "Hall", "--log", "frames.log", timeout_ms=SILENCE_MS)
         self.assertEqual(result.returncode, 1, result.stderr)
         report = self.report()
         self.assertFalse(report["accepted"])
@@ -151,6 +156,7 @@ class Accept(unittest.TestCase):
         for kind in ("object_missing", "sub_index_missing", "not_in_eds", "length", "access", "value", "limit"):
             self.assertEqual({mark for of, mark in marks if of == kind}, {"eds_wrong", "device_wrong", "undecided"}, kind)
         self.check_corrections(differences)
+        self.check_log(report)
         self.check_frames(differences)
         self.check_values(report["comparison"]["entries"])
         self.assertEqual((report["title"], report["operator"], report["place"]), ("A <title>", "Ada", "Hall"))
@@ -171,6 +177,17 @@ class Accept(unittest.TestCase):
                 self.assertEqual(one["corrections"], [])
             if one["mark"] == "eds_wrong":
                 self.assertNotEqual(one["corrections"], [])
+
+    def check_log(self, report: dict) -> None:
+        """The log has each frame of the comparison and of the cases, with its time, in the order of the bus."""
+        lines = re.findall(r"\((\d+)\.(\d{6})\) \S+ ([0-9A-F]{3})#([0-9A-F]*)", (self.folder / "frames.log").read_text(encoding="utf-8"))
+        log = [(int(seconds) * 1_000_000 + int(micro), int(can_id, 16), data) for seconds, micro, can_id, data in lines]
+        self.assertEqual([time for time, _, _ in log], sorted(time for time, _, _ in log))
+        of_differences = [frame for one in report["comparison"]["differences"] for frame in one["frames"]]
+        of_cases = [frame for case in report["conform"]["cases"] for frame in case["frames"]]
+        for frame in of_differences + of_cases:
+            self.assertIn((frame["at_us"], frame["can_id"], frame["data"]), log)
+        self.assertLess(max(frame["at_us"] for frame in of_differences), min(frame["at_us"] for frame in of_cases))
 
     def check_frames(self, differences: list[dict]) -> None:
         """The request and the response of each difference are those of the entry."""
@@ -203,7 +220,11 @@ class Accept(unittest.TestCase):
         self.start_slave("good")
         result = self.accept("--json", "report.json", "--junit", "report.xml", "--only", "2.1", "--only", "4.*")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        self.assertTrue(result.stdout.endswith("\naccepted\n"))
+        cases = json.loads((self.folder / "report.json").read_text(encoding="utf-8"))["conform"]["cases"]
+        ran = len([case for case in cases if case["verdict"] in ("passed", "failed", "deviates", "inconclusive")])
+        listed = subprocess.run([EDSC, "conform", "--list"], capture_output=True, text=True, check=True).stdout
+        all_cases = len(re.findall(r"^  \d+\.\d+ ", listed, re.MULTILINE))
+        self.assertTrue(result.stdout.endswith(f"\naccepted (level read: {ran} of {all_cases} cases run)\n"), result.stdout)
         report = self.report()
         self.assertEqual((report["accepted"], report["objections"], report["comparison"]["differences"]), (True, [], []))
         self.assertTrue(all(entry["exists"] == "same" for entry in report["comparison"]["entries"]))
@@ -227,8 +248,48 @@ class Accept(unittest.TestCase):
         self.assertEqual(self.accept(*options).returncode, 1)
         result = self.accept(*options, "--deviations", "deviations.json")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        self.assertEqual(self.report()["comparison"]["differences"][0]["deviation"], "an older EDS (manual, page 3)")
-        self.suites()
+        report = self.report()
+        reason = "an older EDS (manual, page 3)"
+        self.assertEqual(report["comparison"]["differences"][0]["deviation"], reason)
+        self.assertEqual([row["deviation"] for row in report["identity"] if row["differs"]], [reason])
+        self.assertEqual(report["conform"]["identity"]["deviation"], reason)
+        self.assertEqual(report["deviations"]["sha256"], sha256(self.folder / "deviations.json"))
+        self.assertEqual(report["eds"]["sha256"], sha256(sheet))
+        self.assertIsNone(report["options"])
+        suites = self.suites()
+        self.assertEqual(suites.get("failures"), "0")
+        number = suites.find("testsuite[@name='identity']/testcase[@name='product code']/skipped")
+        self.assertIn(reason, number.get("message"))
+
+    def test_another_product_is_only_written_with_force(self) -> None:
+        """Level communication and case 4.3 write: SDO requests with the command specifier 1 (CiA 301, 7.2.4.3.3)."""
+        self.start_slave("good")
+        sheet = self.folder / "planted.eds"
+        sheet.write_text(sheet.read_text(encoding="utf-8").replace("DefaultValue=0x42\n", "DefaultValue=0x41\n"), encoding="utf-8")
+        options = ("--only", "4.3", "--level", "communication", "--json", "report.json", "--log", "frames.log")
+
+        def writes() -> int:
+            log = (self.folder / "frames.log").read_text(encoding="utf-8")
+            return len(re.findall(r" 605#[23][0-9A-F]{15}$", log, re.MULTILINE))
+
+        result = self.accept(*options)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        reason = self.report()["conform"]["ended_early"]
+        self.assertIn("node 5 is not the device of planted.eds: product code is 00000042h, expected 00000041h; nothing was written",
+                      reason)
+        self.assertIn("--force", reason)
+        self.assertEqual((self.report()["conform"]["cases"], writes()), ([], 0))
+        self.assertIn(f"conformance test failed: the run ended early: {reason}", result.stdout)
+        self.accept(*options, "--force")
+        self.assertEqual([case["id"] for case in self.report()["conform"]["cases"]], ["4.3"])
+        self.assertIn(" --force ", self.report()["conform"]["cases"][0]["repeat"])
+        self.assertGreater(writes(), 0)
+        self.accept("--only", "4.2", "--json", "report.json")
+        self.assertIsNone(self.report()["conform"]["ended_early"], "level read only reads")
+        conform = subprocess.run([EDSC, "conform", self.address, "5", "planted.eds", "--store", "--only", "2.1"], cwd=self.folder,
+                                 capture_output=True, text=True)
+        self.assertEqual(conform.returncode, 1)
+        self.assertIn("failed: the run ended early: node 5 is not the device of planted.eds", conform.stdout)
 
     def test_an_interruption_ends_with_130_and_a_report(self) -> None:
         self.start_slave()
@@ -240,6 +301,7 @@ class Accept(unittest.TestCase):
         self.assertEqual(process.returncode, 130)
         report = self.report()
         self.assertTrue(report["comparison"]["interrupted"] or report["conform"]["interrupted"])
+        self.assertIn("conformance test failed: the run was interrupted; no case ran", report["objections"])
         self.assertFalse(report["accepted"])
 
     def test_a_device_that_does_not_respond_is_not_accepted(self) -> None:
@@ -259,9 +321,25 @@ class Accept(unittest.TestCase):
 
     def test_the_document(self) -> None:
         self.start_rk5c()
-        run_document(self, SOURCE_DIR / "docs/accept.md", "tests/cli/live/accept_test.py", self.run_line, 4)
+        shutil.copytree(SOURCE_DIR / "examples/ci", self.folder / "examples/ci")
+        run_document(self, SOURCE_DIR / "docs/accept.md", "tests/cli/live/accept_test.py", self.run_line, 5)
         self.report()
         self.suites()
+        self.assertEqual({path.name for path in (self.folder / "reports").iterdir()},
+                         {"accept.html", "accept.json", "accept.log", "accept.xml"})
+
+    def test_the_script_for_ci_has_an_exit_code_for_each_result(self) -> None:
+        """Not accepted is 1, a bus that does not exist is 2 without a report; docs/accept.md has the others."""
+        self.start_slave("good")
+        sheet = self.folder / "planted.eds"
+        sheet.write_text(sheet.read_text(encoding="utf-8").replace("DefaultValue=0x42\n", "DefaultValue=0x41\n"), encoding="utf-8")
+        script = f"{SOURCE_DIR}/examples/ci/accept.sh reports"
+        wrong = self.run_line(f"{script} {self.address} 5 planted.eds --only 4.2 --timeout {TIMEOUT_MS}ms")
+        self.assertEqual(wrong.returncode, 1, wrong.stdout + wrong.stderr)
+        self.assertTrue((self.folder / "reports/accept.xml").is_file())
+        no_bus = self.run_line(f"{script} nonsense: 5 planted.eds")
+        self.assertEqual(no_bus.returncode, 2)
+        self.assertFalse((self.folder / "reports/accept.json").is_file())
 
     def run_line(self, line: str) -> subprocess.CompletedProcess[str]:
         command = re.sub(rf"(edsc accept {ADDRESS} \S+ \S+)", rf"\1 --timeout {TIMEOUT_MS}", line).replace(ADDRESS, self.address)

@@ -105,6 +105,38 @@ class Conform(unittest.TestCase):
         self.assertIn("other.json:1:", result.stdout)
         self.assertRegex(result.stdout, "repeat with +edsc conform .* --options other.json --only 1.0")
 
+    def test_a_case_that_does_not_run_names_all_options_that_it_needs(self) -> None:
+        result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --only 3.6 --only 3.4 --only 8.2")
+        self.assertIn("(needs --level communication and --outputs)", result.stdout)
+        self.assertIn("(needs --level communication and --store)", result.stdout)
+        self.assertIn("(needs --level communication)", result.stdout)
+        result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --only 5.108")
+        self.assertIn("(needs --level communication, --store and --outputs)", result.stdout)
+
+    def test_a_stimulus_that_changes_nothing_and_one_that_fails(self) -> None:
+        command = f"edsc conform {ADDRESS} 5 eds/rk5c.eds --level communication --only 3.4"
+        without = self.run_line(command).stdout
+        self.assertIn("use --stimulus with a command that changes one", without)
+        ran = self.run_line(command + " --stimulus 3.4=true").stdout
+        self.assertRegex(ran, r"the command of --stimulus ran, 6[0-9A-F]{3}h:[0-9A-F]{2}.* did not change")
+        self.assertNotIn("use --stimulus", ran)
+        failed = self.run_line(command + " --stimulus 3.4=false").stdout
+        self.assertIn("; the command of --stimulus failed", failed)
+
+    def test_a_failure_shows_the_frames_that_it_names(self) -> None:
+        """The request and the response of 6501h:00, an upload (CiA 301, 7.2.4.3.6), are marked."""
+        sheet = self.folder / "eds/rk5c.eds"
+        text = sheet.read_text(encoding="utf-8")
+        begin = text.index("[6501]")
+        section = text[begin:text.index("[", begin + 1)]
+        wrong = section.replace("=100000", "=200000").replace("AccessType=ro", "AccessType=const")
+        sheet.write_text(text.replace(section, wrong), encoding="utf-8")
+        result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --only 4.8 --json report.json")
+        self.assertRegex(result.stdout, r"> +[0-9.]+ TX 605 40 01 65 00 .*\n +> +[0-9.]+ RX 585 4[23] 01 65 00 ")
+        case = json.loads((self.folder / "report.json").read_text(encoding="utf-8"))["cases"][0]
+        named = [case["frames"][position] for position in case["failed_frames"]]
+        self.assertEqual([(frame["can_id"], frame["data"][2:8]) for frame in named], [(0x605, "016500"), (0x585, "016500")])
+
     def test_a_missing_options_file_is_wrong_usage(self) -> None:
         result = self.run_line(f"edsc conform {ADDRESS} 5 eds/rk5c.eds --options missing.json")
         self.assertEqual(result.returncode, 2)

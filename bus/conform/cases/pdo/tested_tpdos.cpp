@@ -5,7 +5,7 @@
 namespace edsc::conform {
 
 void expect_none(Dut& dut, const Tpdo& tpdo, const std::vector<SeenFrame>& frames, const std::string& when) {
-  dut.expect(frames.empty(), fmt::format("no {} {}", tpdo.name(), when), frames_text(frames));
+  dut.expect(frames.empty(), fmt::format("no {} {}", tpdo.name(), when), frames_text(frames), frames);
 }
 
 SeenFrame expect_frame(Dut& dut, const Tpdo& tpdo, Dut::Mark since, Duration longest, const std::string& when) {
@@ -20,12 +20,17 @@ bool changes_by_itself(Dut& dut, const Tpdo& tpdo) {
   for (std::size_t i = 1; i < frames.size(); ++i) {
     const bool is_same = frames[i].frame == frames[i - 1].frame;
     dut.expect(!is_same, fmt::format("no {} without an event", tpdo.name()),
-               frame_text(frames[i].frame) + " twice with the same data");
+               frame_text(frames[i].frame) + " twice with the same data", std::span{frames}.subspan(i - 1, 2));
   }
   return !frames.empty();
 }
 
-void no_stimulus(Dut& dut, const Tpdo& tpdo) {
+void no_stimulus(Dut& dut, const Tpdo& tpdo, bool has_run) {
+  const std::string_view what = dut.simulated() ? "stimulus" : "command of --stimulus";
+  if (has_run) {
+    dut.inconclusive(Condition::stimulus, fmt::format("the {} ran, {} did not change; it must change an object of {}",
+                                                      what, objects_text(tpdo.mapping), tpdo.name()));
+  }
   dut.inconclusive(
       Condition::stimulus,
       fmt::format("no stimulus changes an object of {} ({}); use --stimulus with a command that changes one",

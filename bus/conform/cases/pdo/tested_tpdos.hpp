@@ -60,7 +60,13 @@ SeenFrame expect_frame(Dut& dut, const Tpdo& tpdo, Dut::Mark since, Duration lon
 /// a change, because it is sent without an event.
 bool changes_by_itself(Dut& dut, const Tpdo& tpdo);
 
-[[noreturn]] void no_stimulus(Dut& dut, const Tpdo& tpdo);
+/// Inconclusive: no stimulus changes an object of the TPDO. `has_run`: a stimulus succeeded, and no object changed.
+[[noreturn]] void no_stimulus(Dut& dut, const Tpdo& tpdo, bool has_run);
+/// A TPDO without an event.
+struct WithoutEvent {
+  Tpdo tpdo;
+  bool stimulus_has_run = false;
+};
 /// Changes the objects of the TPDO one by one until `is_sent` returns that the change was an event: some objects do not
 /// cause events. Returns false if no stimulus has changed a value that SDO reads.
 template <class IsSent>

@@ -184,7 +184,7 @@ void expect_data(Dut& dut, const Tpdo& tpdo, const SeenFrame& seen, const Image&
   dut.expect(
       seen.frame.size == tpdo.size(),
       fmt::format("{} with {} data bytes for {} mapped bits", tpdo.name(), tpdo.size(), total_bits(tpdo.mapping)),
-      frame_text(seen.frame));
+      frame_text(seen.frame), std::span{&seen, 1});
   const std::uint64_t data = number_of(data_of(seen.frame));
   if (((data ^ image.bits) & image.known) == 0) return;
   // An object that changes by itself may have had other values between the reads and the frame.
@@ -193,6 +193,7 @@ void expect_data(Dut& dut, const Tpdo& tpdo, const SeenFrame& seen, const Image&
   canopen::Frame expected = seen.frame;
   const std::uint64_t bits = (image.bits & known) | (data & ~known);
   for (std::size_t i = 0; i < expected.data.size(); ++i) expected.data[i] = static_cast<std::uint8_t>(bits >> 8 * i);
+  dut.name_frames(std::span{&seen, 1});
   dut.fail(fmt::format("{} with the values that SDO reads from {}: {}", tpdo.name(), objects_text(tpdo.mapping),
                        frame_text(expected)),
            frame_text(seen.frame));

@@ -25,7 +25,7 @@ SeenFrame ask(Dut& dut, const Tpdo& tpdo) {
   if (dut.wait_for(tpdo.frames(), to_send, since)) {
     dut.pass_time(silence);
     const std::vector<SeenFrame> all = dut.received_since(since, tpdo.frames());
-    dut.expect(all.size() == 1, fmt::format("one {} after a remote frame", tpdo.name()), frames_text(all));
+    dut.expect(all.size() == 1, fmt::format("one {} after a remote frame", tpdo.name()), frames_text(all), all);
     dut.note_remote_frame_answered();
     return all.front();
   }
@@ -60,7 +60,7 @@ void expect_sample_of_sync(Dut& dut, const Tpdo& tpdo) {
 /// Changes an object. An application that writes its own value over the change leaves no event to count.
 void cause_event(Dut& dut, const Tpdo& tpdo, Event& event) {
   event.read_back();
-  if (!event.apply()) no_stimulus(dut, tpdo);
+  if (!event.apply()) no_stimulus(dut, tpdo, false);
 }
 
 /// The frames after one event. Two with the same data are one too many. Another value is a change by the application,
@@ -68,7 +68,7 @@ void cause_event(Dut& dut, const Tpdo& tpdo, Event& event) {
 void expect_one_event(Dut& dut, const Tpdo& tpdo, const std::vector<SeenFrame>& frames, const std::string& when) {
   for (std::size_t i = 1; i < frames.size(); ++i) {
     dut.expect(!(frames[i].frame == frames[i - 1].frame), fmt::format("one {} {}", tpdo.name(), when),
-               frames_text(frames));
+               frames_text(frames), frames);
   }
 }
 
@@ -149,7 +149,7 @@ void sends_on_remote_frame(Dut& dut) {
 }
 
 void sends_on_event(Dut& dut) {
-  std::optional<Tpdo> without_stimulus;
+  std::optional<WithoutEvent> without_event;
   bool any = false;
   for_each_tpdo(dut, {Transmission{}}, [&](const Tpdo& tpdo, const Transmission&) {
     settle(dut, tpdo);
@@ -157,7 +157,7 @@ void sends_on_event(Dut& dut) {
     Event event{dut, tpdo.mapping};
     if (!find_event(dut, tpdo, event,
                     [&](Dut::Mark since) { return dut.wait_for(tpdo.frames(), to_send, since).has_value(); })) {
-      without_stimulus = tpdo;
+      without_event = {tpdo, event.has_run()};
       return;
     }
     settle(dut, tpdo);
@@ -169,7 +169,7 @@ void sends_on_event(Dut& dut) {
     dut.pass_time(Duration{inhibit_us});
     expect_inhibit_time(dut, tpdo, event, !changes);
   });
-  if (!any && without_stimulus) no_stimulus(dut, *without_stimulus);
+  if (!any && without_event) no_stimulus(dut, without_event->tpdo, without_event->stimulus_has_run);
 }
 
 void sends_by_event_timer(Dut& dut) {
@@ -187,7 +187,7 @@ void sends_by_event_timer(Dut& dut) {
     const std::vector<SeenFrame> frames = dut.received_since(since, tpdo.frames());
     dut.expect(frames.size() >= periods,
                fmt::format("{} {} times in {} periods of its event timer", tpdo.name(), periods, periods),
-               frames_text(frames));
+               frames_text(frames), frames);
     expect_period(dut, tpdo, frames, period_us);
     expect_present_data(dut, tpdo, frames.back(), before);
     if (within_limits(dut, tpdo.index, timer_parameter, 0) == 0) {

@@ -46,7 +46,7 @@ class Events {
   void apply() {
     bool any = false;
     for (const auto& event : events_) any = event->apply() || any;
-    if (!any) no_stimulus(dut_, first_);
+    if (!any) no_stimulus(dut_, first_, false);
   }
 
  private:

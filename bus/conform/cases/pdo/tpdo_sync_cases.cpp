@@ -13,7 +13,7 @@ namespace {
 bool is_sent_at_sync(Dut& dut, const Tpdo& tpdo, SyncSource& sync, std::uint64_t window_us) {
   const Image before = read_image(dut, tpdo.mapping);
   const std::vector<SeenFrame> frames = sync.send_and_collect(tpdo.frames());
-  dut.expect(frames.size() <= 1, fmt::format("at most one {} after a SYNC", tpdo.name()), frames_text(frames));
+  dut.expect(frames.size() <= 1, fmt::format("at most one {} after a SYNC", tpdo.name()), frames_text(frames), frames);
   if (frames.empty()) return false;
   expect_present_data(dut, tpdo, frames.front(), before);
   if (window_us != 0) {
@@ -75,7 +75,7 @@ void expect_none_without_event(Dut& dut, const Tpdo& tpdo, const std::vector<See
 void sends_at_sync_after_event(Dut& dut) {
   dut.enter(NmtState::pre_operational);
   SyncSource sync{dut};
-  std::optional<Tpdo> without_stimulus;
+  std::optional<WithoutEvent> without_event;
   bool any = false;
   for_each_tpdo(dut, {{.type = acyclic}}, [&](const Tpdo& tpdo, const Transmission&) {
     (void)sync.send_and_collect(tpdo.frames());  // entering Operational may be an event
@@ -94,7 +94,7 @@ void sends_at_sync_after_event(Dut& dut) {
       return sent = is_sent_at_sync(dut, tpdo, sync, window_of(dut));
     });
     if (!found) {
-      without_stimulus = tpdo;
+      without_event = {tpdo, event.has_run()};
       return;
     }
     any = true;
@@ -103,7 +103,7 @@ void sends_at_sync_after_event(Dut& dut) {
     expect_none_without_event(dut, tpdo, sync.send_and_collect(tpdo.frames()),
                               "of type 0 at the second SYNC after an event");
   });
-  if (!any && without_stimulus) no_stimulus(dut, *without_stimulus);
+  if (!any && without_event) no_stimulus(dut, without_event->tpdo, without_event->stimulus_has_run);
 }
 
 void sends_from_sync_start_value(Dut& dut) {

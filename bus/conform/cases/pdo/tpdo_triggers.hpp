@@ -58,6 +58,8 @@ class Event {
   /// object; the present one remains selected.
   [[nodiscard]] bool use_next();
   [[nodiscard]] std::string object() const;  ///< the object that `apply` changes
+  /// Whether a stimulus has succeeded.
+  [[nodiscard]] bool has_run() const { return works_; }
 
  private:
   struct Candidate {

@@ -39,6 +39,7 @@ bool EntryResults::expect_abort(const LiveEntry& entry, const SdoOutcome& outcom
 void EntryResults::add_failure(const LiveEntry& entry, std::string_view got) {
   failures_.add(entry, got);
   failed_.push_back({entry.index, entry.sub_index});
+  dut_.name_transfer(entry.index, entry.sub_index);
 }
 void EntryResults::add_warning(const LiveEntry& entry, std::string_view text) { warnings_.add(entry, text); }
 

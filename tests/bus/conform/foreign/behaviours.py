@@ -54,6 +54,10 @@ EMCY_REGISTER = {"5.5": Failure("1001h:00, as in the last EMCY: 1 ", "17 "),
                  "5.101": Failure("1001h:00 after a short RPDO, as in the EMCY with code 8210h: 1 ", "17 "),
                  "5.102": Failure("1001h:00 after a lost heartbeat, as in the EMCY with code 8130h: 1 ", "17 ")}
 EMCY_INHIBIT = {"5.105": Failure(r"the time between two EMCYs with 1015h = 500 ms: 450\.", r"^[0-9]{1,2}\.")}
+READ_ONLY = "1015h:00[^;]*: .*0601 0002h"
+EMCY_INHIBIT_READ_ONLY = {"4.10": Failure("accepts the values that it has", READ_ONLY),
+                          "4.11": Failure("each writable entry accepts", READ_ONLY),
+                          "5.105": Failure("written to 1015h:00", "0601 0002h")}
 EARLY_RPDO = {"3.101": Failure("RPDO 1 is not processed in pre-operational", "has the value of the RPDO"),
               "3.103": Failure("RPDO 1 is not processed in Operational if it was received in Pre-operational", "has the value")}
 NO_LONGER = r"node 5 no longer responds since case {} \("
@@ -114,6 +118,8 @@ BEHAVIOURS = (
     Behaviour("emcy-register", "the error register of each EMCY is 01h", (Switches(wrong_emcy_register=True),), only=("5.*",),
               failed=EMCY_REGISTER),
     Behaviour("emcy-inhibit", "1015h has no effect", (Switches(no_emcy_inhibit=True),), only=("5.*",), failed=EMCY_INHIBIT),
+    Behaviour("emcy-inhibit-read-only", "1015h cannot be written", (Switches(emcy_inhibit_read_only=True),),
+              only=("4.10", "4.11", "5.105"), failed=EMCY_INHIBIT_READ_ONLY, causes=1),
     # The same in the slave of slave.js, which has fewer services.
     Behaviour("good", "no fault", program=NODE_JS),
     Behaviour("good-12", "no fault", program=NODE_JS, only=("12.*",), level="hostile"),

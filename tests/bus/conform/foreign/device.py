@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import random
 from collections import deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from .dictionary import INCOMPATIBLE, INVALID_VALUE, NO_DATA, NOT_STORED, Abort, Dictionary, Key
@@ -53,6 +53,7 @@ class Switches:
     heartbeat_factor: float = 1.0          # of the time of 1017h
     wrong_emcy_register: bool = False      # the error register of each EMCY is 01h
     no_emcy_inhibit: bool = False          # 1015h has no effect
+    emcy_inhibit_read_only: bool = False   # 1015h cannot be written, although the EDS says so
     no_blocks: bool = False                # no block transfer
     sends_at_start: bool = False           # entering Operational is an event of the TPDO
     store_delay: float = 0.0               # of responses to "save" and "load", seconds
@@ -65,6 +66,9 @@ class Device:
         self.switches = switches
         self.random = random.Random(seed)
         self.dictionary = Dictionary(sheet, node_id)
+        if switches.emcy_inhibit_read_only:
+            entry = self.dictionary.entries[EMCY_INHIBIT, 0]
+            self.dictionary.entries[EMCY_INHIBIT, 0] = replace(entry, access="ro")
         self.sheet = sheet
         self.now = 0.0
         self.ended = False
