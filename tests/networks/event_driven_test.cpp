@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <event_driven.hpp>
+#include <string>
 #include <vector>
 
 #include "plant_bench.hpp"
@@ -15,6 +16,8 @@ using namespace std::chrono_literals;
 using Bytes = std::vector<std::uint8_t>;
 namespace od = ezd_1136::od;
 
+using Mode = od::modes_of_operation::type;
+constexpr std::uint32_t mode_can_id = event_driven::controller::Tpdo2::parameters.cob_id & 0x7FF;
 constexpr std::uint32_t can_id = event_driven::controller::Tpdo1::parameters.cob_id & 0x7FF;
 
 template <class Bus>
@@ -64,6 +67,52 @@ TEST(EventDriven, AValueIsSentAgainToANodeThatHasBooted) {
       EXPECT_EQ((Bytes{frame.data.begin(), frame.data.begin() + frame.size}), (Bytes{0xE8, 0x03, 0, 0, 0, 0, 0, 0}));
     }
   }
+}
+
+/// As an application does in its constructor. The mode is in a PDO of its own.
+TEST(EventDriven, AValueThatIsSetBeforeTheStartIsSent) {
+  namespace axis = event_driven::signals::axis;
+  Line bench;
+  bench.control.plant.axis.target_position(canopen::raw(1000));
+  bench.control.plant.set(axis::profile_velocity{}, canopen::raw(2000U));
+  EXPECT_EQ(bench.control.plant.set(axis::modes_of_operation{}, Mode::profile_velocity), canopen::ok);
+  bench.start();
+  EXPECT_EQ(canopen::to_raw(bench.control.plant.get(axis::target_position{})), 1000);
+  ASSERT_TRUE(bench.boot(10s));
+  bench.bus.run_for(1s);
+  EXPECT_EQ(bench.last(can_id), (Bytes{0xE8, 0x03, 0, 0, 0xD0, 0x07, 0, 0}));
+  EXPECT_EQ(bench.last(mode_can_id), (Bytes{3}));
+  EXPECT_EQ(canopen::to_raw(bench.axis.node().get(od::target_position{})), 1000);
+  EXPECT_EQ(canopen::to_raw(bench.axis.node().get(od::profile_velocity{})), 2000U);
+  EXPECT_EQ(bench.axis.node().get(od::modes_of_operation{}), Mode::profile_velocity);
+}
+
+/// A program that starts the plant again, for instance after the bus was lost.
+TEST(EventDriven, AValueRemainsWhenThePlantIsStartedAgain) {
+  Line bench;
+  bench.start();
+  ASSERT_TRUE(bench.boot(10s));
+  bench.control.plant.axis.target_position(canopen::raw(1000));
+  bench.bus.run_for(1s);
+  bench.start();
+  ASSERT_TRUE(bench.boot(10s));
+  bench.bus.run_for(1s);
+  EXPECT_EQ(canopen::to_raw(bench.axis.node().get(od::target_position{})), 1000);
+}
+
+/// 6060h of the drive is 1 by default and has the limits 1..8: 0 would be rejected.
+TEST(EventDriven, AValueThatWasNotSetIsTheDefaultValueOfTheNode) {
+  Line bench;
+  bench.start();
+  ASSERT_TRUE(bench.boot(10s));
+  bench.bus.run_for(1s);
+  EXPECT_EQ(bench.axis.node().get(od::modes_of_operation{}), Mode::profile_position);
+  for (const canopen::Frame& frame : bench.frames) {
+    if (frame.id == mode_can_id) {
+      EXPECT_EQ(frame.data[0], 1);
+    }
+  }
+  EXPECT_EQ(bench.faults, std::vector<std::string>{});
 }
 
 }  // namespace
