@@ -25,8 +25,10 @@ LOG = """(1.000000) can0 705#05
 """
 ENVIRONMENT = {name: value for name, value in os.environ.items() if not name.startswith("EDSC_")}
 
-# The words of a command with a node-ID and its EDS, and those with the name. @ is BUS, % a file that the command writes.
+# The words of a command with a node-ID and its EDS, and those with the name. @ is BUS, % a file that the command writes. `write`
+# starts heartbeats, which a short `monitor` may receive or not.
 ROWS = {
+    "monitor": ("monitor @ --node 5=device.eds --once 10ms --bit-rate 500", "monitor @ --node axis1 --once 10ms"),
     "read": ("read @ 5 1018h --eds device.eds --timeout 60s", "read @ axis1 1018h --timeout 60s"),
     "write": ("write @ 5 1017h 500 --eds device.eds --timeout 60s", "write @ axis1 1017h 500 --timeout 60s"),
     "configure": ("configure @ 5 axis1.dcf --dry-run --timeout 60s", "configure @ axis1 axis1.dcf --dry-run --timeout 60s"),
@@ -37,7 +39,6 @@ ROWS = {
     "conform": ("conform @ 5 device.eds --only 2.1 --quiet --timeout 60s", "conform @ axis1 --only 2.1 --quiet --timeout 60s"),
     "accept": ("accept @ 5 device.eds --only 2.1 --quiet --timeout 60s", "accept @ axis1 --only 2.1 --quiet --timeout 60s"),
     "overlay from-bus": ("overlay from-bus @ 5 device.eds -o % --timeout 60s", "overlay from-bus @ axis1 -o % --timeout 60s"),
-    "monitor": ("monitor @ --node 5=device.eds --once 10ms --bit-rate 500", "monitor @ --node axis1 --once 10ms"),
     "decode": ("decode can0.log --node 5=device.eds", "decode can0.log --node axis1"),
     "audit": ("audit can0.log --node 5=device.eds --master 5", "audit can0.log --node axis1 --master axis1"),
     "plot": ("plot can0.log 1018h:01 --node 5=device.eds -o %", "plot can0.log 1018h:01 --node axis1 -o %"),
@@ -134,6 +135,16 @@ class NodeNames(LiveTest):
         found = json.loads(result.stdout)
         self.assertEqual([(one["node_id"], one["name"]) for one in found["nodes"]], [(5, "axis1")])
         self.assertIsNotNone(found["load_percent"])
+
+    def test_select_the_frames_of_a_log(self) -> None:
+        (self.folder / "two.log").write_text(LOG + "(1.400000) can0 706#05\n")
+        all_frames = self.run_edsc("decode two.log --network line.json").stdout
+        selected = self.run_edsc("decode two.log --network line.json --filter node=axis1").stdout
+        self.assertEqual(selected.splitlines(), [line for line in all_frames.splitlines() if " axis1 " in line])
+        self.assertEqual(len(selected.splitlines()), 5)
+        result = self.run_edsc("decode two.log --network line.json --filter node=axsi1")
+        self.assertEqual((result.returncode, result.stdout), (WRONG_USAGE, ""))
+        self.assertIn('"axsi1" is not a node-ID from 1 to 127 and not the name of a node; did you mean "axis1"?', result.stderr)
 
     def test_of_a_missing_network_file(self) -> None:
         result = self.run_edsc("read @ axis1 1018h --network missing.json")
