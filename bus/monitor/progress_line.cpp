@@ -28,6 +28,11 @@ void ProgressLine::show(const std::string& text) {
   next_ = Clock::now() + between;
 }
 
+void ProgressLine::show_at_once(const std::string& text) {
+  next_ = Clock::now();
+  show(text);
+}
+
 void ProgressLine::hide() {
   if (!shown_) return;
   print_to_stderr("\r\x1B[K");

@@ -17,6 +17,8 @@ class ProgressLine {
   /// Whether it is time for an update.
   [[nodiscard]] bool due() const;
   void show(const std::string& text);
+  /// Shows the first text of work that is known to take a while, without waiting for an update.
+  void show_at_once(const std::string& text);
   /// Removes the line before other output.
   void hide();
 

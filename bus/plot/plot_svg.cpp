@@ -6,8 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <map>
 #include <pugixml.hpp>
+#include <set>
 #include <sstream>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "plot/axis_ticks.hpp"
 #include "text/counted.hpp"
@@ -126,8 +132,9 @@ std::vector<ValueBin> bins_of_pixels(const std::vector<ValueBin>& bins, const Ti
 class LinePath {
  public:
   void move_or_draw(double x, double y, bool steps) {
-    if (text_.empty()) {
-      text_ = fmt::format("M{:.2f} {:.2f}h0", x, y);  // a single value is a dot
+    if (is_broken_) {
+      text_ += fmt::format("M{:.2f} {:.2f}h0", x, y);  // a single value is a dot
+      is_broken_ = false;
     } else if (steps) {
       text_ += fmt::format("H{:.2f}V{:.2f}", x, y);
     } else {
@@ -135,8 +142,10 @@ class LinePath {
     }
     y_ = y;
   }
-  /// The last value remains to the end of the log.
+  /// The last value remains until then.
   void hold_to(double x) { text_ += fmt::format("H{:.2f}", x); }
+  /// The next value is not connected to the last one.
+  void break_line() { is_broken_ = true; }
   void draw_vertical(double y) {
     if (y != y_) text_ += fmt::format("V{:.2f}", y);
     y_ = y;
@@ -146,6 +155,7 @@ class LinePath {
  private:
   std::string text_;
   double y_ = 0;
+  bool is_broken_ = true;
 };
 
 std::string path_of(const PlotLine& line, const TimeAxis& time, const Scale& values) {
@@ -155,18 +165,118 @@ std::string path_of(const PlotLine& line, const TimeAxis& time, const Scale& val
     path.draw_vertical(values.at(bin.min));
     path.draw_vertical(values.at(bin.max));
     path.draw_vertical(values.at(bin.last));
+    if (bin.lost_us) {
+      path.hold_to(time.x(std::min(*bin.lost_us, time.last_us)));
+      path.break_line();
+    }
   }
-  if (line.series.bins().back().last_us < time.last_us) path.hold_to(time.x(time.last_us));
+  const ValueBin& last = line.series.bins().back();
+  if (!last.lost_us && last.last_us < time.last_us) path.hold_to(time.x(time.last_us));
   return path.text();
 }
+
+std::string state_name(const PlotLine& line, const StateRun& run) {
+  if (run.is_mixed) return "several states";
+  const auto found = line.state_names.find(run.state);
+  return found != line.state_names.end() ? found->second : fmt::format("{}", run.state);
+}
+
+/// A piece of a band, in pixels.
+struct BandPiece {
+  double left, right;
+  StateRun run;
+};
+
+/// A run that is narrower than half a pixel becomes one with its neighbours of that width.
+std::vector<BandPiece> pieces_of(const PlotLine& line, const TimeAxis& time) {
+  constexpr double narrow = 0.5;
+  const std::vector<StateRun>& runs = line.states.runs();
+  std::vector<BandPiece> pieces;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const bool is_last = i + 1 == runs.size();
+    const std::int64_t next_us = is_last ? time.last_us : runs[i + 1].first_us;
+    const double left = time.x(runs[i].first_us), right = time.x(std::min(runs[i].lost_us.value_or(next_us), next_us));
+    const bool is_narrow = right - left < narrow && !is_last;
+    const bool follows_narrow =
+        !pieces.empty() && (pieces.back().run.is_mixed || pieces.back().right - pieces.back().left < narrow);
+    if (is_narrow && follows_narrow && left - pieces.back().right < narrow) {
+      pieces.back().right = right;
+      pieces.back().run.is_mixed = true;
+    } else {
+      pieces.push_back({left, right, runs[i]});
+    }
+  }
+  return pieces;
+}
+
+constexpr double character_width = 7, label_margin = 4;
+
+double width_of(std::string_view name) { return static_cast<double>(name.size()) * character_width; }
+
+/// A state as the legend has it.
+struct LegendEntry {
+  std::string name, style_class;
+  double x = 0;
+  unsigned row = 0;
+};
+
+/// The pieces of a band with their styles and names. States whose name does not fit into a piece are in the legend.
+class Band {
+ public:
+  Band(const PlotLine& line, const TimeAxis& time) : line_{line}, pieces_{pieces_of(line, time)} {
+    std::set<std::string> shown;
+    for (const BandPiece& piece : pieces_) {
+      if (has_label(piece)) shown.insert(name(piece));
+    }
+    for (const BandPiece& piece : pieces_) {
+      const std::string style = style_class(piece);
+      if (shown.insert(name(piece)).second) add_to_legend(name(piece), style);
+    }
+  }
+
+  [[nodiscard]] const std::vector<BandPiece>& pieces() const { return pieces_; }
+  [[nodiscard]] const std::vector<LegendEntry>& legend() const { return legend_; }
+  [[nodiscard]] unsigned legend_rows() const { return legend_.empty() ? 0 : legend_.back().row + 1; }
+
+  [[nodiscard]] std::string name(const BandPiece& piece) const { return state_name(line_, piece.run); }
+  [[nodiscard]] static double width(const BandPiece& piece) { return std::max(piece.right - piece.left, 1.0); }
+  [[nodiscard]] bool has_label(const BandPiece& piece) const {
+    return width_of(name(piece)) + 2 * label_margin <= width(piece);
+  }
+  /// States get their colours in the order of the pieces.
+  [[nodiscard]] std::string style_class(const BandPiece& piece) {
+    const std::size_t color =
+        colors_.try_emplace(piece.run.state, colors_.size() % std::size(line_colors)).first->second;
+    return piece.run.is_mixed ? "state mixed" : fmt::format("state s{}", color);
+  }
+
+ private:
+  void add_to_legend(std::string text, std::string style) {
+    constexpr double mark_width = 18, distance = 16;
+    const double width = mark_width + width_of(text) + distance;
+    if (legend_x_ + width > plot_right && legend_x_ > plot_left) {
+      legend_x_ = plot_left;
+      ++legend_row_;
+    }
+    legend_.push_back({std::move(text), std::move(style), legend_x_, legend_row_});
+    legend_x_ += width;
+  }
+
+  const PlotLine& line_;
+  std::vector<BandPiece> pieces_;
+  std::map<std::int64_t, std::size_t> colors_;
+  std::vector<LegendEntry> legend_;
+  double legend_x_ = plot_left;
+  unsigned legend_row_ = 0;
+};
 
 struct Panel {
   std::string name;
   std::vector<const PlotLine*> lines;
 
   [[nodiscard]] bool is_band() const { return lines.front()->is_band; }
-  [[nodiscard]] double height() const {
-    if (is_band()) return panel_gap + legend_row + band_height;
+  [[nodiscard]] double height(const TimeAxis& time) const {
+    if (is_band()) return panel_gap + legend_row + band_height + legend_row * Band{*lines.front(), time}.legend_rows();
     return panel_gap + legend_row * static_cast<double>(lines.size()) + panel_height;
   }
 };
@@ -205,58 +315,29 @@ Scale value_scale(const Panel& panel, double top, AxisTicks& ticks) {
   return {min, max, top + panel_height, top};
 }
 
-std::string state_name(const PlotLine& line, const StateRun& run) {
-  if (run.is_mixed) return "several states";
-  const auto found = line.state_names.find(run.state);
-  return found != line.state_names.end() ? found->second : fmt::format("{}", run.state);
-}
-
-/// A piece of a band, in pixels.
-struct BandPiece {
-  double left, right;
-  StateRun run;
-};
-
-/// A run that is narrower than half a pixel becomes one with its neighbours of that width.
-std::vector<BandPiece> pieces_of(const PlotLine& line, const TimeAxis& time) {
-  constexpr double narrow = 0.5;
-  const std::vector<StateRun>& runs = line.states.runs();
-  std::vector<BandPiece> pieces;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const bool is_last = i + 1 == runs.size();
-    const double left = time.x(runs[i].first_us), right = time.x(is_last ? time.last_us : runs[i + 1].first_us);
-    const bool is_narrow = right - left < narrow && !is_last;
-    const bool follows_narrow =
-        !pieces.empty() && (pieces.back().run.is_mixed || pieces.back().right - pieces.back().left < narrow);
-    if (is_narrow && follows_narrow) {
-      pieces.back().right = right;
-      pieces.back().run.is_mixed = true;
-    } else {
-      pieces.push_back({left, right, runs[i]});
-    }
-  }
-  return pieces;
-}
-
 void append_band(pugi::xml_node svg, const PlotLine& line, const TimeAxis& time, double y) {
-  constexpr double character_width = 7, margin = 4;
   pugi::xml_node group = append_element(svg, "g", "band");
   append_text_at(group, plot_left, y + panel_gap + 4, "start", line.name);
   const double top = y + panel_gap + legend_row;
-  std::map<std::int64_t, std::size_t> colors;
-  for (const BandPiece& piece : pieces_of(line, time)) {
-    const std::string name = state_name(line, piece.run);
-    const std::size_t color = colors.try_emplace(piece.run.state, colors.size() % std::size(line_colors)).first->second;
-    const std::string style_class = piece.run.is_mixed ? "state mixed" : fmt::format("state s{}", color);
-    const double width = std::max(piece.right - piece.left, 1.0);
-    pugi::xml_node state = append_element(group, "rect", style_class.c_str());
+  Band band{line, time};
+  for (const BandPiece& piece : band.pieces()) {
+    pugi::xml_node state = append_element(group, "rect", band.style_class(piece).c_str());
     state.append_attribute("x").set_value(pixel_text(piece.left).c_str());
     state.append_attribute("y").set_value(pixel_text(top).c_str());
-    state.append_attribute("width").set_value(pixel_text(width).c_str());
+    state.append_attribute("width").set_value(pixel_text(Band::width(piece)).c_str());
     state.append_attribute("height").set_value(pixel_text(band_height).c_str());
-    state.append_child("title").text().set(printable(name).c_str());
-    if (static_cast<double>(name.size()) * character_width + 2 * margin > width) continue;
-    append_text_at(group, piece.left + margin, top + band_height / 2 + 4, "start", name);
+    state.append_child("title").text().set(printable(band.name(piece)).c_str());
+    if (!band.has_label(piece)) continue;
+    append_text_at(group, piece.left + label_margin, top + band_height / 2 + 4, "start", band.name(piece));
+  }
+  constexpr double mark_radius = 5, mark_distance = 14;
+  for (const LegendEntry& entry : band.legend()) {
+    const double row = top + band_height + legend_row * (entry.row + 0.75);
+    pugi::xml_node mark = append_element(group, "circle", entry.style_class.c_str());
+    mark.append_attribute("cx").set_value(pixel_text(entry.x + mark_radius).c_str());
+    mark.append_attribute("cy").set_value(pixel_text(row - 4).c_str());
+    mark.append_attribute("r").set_value(pixel_text(mark_radius).c_str());
+    append_text_at(group, entry.x + mark_distance, row, "start", entry.name);
   }
 }
 
@@ -296,7 +377,7 @@ std::string plot_svg(const Plot& plot) {
   const TimeAxis time{plot};
   const std::vector<Panel> panels = panels_of(plot);
   double height = title_height + time_axis_height;
-  for (const Panel& panel : panels) height += panel.height();
+  for (const Panel& panel : panels) height += panel.height(time);
 
   pugi::xml_document document;
   pugi::xml_node svg = document.append_child("svg");
@@ -330,7 +411,7 @@ std::string plot_svg(const Plot& plot) {
     } else {
       append_panel(svg, plot, panel, time, y);
     }
-    y += panel.height();
+    y += panel.height(time);
   }
   pugi::xml_node axis = append_element(svg, "g", "time-axis");
   for (const double tick : time.ticks.values)

@@ -24,6 +24,10 @@ struct PlotLine {
   StateSeries states;                               ///< of a band, not empty
   std::map<std::int64_t, std::string> state_names;  ///< of a band; other states have their number
 
+  /// The node is lost at this time: a gap follows, until the next value. Has no effect if a value is newer.
+  void interrupt(std::int64_t microseconds) {
+    is_band ? states.interrupt(microseconds) : series.interrupt(microseconds);
+  }
   [[nodiscard]] bool empty() const { return is_band ? states.empty() : series.empty(); }
 };
 

@@ -9,11 +9,15 @@ void StateSeries::add(std::int64_t microseconds, std::int64_t state) {
   if (!runs_.empty()) {
     StateRun& last = runs_.back();
     microseconds = std::max(microseconds, last.last_us);
-    last.last_us = microseconds;
-    if (last.state == state && !last.is_mixed) return;
+    if (!last.lost_us) last.last_us = microseconds;
+    if (last.state == state && !last.is_mixed && !last.lost_us) return;
   }
-  runs_.push_back({microseconds, microseconds, state, false});
+  runs_.push_back({microseconds, microseconds, state, false, {}});
   if (runs_.size() > max_runs) merge();
+}
+
+void StateSeries::interrupt(std::int64_t microseconds) {
+  if (!runs_.empty() && microseconds >= runs_.back().last_us) runs_.back().lost_us = microseconds;
 }
 
 /// Combines runs that are shorter than the span. The last run is kept: its end is not known.
@@ -24,6 +28,7 @@ void StateSeries::combine() {
     const bool is_short = run.is_mixed || runs_[i + 1].first_us - run.first_us < span_us_;
     if (is_short && kept > 0 && runs_[kept - 1].is_mixed) {
       runs_[kept - 1].last_us = run.last_us;
+      runs_[kept - 1].lost_us = run.lost_us;
       continue;
     }
     run.is_mixed = is_short;

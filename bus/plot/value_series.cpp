@@ -9,6 +9,7 @@ void ValueBin::append(const ValueBin& next) {
   min = std::min(min, next.min);
   max = std::max(max, next.max);
   last = next.last;
+  lost_us = next.lost_us;
 }
 
 /// The number of the span that a time is in.
@@ -38,13 +39,17 @@ void ValueSeries::add(std::int64_t microseconds, double value) {
   max_ = count_ == 0 ? value : std::max(max_, value);
   ++count_;
   if (!bins_.empty()) microseconds = std::max(microseconds, bins_.back().last_us);
-  const ValueBin bin{microseconds, microseconds, value, value, value, value};
+  const ValueBin bin{microseconds, microseconds, value, value, value, value, {}};
   if (bin_us_ != 0 && span_of(microseconds) == span_of(bins_.back().first_us)) {
     bins_.back().append(bin);
     return;
   }
   bins_.push_back(bin);
   if (bins_.size() > max_bins) merge();
+}
+
+void ValueSeries::interrupt(std::int64_t microseconds) {
+  if (!bins_.empty() && microseconds >= bins_.back().last_us) bins_.back().lost_us = microseconds;
 }
 
 }  // namespace edsc

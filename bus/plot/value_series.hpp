@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace edsc {
@@ -11,6 +12,7 @@ namespace edsc {
 struct ValueBin {
   std::int64_t first_us = 0, last_us = 0;
   double first = 0, min = 0, max = 0, last = 0;
+  std::optional<std::int64_t> lost_us = {};  ///< the last value is not known from then on, until the next bin
 
   /// Appends values that follow.
   void append(const ValueBin& next);
@@ -25,6 +27,8 @@ class ValueSeries {
 
   /// `value` must be finite. A time before that of the previous value counts as the same time.
   void add(std::int64_t microseconds, double value);
+  /// The last value is not known from a time after it on, until the next one.
+  void interrupt(std::int64_t microseconds);
 
   [[nodiscard]] const std::vector<ValueBin>& bins() const { return bins_; }
   [[nodiscard]] bool empty() const { return bins_.empty(); }

@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "simulate/compiled_object.hpp"
 #include "system/environment.hpp"
 #include "system/path.hpp"
 #include "system/run_program.hpp"
@@ -67,9 +68,7 @@ class Compilation {
  private:
   void work() {
     for (std::size_t i = 0; (i = next_++) < build_.sources.size();) {
-      const std::string source = join_path(build_.folder, build_.sources[i]);
-      std::string error = compile({"-std=c++20", "-O2", "-I" + build_.folder, "-I" + build_.include_folder, "-c",
-                                   source, "-o", object_file(source)});
+      std::string error = compile_if_needed(join_path(build_.folder, build_.sources[i]));
       const std::scoped_lock lock{mutex_};
       if (error.empty()) {
         progress_(++done_);
@@ -78,6 +77,28 @@ class Compilation {
         if (error_.empty()) error_ = std::move(error);
       }
     }
+  }
+
+  std::string compile_if_needed(const std::string& source) const {
+    const CompiledObject object{object_file(source)};
+    const std::vector<std::string> arguments{"-std=c++20",
+                                             "-O2",
+                                             "-I" + build_.folder,
+                                             "-I" + build_.include_folder,
+                                             "-MD",
+                                             "-MF",
+                                             object.dependency_file(),
+                                             "-c",
+                                             source,
+                                             "-o",
+                                             object.path()};
+    std::vector<std::string> command = compiler();
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    if (object.is_up_to_date(command)) return {};
+    object.begin();
+    std::string error = compile(arguments);
+    if (error.empty()) object.complete(command);
+    return error;
   }
 
   const SimulationBuild& build_;

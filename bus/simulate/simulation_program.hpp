@@ -27,8 +27,9 @@ struct SimulationBuild {
   std::string include_folder;        ///< of the runtime
 };
 
-/// Compiles the sources with `$CXX`, default `c++`, several at a time, and links `simulate` in the folder. `progress`
-/// gets the number of compiled sources. Returns the path of the program. Throws SimulationError.
+/// Compiles the sources with `$CXX`, default `c++`, several at a time, and links `simulate` in the folder. Objects of
+/// an earlier build whose files and command are the same are used again. `progress` gets the number of compiled
+/// sources. Returns the path of the program. Throws SimulationError.
 [[nodiscard]] std::string build_simulation(const SimulationBuild& build,
                                            const std::function<void(std::size_t)>& progress);
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "device/device.hpp"
+#include "network/error_control.hpp"
 #include "text/counted.hpp"
 #include "text/text_table.hpp"
 #include "values/nmt_text.hpp"
@@ -94,6 +95,36 @@ std::string event_text(const SimulatedNetwork& simulated, const SimulationEvent&
     case Kind::state: return fmt::format("{} is {}", name, nmt_state_text(event.state));
   }
   return {};
+}
+
+bool has_babbling_node(const std::vector<SimulationFault>& faults) {
+  return std::ranges::any_of(faults, [](const SimulationFault& one) { return one.kind == FaultKind::babbling; });
+}
+
+/// A lost node that no other node misses, and missing heartbeats of nodes that are not lost. A node with guarding in
+/// place of a heartbeat has no consumer in the simulation; a babbling node delays the heartbeats of all others.
+void add_problems_of_losses(const SimulatedNetwork& simulated, std::vector<std::string>& problems) {
+  const auto& nodes = simulated.network.nodes;
+  const auto& events = simulated.result.events;
+  for (const SimulationFault& fault : simulated.faults) {
+    if (fault.kind != FaultKind::lost) continue;
+    const NetworkNode& node = nodes[fault.node];
+    if (heartbeat_time(node.device()) == 0 && node_guarding(node.device())) continue;
+    const bool is_missed = std::ranges::any_of(events, [&](const SimulationEvent& event) {
+      return event.kind == Kind::heartbeat_lost && event.other == node.node_id;
+    });
+    if (!is_missed) problems.push_back(fmt::format("no node detects that {} is lost", node.name));
+  }
+  if (has_babbling_node(simulated.faults)) return;
+  for (const SimulationEvent& event : events) {
+    if (event.kind != Kind::heartbeat_lost) continue;
+    const auto missed = std::ranges::find(nodes, event.other, &NetworkNode::node_id);
+    if (missed == nodes.end() || is_faulty(simulated.faults, static_cast<std::size_t>(missed - nodes.begin())))
+      continue;
+    if (is_faulty(simulated.faults, event.node)) continue;  // a lost node receives nothing
+    problems.push_back(
+        fmt::format("{}: {}, which has no fault", seconds_of(event.time_us), event_text(simulated, event)));
+  }
 }
 
 /// Boot-up and start are not shown: all nodes do that.
@@ -199,6 +230,7 @@ std::vector<std::string> simulation_problems(const SimulatedNetwork& simulated) 
     problems.push_back(fmt::format("{} is {} at the end, not {}", node_of(simulated, i).name, condition_text(end),
                                    nmt_state_text(canopen::NmtState::operational)));
   }
+  add_problems_of_losses(simulated, problems);
   return problems;
 }
 

@@ -89,7 +89,7 @@ int audit_log(const Settings& given) {
   settings.limits.bit_rate = settings.bit_rate_kbit * 1000;
   const GivenNodes nodes = load_given_nodes(settings, settings.color);
   LogDecoder decoder{
-      nodes.known(), nodes.labels, {settings.log_name(), settings.interface, LogOutput::text, false, {}}};
+      nodes.known_with_masters(), nodes.labels, {settings.log_name(), settings.interface, LogOutput::text, false, {}}};
   audit::Auditor auditor{decoder.decoder(), settings.limits};
   auditor.set_nmt_master(settings.nmt_master);
   if (!settings.conform.empty()) auditor.expect(read_provocations(settings.conform));

@@ -44,14 +44,14 @@ struct FormatRow {
 
 constexpr FormatRow formats[] = {{"text", LogOutput::text}, {"json", LogOutput::json}, {"csv", LogOutput::csv}};
 
-LogDecoderSettings decoder_settings(const Settings& settings) {
+LogDecoderSettings decoder_settings(const Settings& settings, const NodeLabels& labels) {
   LogDecoderSettings result{settings.log_name(), settings.interface, LogOutput::text, settings.color.on(stdout), {}};
   for (const FormatRow& row : formats) {
     if (settings.format == row.name) result.output = row.output;
   }
   if (settings.summary && result.output == LogOutput::csv) fail("--summary: CSV has no place for a summary");
   for (const std::string& filter : settings.filters) {
-    const std::string problem = result.filter.add(filter);
+    const std::string problem = result.filter.add(filter, labels);
     if (!problem.empty()) fail("--filter: " + problem);
   }
   return result;
@@ -60,7 +60,7 @@ LogDecoderSettings decoder_settings(const Settings& settings) {
 int decode(const Settings& settings) {
   constexpr std::size_t output_bytes = std::size_t{64} * 1024;
   const GivenNodes nodes = load_given_nodes(settings, settings.color);
-  LogDecoder decoder{nodes.known(), nodes.labels, decoder_settings(settings)};
+  LogDecoder decoder{nodes.known(), nodes.labels, decoder_settings(settings, nodes.labels)};
   report_closed_pipes();
   std::string out, complaints;
   const auto flush = [&] {

@@ -45,12 +45,24 @@ struct Settings : NodesSettings {
 
 constexpr canopen::Duration between_pictures = canopen::from_milliseconds(100);
 
+/// The bit rate of the command line, otherwise that of the network file.
+std::optional<unsigned> bit_rate_of(const Settings& settings, const GivenNodes& nodes) {
+  if (settings.bit_rate || !nodes.network) return settings.bit_rate;
+  const WrittenNumber& of_network = nodes.network->network.description.bit_rate;
+  return of_network ? std::optional<unsigned>{of_network->value} : std::nullopt;
+}
+
 /// Prints the events on the bus as text.
 class Monitor {
  public:
-  Monitor(LiveBus& bus, const Settings& settings, const std::vector<KnownNode>& known)
-      : bus_{bus}, decoder_{known}, view_{settings.bus, settings.bit_rate, false} {
-    for (const KnownNode& node : known) state_.set_name(node.node_id, node.device->product_name);
+  Monitor(LiveBus& bus, const Settings& settings, const GivenNodes& nodes)
+      : bus_{bus}, decoder_{nodes.known()}, view_{settings.bus, bit_rate_of(settings, nodes), false} {
+    for (const auto& [node_id, node] : nodes.devices) state_.set_name(node_id, node.named.device.product_name);
+    for (std::uint8_t node_id = 1; node_id <= 127; ++node_id) {
+      if (const std::string_view name = nodes.labels.name(node_id); !name.empty()) {
+        state_.set_name(node_id, std::string{name});
+      }
+    }
     last_ = bus_.now();
     state_.start(0);
   }
@@ -176,9 +188,8 @@ int serve(Monitor& monitor, const ListenAddress& address) {
 int run_monitor(const Settings& settings) {
   if (settings.format == "json" && !settings.once_us) throw_requires("--format json", "--once");
   const GivenNodes nodes = load_given_nodes(settings, settings.color);
-  const std::vector<KnownNode> known = nodes.known();
   return with_bus(settings.bus, [&](LiveBus& bus) {
-    Monitor monitor{bus, settings, known};
+    Monitor monitor{bus, settings, nodes};
     if (settings.web) return serve(monitor, *settings.web);
     if (settings.once_us) return monitor.print_once(*settings.once_us, settings.format);
     return Terminal::is_there() ? monitor.show_table(settings.color.on(stdout)) : monitor.print_changes();
@@ -192,7 +203,10 @@ void add_monitor_options(Command command, int& exit_code) {
   add_bus_argument(command, settings.bus);
   add_nodes_options(command, settings);
   command.add_duration("--once", 10'000, 86'400'000'000, [&settings](std::uint64_t us) { settings.once_us = us; });
-  command.add_option("--bit-rate", settings.bit_rate, "to compute the bus load, without stuff bits").range(5, 1000);
+  command
+      .add_option("--bit-rate", settings.bit_rate,
+                  "to compute the bus load, without stuff bits (default: that of the network file)")
+      .range(5, 1000);
   command.add_text_option("--web", [&settings](const std::string& text) { settings.web = parse_listen_address(text); })
       .optional_value()
       .show_default("127.0.0.1:8080")

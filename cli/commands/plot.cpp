@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+#include <vector>
 
 #include "commands/commands.hpp"
 #include "decode/log/log_decoder.hpp"
+#include "decode/log/node_silence.hpp"
 #include "decode/log/ordered_time.hpp"
 #include "decode/log/value_number.hpp"
 #include "device/entry_text.hpp"
+#include "diagnostics/quote.hpp"
 #include "lookup/find_entry.hpp"
 #include "monitor/progress_line.hpp"
 #include "plot/plot_svg.hpp"
@@ -19,6 +24,7 @@
 #include "text/counted.hpp"
 #include "text/number_text.hpp"
 #include "text/printable.hpp"
+#include "text/suggestion.hpp"
 #include "values/append.hpp"
 
 namespace edsc {
@@ -28,6 +34,7 @@ constexpr const char* examples = R"(Examples:
   edsc plot can0.log position_actual_value --node 5=drive.eds -o position.svg
   edsc plot can0.log 6064h 606Ch 6041h --node 5=drive.eds -o drive.svg    panels by unit, a band of states
   edsc plot trip.asc 5/6064h 6/6064h --node 5=drive.eds --node 6=drive.eds -o axes.svg
+  edsc plot can0.log axis1/6064h --network plant.json -o axis1.svg        the node by its name in the network file
   edsc plot capture.pcapng 6064h --node axis1.dcf --title "Axis 1" > axis1.svg)";
 
 struct Settings : LogSettings {
@@ -119,19 +126,38 @@ void add_lines(std::uint8_t node_id, const NodeLabels& labels, const Object& obj
   }
 }
 
-/// `6064h`, of all nodes that have it, or `5/6064h`.
+/// A node by its node-ID, or by its name in the network file or DCF; nothing if there is none. Ends the command for a
+/// node-ID that is not given.
+std::optional<std::uint8_t> find_node_of(const std::string& text, std::string_view node, const GivenNodes& nodes) {
+  const auto is_named = [&](const auto& one) { return nodes.labels.name(one.first) == node; };
+  if (const auto named = std::ranges::find_if(nodes.devices, is_named); named != nodes.devices.end()) {
+    return named->first;
+  }
+  const auto node_id = parse_whole<std::uint8_t>(node);
+  if (node_id && !nodes.devices.contains(*node_id)) {
+    fail(fmt::format("{}: node {} is not one of --node and --network", text, *node_id));
+  }
+  return node_id;
+}
+
+/// `; "drvie" is not a node; did you mean "drive"?`
+std::string unknown_node_text(std::string_view node, const GivenNodes& nodes) {
+  std::vector<std::string> names;
+  for (const auto& [id, one] : nodes.devices) names.emplace_back(nodes.labels.name(id));
+  return fmt::format("; {} is not the name of a node{}", quote(node), did_you_mean(node, names));
+}
+
+/// `6064h`, of all nodes that have it, `5/6064h` or `axis1/6064h`.
 void add_object(const std::string& text, const GivenNodes& nodes, std::vector<Wanted>& wanted) {
   const std::size_t slash = text.find('/');
-  const auto node_id =
-      slash == std::string::npos ? std::nullopt : parse_whole<std::uint8_t>(std::string_view{text}.substr(0, slash));
+  const std::string_view node = slash == std::string::npos ? "" : std::string_view{text}.substr(0, slash);
+  const std::optional<std::uint8_t> node_id = node.empty() ? std::nullopt : find_node_of(text, node, nodes);
   const std::string name = node_id ? text.substr(slash + 1) : text;
-  if (node_id && !nodes.devices.contains(*node_id))
-    fail(fmt::format("{}: node {} is not one of --node and --network", text, *node_id));
   std::string problem;
   const std::size_t before = wanted.size();
-  for (const auto& [id, node] : nodes.devices) {
+  for (const auto& [id, given] : nodes.devices) {
     if (node_id && id != *node_id) continue;
-    const FoundEntry found = find_one_entry(node.named, name);
+    const FoundEntry found = find_one_entry(given.named, name);
     if (!found.ok()) {
       problem = found.problem;
       continue;
@@ -146,7 +172,8 @@ void add_object(const std::string& text, const GivenNodes& nodes, std::vector<Wa
     if (known) fail(fmt::format("{}: the object of node {} is given twice", text, id));
     add_lines(id, nodes.labels, *found.object, *found.entry, wanted);
   }
-  if (wanted.size() == before) fail(problem);
+  if (wanted.size() != before) return;
+  fail(node.empty() || node_id ? problem : problem + unknown_node_text(node, nodes));
 }
 
 /// PDOs, and the ends of SDO transfers; the request of a write has the value, too, but it may be rejected.
@@ -191,12 +218,27 @@ void take_values(const LogLine& line, const Message& message, std::vector<Wanted
   }
 }
 
+/// The values of a lost node are not known until its next frame.
+void interrupt(std::uint8_t node_id, std::int64_t lost_us, std::vector<Wanted>& wanted) {
+  for (Wanted& one : wanted) {
+    if (one.node_id == node_id) one.line.interrupt(lost_us);
+  }
+}
+
+/// Also the master whose EDS the network generates: its 1016h has the times of the other nodes.
+std::vector<const Device*> devices_of(const GivenNodes& nodes) {
+  std::vector<const Device*> devices;
+  for (const KnownNode& node : nodes.known_with_masters()) devices.push_back(node.device);
+  return devices;
+}
+
 int plot(const Settings& settings) {
   if (!settings.describe_nodes()) fail("--node ID=FILE or --network FILE is missing; the EDS has the objects");
   const GivenNodes nodes = load_given_nodes(settings, settings.color);
   std::vector<Wanted> wanted;
   for (const std::string& text : settings.objects) add_object(text, nodes, wanted);
 
+  NodeSilence silence{devices_of(nodes)};
   LogDecoder decoder{
       nodes.known(), nodes.labels, {settings.log_name(), settings.interface, LogOutput::text, false, {}}};
   PlottedLog log;
@@ -212,6 +254,11 @@ int plot(const Settings& settings) {
     const Message* const message = decoder.evaluate(line, complaints);
     if (message == nullptr) return;
     log.count(line, settings, complaints);
+    if (line.has_time) {
+      const NodeModel* const sender = decoder.decoder().find_model(message->node_id);
+      const auto lost = silence.see(*message, sender, line.microseconds);
+      if (lost) interrupt(message->node_id, *lost, wanted);
+    }
     take_values(line, *message, wanted);
     constexpr std::uint64_t some_frames = 4096;
     if (log.frames % some_frames == 0 && progress.due()) progress.show(counted(log.frames, "frame"));
@@ -232,6 +279,7 @@ int plot(const Settings& settings) {
                *log.times.first_us() + log.times.now_us(),
                {}};
   for (Wanted& one : wanted) {
+    if (const auto lost = silence.lost_at(one.node_id, picture.last_us)) one.line.interrupt(*lost);
     if (one.line.empty()) {
       print_to_stderr("{}: {} has no values\n", settings.log_name(), one.line.name);
     } else {
@@ -251,7 +299,7 @@ void add_plot_options(Command command, int& exit_code) {
   add_log_options(command, settings).required();
   command
       .add_option("OBJECT", settings.objects,
-                  "index or name of an object, of all nodes that have it; NODE/OBJECT: of one node")
+                  "index or name of an object, of all nodes that have it; NODE/OBJECT: of one node, by node-ID or name")
       .required();
   command.add_option("--output", settings.output, "SVG (default: standard output)");
   command.add_option("--title", settings.title, "default: the name of the log, without its folder");

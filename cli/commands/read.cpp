@@ -70,7 +70,7 @@ std::vector<Chosen> choose_entries(const Settings& settings, const LoadedDevice*
   if (settings.all) return all_entries(*loaded->device);
   std::vector<Chosen> chosen;
   for (const std::string& text : settings.objects) {
-    std::vector<LiveEntry> entries = name_entries(loaded, text);
+    std::vector<LiveEntry> entries = name_entries(loaded, text, settings.without_sheet);
     for (LiveEntry& entry : entries) {
       if (settings.type != nullptr) set_type(entry, *settings.type);
       chosen.push_back({std::move(entry), entries.size() > 1});

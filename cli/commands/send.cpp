@@ -7,11 +7,13 @@
 #include "decode/compose_pdo.hpp"
 #include "decode/log/log_line.hpp"
 #include "device/entry_text.hpp"
+#include "lookup/find_entry.hpp"
 #include "online/live_bus.hpp"
 #include "shared/common_options.hpp"
 #include "shared/default_scales.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
+#include "shared/given_nodes.hpp"
 #include "shared/live_device.hpp"
 #include "shared/live_options.hpp"
 #include "shared/with_bus.hpp"
@@ -39,6 +41,7 @@ struct Settings {
   std::optional<std::uint32_t> overflow;
   std::optional<std::vector<std::uint8_t>> time;
   NodeSettings node;
+  std::string name_in_network;  ///< of the node, whose PDOs are those of the network file; empty with --eds
   std::uint32_t number = 0;
   std::vector<std::string> values;
   bool transmit = false;
@@ -48,7 +51,9 @@ struct Settings {
 
   void resolve() {
     take_old_form();
-    node.resolve();
+    const bool is_given = !node.sheet.empty();
+    const NamedNode found = node.resolve();
+    if (!is_given) name_in_network = found.name;
   }
 
  private:
@@ -97,35 +102,51 @@ canopen::Frame compose_time(const Settings& settings, std::uint32_t /*sent*/) {
 }
 
 /// `statusword=0x27`
-PdoValue pdo_value(const LoadedDevice& loaded, const std::string& text) {
+PdoValue pdo_value(const NamedDevice& named, const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos) fail(fmt::format("\"{}\" is not of the form OBJECT=VALUE", text));
-  const LiveEntry entry = name_entry(&loaded, text.substr(0, equals));
-  return {entry.index, entry.sub_index, text.substr(equals + 1)};
+  const FoundEntry found = find_one_entry(named, text.substr(0, equals));
+  if (!found.ok()) fail(found.problem);
+  return {found.entry->index, found.entry->sub_index, text.substr(equals + 1)};
 }
 
-canopen::Frame compose_pdo_of_file(const Settings& settings, std::uint32_t /*sent*/) {
-  const std::string& path = settings.node.sheet;
-  if (path.empty()) throw_required("--eds or --network");
-  const auto loaded = load_live_device(path, settings.node.node);
-  const NodeModel model{settings.node.node, *loaded->device};
+/// `who` has the device.
+canopen::Frame compose_pdo_of_device(const Settings& settings, const NamedDevice& named, const std::string& who) {
+  const NodeModel model{settings.node.node, named.device};
   const PdoDirection direction = settings.transmit ? PdoDirection::transmit : PdoDirection::receive;
   const auto pdo = std::ranges::find_if(
       model.pdos(), [&](const PdoLayout& one) { return one.direction == direction && one.number == settings.number; });
   if (pdo == model.pdos().end()) {
-    fail(fmt::format("{} does not have {} {}", path, settings.transmit ? "TPDO" : "RPDO", settings.number));
+    fail(fmt::format("{} does not have {} {}", who, settings.transmit ? "TPDO" : "RPDO", settings.number));
   }
   std::vector<PdoValue> values;
-  for (const std::string& text : settings.values) values.push_back(pdo_value(*loaded, text));
+  for (const std::string& text : settings.values) values.push_back(pdo_value(named, text));
   const bool has_default_scale = std::ranges::any_of(values, [&](const PdoValue& value) {
-    const Entry* const entry = loaded->device->find(value.index, value.sub_index);
+    const Entry* const entry = named.device.find(value.index, value.sub_index);
     const Quantity* const quantity = entry != nullptr ? quantity_of(*entry) : nullptr;
     return quantity != nullptr && !quantity->stated_by.empty();
   });
-  if (has_default_scale) report_default_scales(settings.node.node, *loaded->device);
+  if (has_default_scale) report_default_scales(settings.node.node, named.device);
   const ComposedPdo composed = compose_pdo(*pdo, values);
   if (!composed.ok()) fail(composed.problem);
   return composed.frame;
+}
+
+/// The PDO as the network file configures it, with `set` and signals.
+canopen::Frame compose_pdo_of_network(const Settings& settings) {
+  const std::string path = network_or_default(settings.node.network);
+  const auto loaded = load_given_network(path, ColorOption{});
+  const NetworkNode* const node = loaded->network.find(settings.name_in_network);
+  if (node == nullptr) fail(fmt::format("node {} of {} cannot be used", settings.name_in_network, path));
+  return compose_pdo_of_device(settings, node->named(), fmt::format("node {} of {}", node->name, path));
+}
+
+canopen::Frame compose_pdo_of_node(const Settings& settings, std::uint32_t /*sent*/) {
+  if (!settings.name_in_network.empty()) return compose_pdo_of_network(settings);
+  const std::string& path = settings.node.sheet;
+  if (path.empty()) throw_required("--eds or --network");
+  const auto loaded = load_live_device(path, settings.node.node);
+  return compose_pdo_of_device(settings, loaded->named(), path);
 }
 
 canopen::Frame given_frame(const Settings& settings, std::uint32_t /*sent*/) { return settings.frame; }
@@ -218,7 +239,7 @@ struct KindRow {
 constexpr KindRow kinds[] = {
     {"sync", "send SYNC", compose_sync, add_sync_options},
     {"time", "send TIME, the time of day", compose_time, add_time_options},
-    {"pdo", "send a PDO to a node, with values by name", compose_pdo_of_file, add_pdo_options},
+    {"pdo", "send a PDO to a node, with values by name", compose_pdo_of_node, add_pdo_options},
     {"frame", "send a frame", given_frame, add_frame_options},
 };
 

@@ -120,7 +120,7 @@ int write_scaled(LiveBus& bus, const Settings& settings, LiveEntry entry) {
 int run_write(const Settings& settings) {
   if (settings.file.empty() && settings.value.empty()) throw_required("VALUE or --file");
   const auto loaded = settings.sheet.empty() ? nullptr : load_live_device(settings.sheet, settings.node);
-  LiveEntry entry = name_entry(loaded.get(), settings.object);
+  LiveEntry entry = name_entry(loaded.get(), settings.object, settings.without_sheet);
   if (settings.type != nullptr) set_type(entry, *settings.type);
   if (!settings.force) check_access(entry);
   if (depends_on_device(settings, entry)) {

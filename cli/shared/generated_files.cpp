@@ -103,6 +103,12 @@ bool has_mark_of_edsc(std::string_view text) {
          line.find("Written by edsc") != std::string_view::npos;
 }
 
+bool is_listed_as_written(const std::string& path) {
+  const fs::path file = to_native(path);
+  const WrittenFiles list = read_list(from_native(file.parent_path() / list_of_written_files));
+  return list.contains(from_native(file.filename()));
+}
+
 void check_marks(const std::vector<OutputFile>& files, const ReplaceSettings& settings) {
   if (settings.force) return;
   for (const OutputFile& file : files) {

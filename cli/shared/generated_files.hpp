@@ -25,6 +25,9 @@ inline constexpr const char* list_of_written_files = ".edsc-files";
 /// Whether edsc wrote the text: its first line says so.
 [[nodiscard]] bool has_mark_of_edsc(std::string_view text);
 
+/// Whether edsc has written the file: the list in its folder names it.
+[[nodiscard]] bool is_listed_as_written(const std::string& path);
+
 /// Ends the command if one of the files exists without the mark, unless `settings.force` is set.
 void check_marks(const std::vector<OutputFile>& files, const ReplaceSettings& settings);
 

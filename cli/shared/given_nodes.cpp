@@ -65,17 +65,12 @@ std::unique_ptr<LoadedDevice> load_node(NodeArgument& argument, const ColorOptio
 }
 
 void add_network(const std::string& path, const ColorOption& color, GivenNodes& nodes) {
-  if (path.empty()) return;
-  static_cast<void>(named_nodes(path));  // ends the command if the network file has an error
-  Diagnostics diagnostics;
-  diagnostics.limit_notes(Notes::none);
-  nodes.network = load_network(path, diagnostics);
-  print_errors(diagnostics, color);
-  if (nodes.network->unreadable) fail(path + " cannot be used");
+  nodes.network = load_given_network(path, color);
+  if (!nodes.network) return;
   for (const NetworkNode& node : nodes.network->network.nodes) {
     nodes.labels.set_name(node.node_id, node.name);
-    if (!node.has_file()) continue;
-    nodes.devices.emplace(node.node_id, GivenNode{node.named(), node.loaded->options.inhibit_time_unit()});
+    std::map<std::uint8_t, GivenNode>& known = node.has_file() ? nodes.devices : nodes.masters;
+    known.emplace(node.node_id, GivenNode{node.named(), node.loaded->options.inhibit_time_unit()});
   }
 }
 
@@ -91,8 +86,13 @@ void add_node(const std::string& text, const ColorOption& color, std::set<std::u
   const auto& commissioning = loaded->device->information.commissioning;
   if (commissioning && nodes.labels.name(node_id).empty()) nodes.labels.set_name(node_id, commissioning->node_name);
   nodes.devices.erase(node_id);
+  nodes.masters.erase(node_id);
   nodes.devices.emplace(node_id, GivenNode{loaded->named(), loaded->options.inhibit_time_unit()});
   nodes.files.push_back(std::move(loaded));
+}
+
+void append_known(const std::map<std::uint8_t, GivenNode>& given, std::vector<KnownNode>& nodes) {
+  for (const auto& [node_id, node] : given) nodes.push_back({node_id, &node.named.device, node.inhibit_time_unit});
 }
 
 }  // namespace
@@ -106,8 +106,25 @@ void add_nodes_options(Command command, NodesSettings& settings) {
 
 std::vector<KnownNode> GivenNodes::known() const {
   std::vector<KnownNode> nodes;
-  for (const auto& [node_id, node] : devices) nodes.push_back({node_id, &node.named.device, node.inhibit_time_unit});
+  append_known(devices, nodes);
   return nodes;
+}
+
+std::vector<KnownNode> GivenNodes::known_with_masters() const {
+  std::vector<KnownNode> nodes = known();
+  append_known(masters, nodes);
+  return nodes;
+}
+
+std::unique_ptr<LoadedNetwork> load_given_network(const std::string& path, const ColorOption& color) {
+  if (path.empty()) return nullptr;
+  static_cast<void>(named_nodes(path));  // ends the command if the network file has an error
+  Diagnostics diagnostics;
+  diagnostics.limit_notes(Notes::none);
+  auto network = load_network(path, diagnostics);
+  print_errors(diagnostics, color);
+  if (network->unreadable) fail(path + " cannot be used");
+  return network;
 }
 
 GivenNodes load_given_nodes(const NodesSettings& settings, const ColorOption& color) {

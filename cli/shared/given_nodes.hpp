@@ -37,10 +37,17 @@ struct GivenNodes {
   std::vector<std::unique_ptr<LoadedDevice>> files;  ///< of --node
   std::unique_ptr<LoadedNetwork> network;            ///< null without a network file
   std::map<std::uint8_t, GivenNode> devices;         ///< by node-ID
+  std::map<std::uint8_t, GivenNode> masters;         ///< those without a file: the network generates their EDS
   NodeLabels labels;
 
   [[nodiscard]] std::vector<KnownNode> known() const;
+  /// Also the masters without a file. Their PDOs are decoded as sent by them, with the objects of the generated EDS.
+  [[nodiscard]] std::vector<KnownNode> known_with_masters() const;
 };
+
+/// A network file with its nodes as configured; null for an empty path. Errors are printed; ends the command if the
+/// file cannot be used.
+[[nodiscard]] std::unique_ptr<LoadedNetwork> load_given_network(const std::string& path, const ColorOption& color);
 
 /// The nodes of the network file, then those of --node, which replace nodes of the network file. Errors in their EDS
 /// are printed; ends the command if one cannot be used.

@@ -15,8 +15,14 @@
 namespace edsc {
 namespace {
 
-LiveEntry by_address(const std::string& text) {
+LiveEntry by_address(const std::string& text, const std::string& without_sheet) {
   const auto address = parse_entry_address(text);
+  if (!address && !without_sheet.empty()) {
+    fail(
+        fmt::format("\"{}\" is not an address such as 1018h:01; the network file states no EDS of node {}, whose "
+                    "objects have no names then (--eds)",
+                    text, without_sheet));
+  }
   if (!address) fail(fmt::format("\"{}\" is not an address such as 1018h:01; names require an EDS (--eds)", text));
   return live_entry(nullptr, address->index, address->sub_index.value_or(0));
 }
@@ -52,8 +58,9 @@ std::unique_ptr<LoadedDevice> load_live_device(const std::string& path, std::uin
   throw Exit{};
 }
 
-std::vector<LiveEntry> name_entries(const LoadedDevice* loaded, const std::string& text) {
-  if (loaded == nullptr) return {by_address(text)};
+std::vector<LiveEntry> name_entries(const LoadedDevice* loaded, const std::string& text,
+                                    const std::string& without_sheet) {
+  if (loaded == nullptr) return {by_address(text, without_sheet)};
   const FoundEntry found = find_entry(loaded->named(), text);
   if (!found.ok()) fail(found.problem);
   if (found.entry != nullptr) return {live_entry(*loaded->device, *found.object, *found.entry)};
@@ -67,8 +74,8 @@ std::vector<LiveEntry> name_entries(const LoadedDevice* loaded, const std::strin
   return entries;
 }
 
-LiveEntry name_entry(const LoadedDevice* loaded, const std::string& text) {
-  if (loaded == nullptr) return by_address(text);
+LiveEntry name_entry(const LoadedDevice* loaded, const std::string& text, const std::string& without_sheet) {
+  if (loaded == nullptr) return by_address(text, without_sheet);
   const FoundEntry found = find_one_entry(loaded->named(), text);
   if (!found.ok()) fail(found.problem);
   return live_entry(*loaded->device, *found.object, *found.entry);

@@ -22,11 +22,14 @@ namespace edsc {
 }
 
 /// Finds the entries that a text names: one, or all readable ones of an object with sub-indices. Without a device the
-/// text must be an address. Ends the command if it names none.
-[[nodiscard]] std::vector<LiveEntry> name_entries(const LoadedDevice* loaded, const std::string& text);
+/// text must be an address. Ends the command if it names none; `without_sheet` is the name of a node for which the
+/// network file states no EDS.
+[[nodiscard]] std::vector<LiveEntry> name_entries(const LoadedDevice* loaded, const std::string& text,
+                                                  const std::string& without_sheet = {});
 
 /// Finds the entry that a text names.
-[[nodiscard]] LiveEntry name_entry(const LoadedDevice* loaded, const std::string& text);
+[[nodiscard]] LiveEntry name_entry(const LoadedDevice* loaded, const std::string& text,
+                                   const std::string& without_sheet = {});
 
 /// Compares the identity of a node with a file. Prints which numbers could not be compared; ends the command if others
 /// differ, with a hint.

@@ -27,6 +27,7 @@ NamedNode NodeSettings::resolve() {
   NamedNode found = find_node("NODE", written_node, network, sheet.empty());
   node = found.node_id;
   if (sheet.empty()) sheet = found.sheet;
+  if (sheet.empty()) without_sheet = found.name;
   return found;
 }
 

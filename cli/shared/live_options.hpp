@@ -19,8 +19,9 @@ struct NodeSettings {
   std::string bus;
   std::string written_node;  ///< NODE: a node-ID or a name
   std::string network;
-  std::string sheet;      ///< EDS of the node; that of the network file if no other is given
-  std::uint8_t node = 0;  ///< by resolve()
+  std::string sheet;          ///< EDS of the node; that of the network file if no other is given
+  std::uint8_t node = 0;      ///< by resolve()
+  std::string without_sheet;  ///< by resolve(): the name of a node for which the network file states no EDS
   SdoSettings sdo;
 
   /// Finds the node. Returns what the network file states about it, if the EDS is not given.

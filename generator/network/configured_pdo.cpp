@@ -33,6 +33,12 @@ bool is_configured(const NetworkNode& node, const Pdo& pdo) {
   });
 }
 
+bool is_as_in_eds(const NetworkNode& node, const Pdo& pdo) {
+  return !states(node, [&](std::uint16_t index, std::uint8_t) {
+    return index == pdo.communication->index || (pdo.mapping != nullptr && index == pdo.mapping->index);
+  });
+}
+
 bool has_stated_can_id(const NetworkNode& node, const Pdo& pdo) {
   return on_by_default(pdo) &&
          states(node, [&](std::uint16_t index, std::uint8_t sub_index) { return is_cob_id(pdo, index, sub_index); });

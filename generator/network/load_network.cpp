@@ -47,7 +47,8 @@ class NetworkLoader {
   /// The settings that do not depend on signals. Signals use the PDOs that they leave.
   void apply_settings(NetworkNode& node) {
     apply_sync(node, network_.description.sync, diagnostics_);
-    apply_node_members(node, diagnostics_);
+    apply_node_members(node, *network_.source, diagnostics_);
+    apply_master_timeout(node, network_, diagnostics_);
     Diagnostics of_mapping;  // reported when the signals are assigned
     configure(node, *network_.source, of_mapping);
   }

@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "eds/number.hpp"
+#include "format/dcf/parameter_text.hpp"
 #include "network/node_settings.hpp"
+#include "values/value_bytes.hpp"
 
 namespace edsc {
 namespace {
@@ -240,6 +242,16 @@ class MasterSheet {
     }
   }
 
+  /// The initial value: a value that is sent is that of the receiver until the application sets it, so that a PDO with
+  /// several values changes only those that are set.
+  static std::string initial_value(const MasterEntry& entry) {
+    const Entry& original = *entry.original;
+    if (!entry.is_sent || !original.default_value) return "0";
+    const std::string bytes = bytes_of(*original.default_value, *original.type);
+    const std::vector<std::uint8_t> data{bytes.begin(), bytes.end()};
+    return parameter_text(original, data).value_or("0");
+  }
+
   /// A RECORD for each node and direction: the values sent to it, and those received from it.
   void add_data() {
     std::vector<MasterEntry> entries = plan_.master_entries;
@@ -249,8 +261,8 @@ class MasterSheet {
           std::find_if(first, entries.end(), [&](const MasterEntry& one) { return one.index != first->index; });
       std::vector<SheetEntry> record;
       for (auto one = first; one != last; ++one) {
-        record.push_back(
-            {one->sub_index, one->name, one->original->type->type, one->is_sent ? "rwr" : "rww", "0", true});
+        record.push_back({one->sub_index, one->name, one->original->type->type, one->is_sent ? "rwr" : "rww",
+                          initial_value(*one), true});
       }
       sheet_.add_record(first->index, first->is_sent ? fmt::format("{} commands", first->node) : first->node, record);
       first = last;

@@ -24,7 +24,8 @@ using WrittenNumber = std::optional<Written<std::uint32_t>>;
 using WrittenText = std::optional<Written<std::string>>;
 using WrittenFlag = std::optional<Written<bool>>;
 
-/// A value for an entry of a node: `"6083h": 2000`. The value is text in the notation of an EDS.
+/// A value for an entry of a node: `"6083h": 2000`. The value is text in the notation of an EDS, a number with a unit,
+/// or a name.
 struct WrittenValue {
   Written<std::string> entry;
   Written<std::string> value;
@@ -47,7 +48,7 @@ struct NodeDescription {
   WrittenNumber node_id;
   WrittenText eds, dcf, options;
   WrittenFlag master, keep_going;
-  WrittenNumber heartbeat_ms, heartbeat_timeout_ms;
+  WrittenNumber heartbeat_ms, heartbeat_timeout_ms, master_timeout_ms;
   WrittenNumber sdo_timeout_ms;
   WrittenNumber serial_number;
   std::vector<WrittenValue> set;
@@ -140,10 +141,14 @@ inline constexpr MemberRow<NodeDescription> node_members[] = {
     {"heartbeat_ms", &NodeDescription::heartbeat_ms, "producer heartbeat time in ms: 1017h", 0, 65535},
     {"heartbeat_timeout_ms", &NodeDescription::heartbeat_timeout_ms,
      "consumer heartbeat time of the master for this node in ms; twice `heartbeat_ms` if missing", 1, 65535},
+    {"master_timeout_ms", &NodeDescription::master_timeout_ms,
+     "consumer heartbeat time of the node for the master in ms, in a free entry of its 1016h; none if missing", 1,
+     65535},
     {"sdo_timeout_ms", &NodeDescription::sdo_timeout_ms,
      "time in ms in which the node responds to an SDO request; default: the time of the network", 1, 65535},
     {"serial_number", &NodeDescription::serial_number, "serial number of the device: 1018h:04", 0, 0xFFFF'FFFF},
-    {"set", &NodeDescription::set, "values of entries that differ from the file: `{\"6083h\": 2000}`"},
+    {"set", &NodeDescription::set,
+     "values of entries that differ from the file: `{\"6083h\": 2000}`, with a unit `\"100 rpm/s\"`, or by a name"},
 };
 
 inline constexpr MemberRow<SignalDescription> signal_members[] = {

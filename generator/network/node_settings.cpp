@@ -7,15 +7,20 @@
 #include <canopen/can/cob_id.hpp>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "device/drive_modes.hpp"
+#include "device/entry_text.hpp"
 #include "device/index_range.hpp"
+#include "device/meaning/physical.hpp"
 #include "device/pdo/fixed_mapping.hpp"
 #include "device/reserved_values.hpp"
 #include "device/value_overlay.hpp"
 #include "diagnostics/quote.hpp"
 #include "lookup/find_entry.hpp"
+#include "text/ascii.hpp"
 #include "values/little_endian.hpp"
 #include "values/read_value.hpp"
 
@@ -93,13 +98,32 @@ void set_number(NetworkNode& node, std::uint16_t index, std::uint8_t sub_index, 
 
 namespace {
 
+bool is_number(canopen::DataClass kind) {
+  using enum canopen::DataClass;
+  return kind == unsigned_integer || kind == signed_integer || kind == real;
+}
+
+/// Reports the findings of the value of a node.
+void report_value(const NetworkNode& node, const Diagnostics& of_value, Diagnostics& diagnostics) {
+  for (const Diagnostic& one : of_value.all()) {
+    diagnostics.error("network-value", one.position, fmt::format("node {}: {}", node.name, one.message));
+  }
+}
+
+/// A value that is not in the notation of an EDS, and why not.
+struct OtherNotation {
+  const WrittenValue* written;
+  Diagnostics problems;
+};
+
 /// A value in the notation of an EDS, of an entry by name or address. `stated` has the entries of the node so far.
-void set_text(NetworkNode& node, const WrittenValue& written, EntryFinder& entries, StatedEntries& stated,
-              Diagnostics& diagnostics) {
+/// Returns what is not in this notation: a number with a unit, or a name.
+std::optional<OtherNotation> set_text(NetworkNode& node, const WrittenValue& written, EntryFinder& entries,
+                                      StatedEntries& stated, Diagnostics& diagnostics) {
   const FoundEntry found = entries.find_one(written.entry.value);
   if (!found.ok()) {
     diagnostics.error("network-value", written.entry.position, fmt::format("node {}: {}", node.name, found.problem));
-    return;
+    return std::nullopt;
   }
   const std::pair key{found.entry->index, found.entry->sub_index};
   const auto [first, is_new] = stated.emplace(key, written.entry.position);
@@ -107,16 +131,63 @@ void set_text(NetworkNode& node, const WrittenValue& written, EntryFinder& entri
     diagnostics.error("network-value", written.entry.position,
                       fmt::format("node {} has two values of {}", node.name, named(*found.entry)),
                       {{first->second, "the first one"}});
-    return;
+    return std::nullopt;
   }
   Diagnostics of_value;
   const Field field{written.value.value, written.value.position, true};
   const auto value = parse_exact_value(field, *found.entry->type, node.node_id, of_value);
-  for (const Diagnostic& one : of_value.all()) {
-    diagnostics.error("network-value", one.position, fmt::format("node {}: {}", node.name, one.message));
+  if (of_value.errors() > 0 && is_number(found.entry->type->kind)) return OtherNotation{&written, std::move(of_value)};
+  report_value(node, of_value, diagnostics);
+  if (value && of_value.errors() == 0) set_value(node, *found.entry, *value, diagnostics);
+  return std::nullopt;
+}
+
+/// The unit of a text such as `2000 rev/s2` or `5rpm`; empty for a number in the notation of an EDS, right or wrong.
+std::string unit_of(std::string_view text) {
+  const std::optional<PhysicalText> parts = split_physical(text);
+  if (!parts) return {};
+  const bool is_separate = text.find(' ') != std::string_view::npos;
+  return is_separate || canopen::find_unit(parts->unit) != nullptr ? std::string{parts->unit} : std::string{};
+}
+
+/// Sets a number with a unit, or the name of a value, as `edsc write` takes it.
+void set_with_meaning(NetworkNode& node, const OtherNotation& other, Diagnostics& diagnostics) {
+  const auto& [entry_text, text] = *other.written;
+  const Entry& entry = *EntryFinder{node.named()}.find_one(entry_text.value).entry;
+  const auto error = [&](const std::string& why) {
+    diagnostics.error("network-value", text.position, fmt::format("node {}: {}", node.name, why));
+  };
+  const std::string unit = unit_of(text.value);
+  const Meaning* const meaning = meaning_of_integer(entry);
+  const bool has_names = meaning != nullptr && (meaning->values || meaning->has_fields());
+  const bool is_name = has_names && !text.value.empty() && is_letter(text.value.front());
+  if (unit.empty() && !is_name) return report_value(node, other.problems, diagnostics);
+  if (!is_name && quantity_of(entry) == nullptr && !has_names) {
+    return error(fmt::format("{} does not have a unit; write the raw number without \"{}\"", named(entry), unit));
   }
-  if (!value || of_value.errors() > 0) return;
-  set_value(node, *found.entry, *value, diagnostics);
+  const ParsedValue parsed = parse_value_text(entry, text.value);
+  if (!parsed.ok()) return error(parsed.problem);
+  std::uint64_t bits = number_of(parsed.bytes);
+  if (entry.type->kind == canopen::DataClass::signed_integer) {
+    bits = static_cast<std::uint64_t>(sign_extended(bits, entry.type->bits));
+  }
+  set_value(node, entry, Value{.bits = bits, .position = text.position}, diagnostics);
+}
+
+/// The entry of 1016h that monitors this node, else the first one that monitors none; null if there is none.
+const Entry* free_consumer(const NetworkNode& node, const Object& object, std::uint8_t monitored) {
+  const auto monitors = [&](const Entry& entry, std::uint8_t node_id) {
+    const Value* const value = node.settings.value_of(entry);
+    const std::uint64_t bits = value != nullptr ? value->bits : 0;
+    const bool is_free = (bits & 0xFFFF) == 0 || (bits >> 16 & 0xFF) == 0;
+    return entry.sub_index != 0 && (node_id == 0 ? is_free : !is_free && (bits >> 16 & 0xFF) == node_id);
+  };
+  for (const std::uint8_t node_id : {monitored, std::uint8_t{0}}) {
+    const auto found =
+        std::ranges::find_if(object.entries, [&](const Entry& entry) { return monitors(entry, node_id); });
+    if (found != object.entries.end()) return &*found;
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -141,14 +212,40 @@ void apply_sync(NetworkNode& node, const SyncDescription& sync, Diagnostics& dia
   set_if_present(node, communication::sync_overflow, sync.overflow, diagnostics);
 }
 
-void apply_node_members(NetworkNode& node, Diagnostics& diagnostics) {
+void apply_node_members(NetworkNode& node, const SourceFile& network_file, Diagnostics& diagnostics) {
   StatedEntries stated;
   if (const WrittenNumber& time = node.description->heartbeat_ms) {
     set_number(node, communication::producer_heartbeat, 0, time->value, time->position, diagnostics);
     stated.emplace(std::pair{communication::producer_heartbeat, std::uint8_t{0}}, time->position);
   }
-  EntryFinder entries{node.named()};
-  for (const WrittenValue& value : node.description->set) set_text(node, value, entries, stated, diagnostics);
+  std::vector<OtherNotation> others;
+  {
+    EntryFinder entries{node.named()};
+    for (const WrittenValue& value : node.description->set) {
+      if (auto other = set_text(node, value, entries, stated, diagnostics)) others.push_back(*std::move(other));
+    }
+  }
+  if (others.empty()) return;
+  Diagnostics of_mapping;                     // reported when all values are set
+  configure(node, network_file, of_mapping);  // values of `set` can be the scale of others
+  for (const OtherNotation& other : others) set_with_meaning(node, other, diagnostics);
+}
+
+void apply_master_timeout(NetworkNode& node, const Network& network, Diagnostics& diagnostics) {
+  const WrittenNumber& timeout = node.description->master_timeout_ms;
+  if (!timeout) return;
+  const auto error = [&](const std::string& why) {
+    diagnostics.error("network-value", timeout->position, fmt::format("node {} {}", node.name, why));
+  };
+  const NetworkNode* const master = network.master();
+  if (master == nullptr) return error("cannot monitor a master: no node has \"master\": true");
+  if (master == &node) return error("is the master: \"master_timeout_ms\" is for the other nodes");
+  const Object* const object = node.device().find(communication::consumer_heartbeat);
+  if (object == nullptr) return error("does not have 1016h and cannot monitor the master");
+  const Entry* const entry = free_consumer(node, *object, master->node_id);
+  if (entry == nullptr) return error("does not have a free entry in 1016h");
+  const std::uint32_t value = std::uint32_t{master->node_id} << 16 | timeout->value;
+  set_number(node, entry->index, entry->sub_index, value, timeout->position, diagnostics);
 }
 
 void configure(NetworkNode& node, const SourceFile& network_file, Diagnostics& diagnostics) {

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "eds/number.hpp"
 #include "text/ascii.hpp"
 #include "text/number_text.hpp"
+#include "text/suggestion.hpp"
 
 namespace edsc {
 namespace {
@@ -20,26 +23,42 @@ std::optional<std::uint32_t> parse_can_id(std::string_view text) {
 
 }  // namespace
 
-std::string MessageFilter::add(std::string_view text) {
+std::string MessageFilter::add(std::string_view text, const NodeLabels& labels) {
   while (!text.empty()) {
     const std::size_t comma = text.find(',');
     const std::string_view condition = trim(text.substr(0, comma));
     const std::size_t equals = condition.find('=');
     if (equals == std::string_view::npos) return fmt::format("\"{}\" is not a condition such as node=5", condition);
-    const std::string problem = add_condition(trim(condition.substr(0, equals)), trim(condition.substr(equals + 1)));
+    const std::string problem =
+        add_condition(trim(condition.substr(0, equals)), trim(condition.substr(equals + 1)), labels);
     if (!problem.empty()) return problem;
     text = comma == std::string_view::npos ? std::string_view{} : text.substr(comma + 1);
   }
   return "";
 }
 
-std::string MessageFilter::add_condition(std::string_view key, std::string_view value) {
-  if (key == "node") {
-    const auto node_id = parse_unsigned(value);
-    if (!node_id || *node_id < 1 || *node_id > 127) return fmt::format("\"{}\" is not a node-ID from 1 to 127", value);
-    nodes_.set(*node_id);
-    return "";
+std::string MessageFilter::add_node(std::string_view value, const NodeLabels& labels) {
+  std::vector<std::string> names;
+  for (std::uint8_t node_id = 1; node_id <= 127; ++node_id) {
+    const std::string_view name = labels.name(node_id);
+    if (name.empty()) continue;
+    if (name == value) {
+      nodes_.set(node_id);
+      return "";
+    }
+    names.emplace_back(name);
   }
+  const auto node_id = parse_unsigned(value);
+  if (!node_id || *node_id < 1 || *node_id > 127) {
+    return fmt::format("\"{}\" is not a node-ID from 1 to 127{}{}", value,
+                       names.empty() ? "" : " and not the name of a node", did_you_mean(value, names));
+  }
+  nodes_.set(*node_id);
+  return "";
+}
+
+std::string MessageFilter::add_condition(std::string_view key, std::string_view value, const NodeLabels& labels) {
+  if (key == "node") return add_node(value, labels);
   if (key == "service") {
     bool found = false;
     for (const ServiceRow& row : services) {

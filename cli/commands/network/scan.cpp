@@ -53,7 +53,7 @@ int scan_network(LiveBus& bus, const Settings& settings, const SheetFiles& sheet
 }
 
 int run_scan(const Settings& settings) {
-  const SheetFiles sheets = read_sheet_files(expand_folders(settings.sheets));
+  const SheetFiles sheets = read_sheet_files(expand_folders(settings.sheets, sheet_extensions, WrittenByEdsc::skipped));
   for (const std::string& problem : sheets.problems) print_to_stderr("edsc: {}\n", problem);
   if (sheets.files.empty()) fail("--eds names no EDS, DCF or XDD file");
   return with_bus(settings.bus, [&](LiveBus& bus) { return scan_network(bus, settings, sheets); });
@@ -64,7 +64,9 @@ int run_scan(const Settings& settings) {
 void add_network_scan_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, run_scan, exit_code);
   add_bus_argument(command, settings.bus);
-  command.add_option("--eds", settings.sheets, "of nodes to find; or a folder with such files")
+  command
+      .add_option("--eds", settings.sheets,
+                  "of nodes to find; or a folder with such files, except those that edsc has written")
       .one_value_each()
       .required();
   command.add_option("--output", settings.output, "the network file (default: standard output)");

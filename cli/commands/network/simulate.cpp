@@ -80,7 +80,7 @@ SimulationResult run(const Settings& settings, SimulationSource source, Simulati
   write_all_files(source.files);
   const std::size_t sources = source.sources.size();
   ProgressLine progress;
-  progress.show(fmt::format("compiling {} files", sources));
+  progress.show_at_once(fmt::format("compiling {} files", sources));
   run.program = build_simulation({folder, std::move(source.sources), include_folder}, [&](std::size_t done) {
     progress.show(fmt::format("compiling {} of {}", done, sources));
   });

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "network/checks/check_groups.hpp"
+#include "network/checks/merged_note.hpp"
 #include "network/communication_objects.hpp"
 #include "network/error_control.hpp"
 
@@ -37,6 +38,7 @@ class HeartbeatCheck {
       check_guarding(node);
       check_monitoring(node);
     }
+    check_monitoring_of_master();
   }
 
  private:
@@ -66,6 +68,7 @@ class HeartbeatCheck {
                       node_id));
       return;
     }
+    consumers_.insert(&consumer);
     if (&*producer == &consumer) return error("which is itself");
     monitored_.insert(&*producer);
     const std::uint64_t produced = heartbeat_time(producer->device());
@@ -102,8 +105,26 @@ class HeartbeatCheck {
                                  {}, "error control");
   }
 
+  /// A node without a consumer does not notice that the master is lost: a drive keeps its last set-point. One note for
+  /// all nodes that could monitor it.
+  void check_monitoring_of_master() {
+    const NetworkNode* const master = context_.network.master();
+    if (master == nullptr || heartbeat_time(master->device()) == 0) return;
+    MergedNote note;
+    for (const NetworkNode& node : context_.network.nodes) {
+      if (node.is_master || consumers_.contains(&node)) continue;
+      if (node.device().find(communication::consumer_heartbeat) == nullptr) continue;
+      note.add("network-unmonitored", node.position,
+               fmt::format("node {} has 1016h, but does not monitor the heartbeat of a node; \"master_timeout_ms\" is "
+                           "its time for the master {}",
+                           node.name, master->name));
+    }
+    note.report(context_.diagnostics);
+  }
+
   const NetworkContext& context_;
   std::set<const NetworkNode*> monitored_;
+  std::set<const NetworkNode*> consumers_;  ///< with an entry of 1016h that is in use
 };
 
 }  // namespace

@@ -1,11 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <canopen/can/cob_id.hpp>
+#include <string>
 #include <utility>
 
 #include "device/pdo/pdo_defaults.hpp"
 #include "network/checks/check_groups.hpp"
 #include "network/communication_objects.hpp"
+#include "network/configured_pdo.hpp"
 
 namespace edsc {
 namespace {
@@ -24,14 +27,40 @@ std::vector<const CobIdUse*> uses_of(const NetworkContext& context, FrameService
   return found;
 }
 
-/// Without a producer, the first synchronous PDO is named.
+/// Whether the network uses a PDO: it states a parameter of it, or another node sends or receives it.
+bool is_used(const NetworkContext& context, const CobIdUse& use) {
+  return !is_as_in_eds(*use.node, *use.pdo) || std::ranges::any_of(context.uses, [&](const CobIdUse& other) {
+    return other.service == FrameService::pdo && other.transmits != use.transmits && other.node != use.node &&
+           other.can_id == use.can_id && other.extended == use.extended;
+  });
+}
+
+/// `, or disable it by "set": {"1802h:01": "0xC0000384"}`; empty if its COB-ID cannot be written.
+std::string disabling_text(const CobIdUse& use) {
+  const std::uint16_t index = use.pdo->communication->index;
+  const Entry* const entry = use.node->device().find(index, 1);
+  if (entry == nullptr || !entry->default_value || !canopen::writable(entry->access)) return {};
+  return fmt::format(", or disable the PDO by \"set\": {{\"{}\": \"0x{:X}\"}}", entry_label(index, 1),
+                     entry->default_value->bits | canopen::CobId::invalid_bit);
+}
+
+/// Without a producer, the first synchronous PDO that the network uses is named. One that it does not use is as in the
+/// EDS: it is not sent or applied, and nothing else depends on it.
 void report_missing_producer(const NetworkContext& context) {
-  const auto first = std::ranges::find_if(context.uses, is_synchronous_pdo);
+  const auto used = std::ranges::find_if(
+      context.uses, [&](const CobIdUse& use) { return is_synchronous_pdo(use) && is_used(context, use); });
+  const bool is_any_used = used != context.uses.end();
+  const auto first = is_any_used ? used : std::ranges::find_if(context.uses, is_synchronous_pdo);
   if (first == context.uses.end()) return;
   const auto count = std::ranges::count_if(context.uses, is_synchronous_pdo);
-  context.diagnostics.error("network-sync", first->position,
-                            fmt::format("{} is synchronous, but no node produces SYNC{}", named(*first),
-                                        count > 1 ? fmt::format(" ({} synchronous PDOs)", count) : ""));
+  const std::string message =
+      fmt::format("{} is synchronous, but no node produces SYNC{}; state a \"producer\" in \"sync\"{}", named(*first),
+                  count > 1 ? fmt::format(" ({} synchronous PDOs)", count) : "", disabling_text(*first));
+  if (is_any_used) {
+    context.diagnostics.error("network-sync", first->position, message);
+  } else {
+    context.diagnostics.warning("network-sync", first->position, message);
+  }
 }
 
 void check_producers(const NetworkContext& context, const std::vector<const CobIdUse*>& producers) {

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import resource
 import subprocess
@@ -83,6 +84,25 @@ def position(value: int) -> str:
     return "186#3702" + value.to_bytes(4, "little", signed=True).hex()
 
 
+DRIVE = SOURCE_DIR / "eds/ezd-1136.eds"
+WRITE_HEARTBEAT, WRITTEN_HEARTBEAT = "601#2B17100064000000", "581#6017100000000000"
+
+
+def heartbeats(*ends: int) -> list[tuple[float, str]]:
+    """Every 100 ms to the first end; then from each second number to the next, in tenths of a second."""
+    spans = [(1, ends[0]), *zip(ends[1::2], ends[2::2], strict=True)]
+    return [(i / 10, "701#05") for first, last in spans for i in range(first, last + 1)]
+
+
+def values(time: float, position: int) -> list[tuple[float, str]]:
+    """The position, read by SDO, and the mode in TPDO 1."""
+    return [(time, "601#4064600000000000"), (time, f"581#43646000{position.to_bytes(4, 'little').hex()}"), (time, "181#0000000001")]
+
+
+def text_of(log: list[tuple[float, str]]) -> str:
+    return "".join(f"({time}) can0 {frame}\n" for time, frame in sorted(log, key=lambda one: one[0]))
+
+
 class Plot(unittest.TestCase):
     def assert_points(self, picture: Picture, panel: int, found: list[tuple[float, float]], wanted: list[tuple[float, float]]) -> None:
         values = picture.values(panel)
@@ -137,6 +157,74 @@ class Plot(unittest.TestCase):
         self.assertEqual(len({rect.get("class") for rect in band.iter(f"{SVG}rect")}), 4)
         self.assertIn("operation_enabled", [text.text for text in band.iter(f"{SVG}text")])
 
+    def test_states_without_room_for_their_names_are_in_a_legend(self) -> None:
+        """operation_enabled to 9 s, then three states of 0.1 s; the last one occurs again for 0.9 s, which has room for 8 letters."""
+        words = ((0.0, 0x0627), (9.0, 0x000F), (9.1, 0x0040), (9.2, 0x0008), (9.3, 0x0040), (9.4, 0x0008))
+        log = "".join(f"({time}) can0 186#{word.to_bytes(2, 'little').hex()}00000000\n" for time, word in words)
+        log += "(10.3) can0 705#05\n"
+        picture = Picture(edsc("6041h", "6064h", log=log).stdout)
+        (band,) = picture.root.findall(f"{SVG}g[@class='band']")
+        styles = {rect.find(f"{SVG}title").text: rect.get("class") for rect in band.iter(f"{SVG}rect")}
+        self.assertEqual(len(set(styles.values())), 4)
+        marks = list(band.iter(f"{SVG}circle"))
+        below = [text for text in band.iter(f"{SVG}text") if float(text.get("y")) > max(
+            float(rect.get("y")) + float(rect.get("height")) for rect in band.iter(f"{SVG}rect"))]
+        self.assertEqual([text.text for text in below], ["fault_reaction_active", "switch_on_disabled"])
+        self.assertEqual([mark.get("class") for mark in marks], [styles[text.text] for text in below])
+        self.assertEqual([text.text for text in band.iter(f"{SVG}text")][1:3], ["operation_enabled", "fault"])
+        frame = next(rect for rect in picture.panels[0].iter(f"{SVG}rect") if rect.get("class") == "frame")
+        self.assertGreater(float(frame.get("y")), max(float(text.get("y")) for text in below))
+
+    def test_a_lost_node_has_a_gap(self) -> None:
+        """Heartbeats every 100 ms, as 1017h was written, and nothing from 1 s to the boot-up message at 3 s: twice the heartbeat
+        time after the last frame, or the time of 1016h of the master, the values are not known."""
+        log = heartbeats(10, 31, 50) + [(3.0, "701#00")] + values(0.5, 100) + values(0.9, 200) + values(4.0, 300)
+        drive = {"node_id": 1, "eds": str(DRIVE), "heartbeat_ms": 100}
+        master = {"node_id": 127, "master": True}
+        with tempfile.TemporaryDirectory() as folder:
+            plant, slow = Path(folder) / "plant.json", Path(folder) / "slow.json"
+            plant.write_text(json.dumps({"bit_rate": 500, "nodes": {"plc": master, "drive": drive}}))
+            slow.write_text(json.dumps({"bit_rate": 500, "nodes": {"plc": master, "drive": {**drive, "heartbeat_timeout_ms": 700}}}))
+            for node, objects, lost in ((("--node", f"1={DRIVE}"), ("1/6064h", "6061h"), 1.2),
+                                        (("--network", str(plant)), ("drive/6064h", "drive/6061h"), 1.2),
+                                        (("--network", str(slow)), ("drive/position_actual_value", "6061h"), 1.7)):
+                result = edsc(*objects, log=text_of([(0.0, WRITE_HEARTBEAT), (0.01, WRITTEN_HEARTBEAT), *log]), node=node)
+                self.assertEqual(result.returncode, FINE, result.stderr)
+                picture = Picture(result.stdout)
+                self.assert_points(picture, 0, picture.paths(0)[0],
+                                   [(0.5, 100), (0.9, 200), (lost, 200), (4.0, 300), (5.0, 300)])
+                self.assertEqual(next(picture.panels[0].iter(f"{SVG}path")).get("d").count("M"), 2)
+                self.assert_band(picture, [(0.5, lost), (4.0, 5.0)])
+
+    def test_a_node_that_is_lost_at_the_end(self) -> None:
+        log = [(0.0, WRITE_HEARTBEAT), (0.01, WRITTEN_HEARTBEAT), *heartbeats(10), *values(0.5, 100), (5.0, "702#05")]
+        picture = Picture(edsc("6061h", log=text_of(log), node=("--node", f"1={DRIVE}")).stdout)
+        self.assert_band(picture, [(0.5, 1.2)])
+
+    def test_a_node_without_a_known_time_has_no_gap(self) -> None:
+        log = [*heartbeats(10), *values(0.5, 100), *values(4.0, 300), (5.0, "702#05")]
+        picture = Picture(edsc("6061h", log=text_of(log), node=("--node", f"1={DRIVE}")).stdout)
+        self.assert_band(picture, [(0.5, 5.0)])
+
+    def test_an_event_timer_of_a_node_without_a_heartbeat(self) -> None:
+        """1800h:05 is written as 100 ms. A node that is set to Pre-operational sends no PDOs, and is not lost."""
+        log = [(0.0, "601#2B00180564000000"), (0.01, "581#6000180500000000"),
+               *((i / 10, "181#0000000001") for i in range(1, 11)), (4.0, "181#0000000001"), (5.0, "702#05")]
+        picture = Picture(edsc("6061h", log=text_of(log), node=("--node", f"1={DRIVE}")).stdout)
+        self.assert_band(picture, [(0.1, 1.2), (4.0, 4.2)])
+        for command, stops in (("80", True), ("01", False)):
+            sent = [*log, (1.05, f"000#{command}01"), (4.01, f"000#{command}00")]
+            picture = Picture(edsc("6061h", log=text_of(sent), node=("--node", f"1={DRIVE}")).stdout)
+            self.assert_band(picture, [(0.1, 5.0)] if stops else [(0.1, 1.2), (4.0, 4.2)])
+
+    def assert_band(self, picture: Picture, wanted: list[tuple[float, float]]) -> None:
+        (band,) = picture.root.findall(f"{SVG}g[@class='band']")
+        found = [(float(rect.get("x")), float(rect.get("x")) + float(rect.get("width"))) for rect in band.iter(f"{SVG}rect")]
+        self.assertEqual(len(found), len(wanted), found)
+        for (left, right), (begin, end) in zip(found, wanted, strict=True):
+            self.assertAlmostEqual(left, picture.time.at(begin), delta=PIXEL)
+            self.assertAlmostEqual(right, picture.time.at(end), delta=PIXEL)
+
     def test_named_values_are_bands_of_two_nodes(self) -> None:
         """The mode of two drives, 1 profile_position and 3 profile_velocity; 9 has no name in the manual."""
         drive = SOURCE_DIR / "eds/ezd-1136.eds"
@@ -169,7 +257,7 @@ class Plot(unittest.TestCase):
         log = (f"(1436516252.250000) can0 {position(5)}\n(1436516253.250000) can0 {position(7).replace('186', '187')}\n"
                f"(1436516262.250000) can0 {position(6)}\n")
         node = ("--node", str(AXIS), "--node", f"7={AXIS}")
-        picture = Picture(edsc("6/6064h", "7/6064h", "--title", "Two <axes> & more", log=log, node=node).stdout)
+        picture = Picture(edsc("axis-y/6064h", "7/6064h", "--title", "Two <axes> & more", log=log, node=node).stdout)
         self.assertEqual(picture.root.find(f"{SVG}title").text, "Two <axes> & more")
         self.assertEqual(len(picture.panels), 1)
         self.assertEqual(len(picture.legend(0)), 2)
@@ -220,6 +308,8 @@ class Plot(unittest.TestCase):
                 (("6064h",), WRONG_USAGE, "--node ID=FILE or --network FILE is missing"),
                 (("1008h", "--node", str(AXIS)), WRONG_USAGE, "the values are not numbers"),
                 (("5/6064h", "--node", str(AXIS)), WRONG_USAGE, "node 5 is not one of --node"),
+                (("axis-x/6064h", "--node", str(AXIS)), WRONG_USAGE,
+                 '"axis-x" is not the name of a node; did you mean "axis-y"?'),
                 (("6064h", "6064h", "--node", str(AXIS)), WRONG_USAGE, "given twice"),
                 (("no_such_object", "--node", str(AXIS)), WRONG_USAGE, "no_such_object"),
                 (("2003h", "--node", str(AXIS)), INPUT_HAS_ERRORS, "has no values")):

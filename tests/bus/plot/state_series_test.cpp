@@ -20,6 +20,20 @@ TEST(StateSeries, HasARunForEachChange) {
   EXPECT_EQ(series.runs()[2].first_us, 50);
 }
 
+TEST(StateSeries, TheSameStateAfterALossIsAnotherRun) {
+  StateSeries series;
+  series.add(10, 1);
+  series.add(20, 1);
+  series.interrupt(15);  // a value is newer
+  series.interrupt(25);
+  series.add(40, 1);
+  ASSERT_EQ(series.runs().size(), 2U);
+  EXPECT_EQ(series.runs()[0].last_us, 20);
+  EXPECT_EQ(series.runs()[0].lost_us, 25);
+  EXPECT_EQ(series.runs()[1].first_us, 40);
+  EXPECT_FALSE(series.runs()[1].lost_us);
+}
+
 TEST(StateSeries, KeepsLongRunsAmongManyShortOnes) {
   StateSeries series;
   constexpr int changes = 200'000, begin = 5'000'000, end = 6'000'000;

@@ -18,6 +18,19 @@ TEST(ValueSeries, KeepsEachOfFewValues) {
   EXPECT_EQ(series.bins()[99].last, 99 % 7);
 }
 
+TEST(ValueSeries, HasTheTimeOfALossInTheBinBeforeIt) {
+  ValueSeries series;
+  series.interrupt(5);  // there is no value
+  series.add(10, 1);
+  series.interrupt(9);  // a value is newer
+  EXPECT_FALSE(series.bins()[0].lost_us);
+  series.interrupt(15);
+  series.add(40, 2);
+  ASSERT_EQ(series.bins().size(), 2U);
+  EXPECT_EQ(series.bins()[0].lost_us, 15);
+  EXPECT_FALSE(series.bins()[1].lost_us);
+}
+
 TEST(ValueSeries, KeepsThePeaksOfManyValuesInBins) {
   ValueSeries series;
   constexpr int count = 3'000'000, high = 1'234'567, low = 2'345'678;

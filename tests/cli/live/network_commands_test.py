@@ -330,6 +330,20 @@ node axis2 (6): 0 of 1 value differ
         self.assertEqual(result.returncode, FINE, result.stderr)
         self.assertIn('"eds": "drive.eds"', result.stdout)
 
+    def test_scan_of_a_folder_with_generated_files(self) -> None:
+        """The DCFs of `edsc network generate` fit as well; they are not the files of the vendor."""
+        (self.folder / "plant.json").write_text(json.dumps({"bit_rate": 500, "nodes": {
+            "plc": {"node_id": 127, "master": True}, "axis": {"node_id": 5, "eds": "device.eds", "heartbeat_ms": 300}}}))
+        for output in ("build", "."):
+            made = subprocess.run([EDSC, "network", "generate", "plant.json", "-o", output], cwd=self.folder, capture_output=True,
+                                  text=True, timeout=600)
+            self.assertEqual(made.returncode, FINE, made.stderr)
+        self.assertTrue((self.folder / "axis.dcf").exists())
+        result = self.network_command("scan", "--eds", ".", "--nodes", "5", "--for", "100ms", timeout=5000)
+        self.assertEqual(result.returncode, FINE, result.stderr)
+        self.assertIn('"eds": "device.eds"', result.stdout)
+        self.assertNotIn("fits too", result.stderr)
+
     def test_scan_of_two_nodes_with_one_node_id(self) -> None:
         self.network.device(lambda frame: ["585 43 00 10 00 92 01 02 00"] if frame.startswith("605 40 00 10 00") else [])
         result = self.network_command("scan", "--eds", ".", "--nodes", "5,6", "--for", "500ms", timeout=5000)

@@ -25,8 +25,10 @@ LOG = """(1.000000) can0 705#05
 """
 ENVIRONMENT = {name: value for name, value in os.environ.items() if not name.startswith("EDSC_")}
 
-# The words of a command with a node-ID and its EDS, and those with the name. @ is BUS, % a file that the command writes.
+# The words of a command with a node-ID and its EDS, and those with the name. @ is BUS, % a file that the command writes. `write`
+# starts heartbeats, which a short `monitor` may receive or not.
 ROWS = {
+    "monitor": ("monitor @ --node 5=device.eds --once 10ms --bit-rate 500", "monitor @ --node axis1 --once 10ms"),
     "read": ("read @ 5 1018h --eds device.eds --timeout 60s", "read @ axis1 1018h --timeout 60s"),
     "write": ("write @ 5 1017h 500 --eds device.eds --timeout 60s", "write @ axis1 1017h 500 --timeout 60s"),
     "configure": ("configure @ 5 axis1.dcf --dry-run --timeout 60s", "configure @ axis1 axis1.dcf --dry-run --timeout 60s"),
@@ -37,7 +39,6 @@ ROWS = {
     "conform": ("conform @ 5 device.eds --only 2.1 --quiet --timeout 60s", "conform @ axis1 --only 2.1 --quiet --timeout 60s"),
     "accept": ("accept @ 5 device.eds --only 2.1 --quiet --timeout 60s", "accept @ axis1 --only 2.1 --quiet --timeout 60s"),
     "overlay from-bus": ("overlay from-bus @ 5 device.eds -o % --timeout 60s", "overlay from-bus @ axis1 -o % --timeout 60s"),
-    "monitor": ("monitor @ --node 5=device.eds --once 10ms", "monitor @ --node axis1 --once 10ms"),
     "decode": ("decode can0.log --node 5=device.eds", "decode can0.log --node axis1"),
     "audit": ("audit can0.log --node 5=device.eds --master 5", "audit can0.log --node axis1 --master axis1"),
     "plot": ("plot can0.log 1018h:01 --node 5=device.eds -o %", "plot can0.log 1018h:01 --node axis1 -o %"),
@@ -64,12 +65,13 @@ class NodeNames(LiveTest):
                               stdin=subprocess.DEVNULL, env={**ENVIRONMENT, **environment})
 
     def result(self, words: str, **environment: str) -> tuple[int, str, str, str]:
-        """What the command prints and writes, without the name of the node and times of day."""
+        """What the command prints and writes, without the name of the node and times of day. `edsc monitor` has the name
+        in place of the product."""
         output = self.folder / "out"
         output.unlink(missing_ok=True)
         result = self.run_edsc(words, **environment)
         written = output.read_text() if output.exists() else ""
-        texts = (re.sub(r"[\d.]+ ms|\d\d:\d\d[:\d]*", "TIME", re.sub(" +", " ", text.replace("node 5 axis1", "node 5")))
+        texts = (re.sub(r"[\d.]+ ms|\d\d:\d\d[:\d]*", "TIME", re.sub(" +", " ", re.sub(r"^( +5 +)axis1 ", r"\1Live device ", text.replace("node 5 axis1", "node 5"), flags=re.MULTILINE)))
                  for text in (result.stdout, result.stderr, written))
         return (result.returncode, *texts)
 
@@ -112,6 +114,37 @@ class NodeNames(LiveTest):
     def test_may_have_another_eds(self) -> None:
         named = self.result("decode can0.log --node axis1=device.eds", EDSC_NETWORK="line.json")
         self.assertEqual(named, self.result("decode can0.log --node 5=device.eds"))
+
+    def test_of_a_master_without_a_file(self) -> None:
+        """The names of its objects are not known before the network is generated; its log is checked against that EDS."""
+        network = {"bit_rate": 500, "nodes": {"axis1": {"node_id": 5, "eds": "device.eds"},
+                                              "plc": {"node_id": 127, "master": True, "heartbeat_ms": 100}}}
+        (self.folder / "plant.json").write_text(json.dumps(network))
+        for command in ("read @ plc device_name", "write @ plc device_name 5"):
+            result = self.run_edsc(command + " --network plant.json")
+            self.assertEqual(result.returncode, WRONG_USAGE)
+            self.assertIn('"device_name" is not an address such as 1018h:01; the network file states no EDS of node plc', result.stderr)
+        (self.folder / "plc.log").write_text("".join(f"({1 + i / 10:.6f}) can0 77F#05\n" for i in (0, 1, 2, 12)))
+        found = self.run_edsc("audit plc.log --format json --network plant.json")
+        rules = [(one["rule"], one["node_id"]) for one in json.loads(found.stdout)["findings"]]
+        self.assertIn(("heartbeat-late", 127), rules)
+        self.assertNotIn(("node-unknown", 127), rules)
+
+    def test_monitor_has_the_names_and_the_bit_rate_of_the_network(self) -> None:
+        result = self.run_edsc("monitor @ --once 100ms --format json --network line.json")
+        found = json.loads(result.stdout)
+        self.assertEqual([(one["node_id"], one["name"]) for one in found["nodes"]], [(5, "axis1")])
+        self.assertIsNotNone(found["load_percent"])
+
+    def test_select_the_frames_of_a_log(self) -> None:
+        (self.folder / "two.log").write_text(LOG + "(1.400000) can0 706#05\n")
+        all_frames = self.run_edsc("decode two.log --network line.json").stdout
+        selected = self.run_edsc("decode two.log --network line.json --filter node=axis1").stdout
+        self.assertEqual(selected.splitlines(), [line for line in all_frames.splitlines() if " axis1 " in line])
+        self.assertEqual(len(selected.splitlines()), 5)
+        result = self.run_edsc("decode two.log --network line.json --filter node=axsi1")
+        self.assertEqual((result.returncode, result.stdout), (WRONG_USAGE, ""))
+        self.assertIn('"axsi1" is not a node-ID from 1 to 127 and not the name of a node; did you mean "axis1"?', result.stderr)
 
     def test_of_a_missing_network_file(self) -> None:
         result = self.run_edsc("read @ axis1 1018h --network missing.json")

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import time
 from datetime import UTC, datetime, timedelta
@@ -79,6 +80,18 @@ class Send(LiveTest):
         (self.folder / "other.eds").write_text(text.replace("DefaultValue=$NODEID+0x200", "DefaultValue=0x333"))
         self.expect(self.edsc("send", "pdo", 5, "--eds", "other.eds", 1, "6040h=6", "60FFh=1"), FINE)
         self.assertEqual(self.network.frames("333"), ["333 06 00 01 00 00 00"])
+
+    def test_a_pdo_as_the_network_file_configures_it(self) -> None:
+        """RPDO 1 of the file maps 6040h and 60FFh; `set` makes it 6040h alone, on another CAN-ID."""
+        (self.folder / "device.json").write_text(json.dumps({"bit_rate": 500, "nodes": {"axis1": {
+            "node_id": 5, "eds": "device.eds",
+            "set": {"1400h:01": "0x345", "1600h:00": 1, "1600h:01": "0x60400010"}}}}))
+        for node in ("axis1", 5):
+            self.expect(self.edsc("send", "pdo", node, 1, "6040h=6", "--network", "device.json"), FINE)
+        self.expect(self.edsc("send", "pdo", *NODE, 1, "6040h=6", "60FFh=0", "--network", "device.json"), FINE)
+        self.assertEqual(self.network.frames("345", "205"), ["345 06 00", "345 06 00", "205 06 00 00 00 00 00"])
+        self.expect(self.edsc("send", "pdo", "axis1", 99, "--network", "device.json"), WRONG_USAGE,
+                    stderr="edsc: node axis1 of device.json does not have RPDO 99\n")
 
     def test_frames(self) -> None:
         for frame in ("181#0102", "18FF0001#AA", "701#R1"):

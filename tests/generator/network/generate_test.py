@@ -159,6 +159,19 @@ class Generate(unittest.TestCase):
         self.assertEqual({entry: master[entry] for entry in ("1005", "1006", "1017", "1400:1", "1800:1", "1800:2")},
                          {"1005": 0x40000080, "1006": 10000, "1017": 100, "1400:1": 0x181, "1800:1": 0x201, "1800:2": 1})
 
+    def test_values_with_units_and_names(self) -> None:
+        """001 has 6081h in 0.01 rev/s and 6083h in rev/s2. The scale of 6081h of the other drive is that of `set`."""
+        for file in (SOURCE_DIR / "eds").glob("ezd-1136.*"):
+            shutil.copy(file, self.folder)
+        self.generate(json.dumps({"bit_rate": 500, "nodes": {
+            "master": {"node_id": 127, "master": True, "heartbeat_ms": 100},
+            "a": {"node_id": 1, "eds": "ezd-1136.eds", "heartbeat_ms": 100, "master_timeout_ms": 250,
+                  "set": {"6060h": "profile_velocity", "6081h": "12.5 rev/s", "6083h": "2000 rev/s2", "6084h": 300}},
+        }}))
+        values = parameter_values(self.out / "a.dcf")
+        self.assertEqual({key: values[key] for key in ("6060", "6081", "6083", "6084", "1016:1")},
+                         {"6060": 3, "6081": 1250, "6083": 2000, "6084": 300, "1016:1": 127 << 16 | 250})
+
     def test_a_dcf_commissions_its_node(self) -> None:
         self.generate()
         for name, node_id, manager in (("a", 1, 0), ("b", 2, 0), ("master", 127, 1)):
@@ -208,6 +221,24 @@ class Generate(unittest.TestCase):
         self.assertEqual([file[f"1F22sub{i}"]["DownloadFile"] for i in (1, 2)], ["a.cdcf", "b.cdcf"])
         for extension in ("eds", "dcf"):
             self.edsc("generate", self.out / f"master.{extension}", "-o", "headers")
+
+    def test_a_value_of_the_master_begins_with_that_of_the_node(self) -> None:
+        """Of node.eds and `set`; a value that the master receives begins with 0."""
+        text = (self.folder / "node.eds").read_text()
+        for section, value in (("2002", "0x10"), ("2003", "-7")):
+            text = re.sub(rf"(\[{section}\][^\[]*DefaultValue=)\S*", rf"\g<1>{value}", text)
+        (self.folder / "node.eds").write_text(text)
+        self.generate(json.dumps({
+            "bit_rate": 500, "nodes": {
+                "master": {"node_id": 127, "master": True}, "a": {"node_id": 1, "eds": "node.eds"},
+                "b": {"node_id": 2, "eds": "node.eds", "set": {"2003h": -9}}},
+            "signals": [{"from": "master", "object": f"{node}.{entry}", "event": True} for node in "ab" for entry in ("2002h", "2003h")]
+            + [{"from": "a", "object": "2000h", "to": "master", "event": True}]}))
+        file = configparser.RawConfigParser(strict=True, comment_prefixes=(";",), delimiters=("=",))
+        file.read_string((self.out / "master.eds").read_text())
+        self.assertEqual({section: int(file[section]["DefaultValue"], 0)
+                          for section in ("2101sub1", "2101sub2", "2102sub1", "2102sub2", "2001sub1")},
+                         {"2101sub1": 16, "2101sub2": -7, "2102sub1": 16, "2102sub2": -9, "2001sub1": 0})
 
     def test_a_node_is_not_hidden_by_a_member_of_the_plant(self) -> None:
         names = ["axis", "count", "device", "on_fault", "plant", "request", "state"]

@@ -63,9 +63,9 @@ def network(*signals: dict, **nodes: dict) -> dict:
             "signals": list(signals)}
 
 
-def sheet_with(section: str, default: str) -> str:
-    """node.eds with another DefaultValue of an entry."""
-    text = (Path(__file__).parent / "node.eds").read_text(encoding="utf-8")
+def sheet_with(section: str, default: str, text: str = "") -> str:
+    """node.eds, or this text, with another DefaultValue of an entry."""
+    text = text or (Path(__file__).parent / "node.eds").read_text(encoding="utf-8")
     return re.sub(rf"(\[{section}\][^\[]*DefaultValue=)\S*", rf"\g<1>{default}", text)
 
 
@@ -137,6 +137,13 @@ def sheet_in_units(sent: str, taken: str) -> str:
 
 SPEED = ("a", "2000h", "b.2002h", "m")
 NODE_A = {"node_id": 1, "eds": "node.eds", "heartbeat_ms": 100}
+MASTER = {"node_id": 127, "master": True, "heartbeat_ms": 100}
+
+
+def without_sync(value: dict) -> dict:
+    return {name: member for name, member in value.items() if name != "sync"}
+
+
 NETWORKS = {  # name: (network, errors and warnings as severity and rule)
     "one_sender_for_several_nodes": (network(signal("a", "2001h", "b.2003h", "c.2003h", "m")), []),
     "two_signals_set_one_entry": (network(signal("a", "2001h", "b.2003h"), signal("c", "2001h", "b.2003h")),
@@ -207,6 +214,31 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
                                    [("error", "network-value")]),
     "reserved_transmission_type_of_an_rpdo": (network(signal(*SPEED), a={**NODE_A, "set": {"1401h:02": 252}}),
                                               [("error", "network-value")]),
+    "value_in_the_unit": (network(a={**NODE_A, "set": {"2007h": "-100 rpm"}}), []),
+    "value_in_another_unit_of_the_dimension": (network(a={"node_id": 1, "eds": "node.eds", "set": {"1017h": "0.1 s"}}), []),
+    "value_in_a_unit_of_another_dimension": (network(a={**NODE_A, "set": {"2007h": "5 mA"}}), [("error", "network-value")]),
+    "value_with_a_unit_of_an_entry_without_one": (network(a={**NODE_A, "set": {"2006h": "5 mA"}}), [("error", "network-value")]),
+    "value_in_an_unknown_unit": (network(a={**NODE_A, "set": {"2007h": "5 knots"}}), [("error", "network-value")]),
+    "value_between_two_numbers": (network(a={**NODE_A, "set": {"2007h": "0.5 rpm"}}), [("error", "network-value")]),
+    "synchronous_pdo_that_the_network_does_not_use": (without_sync(network(a={**NODE_A, "eds": "synchronous.eds"})),
+                                                      [("warning", "network-sync")]),
+    "synchronous_pdo_that_is_disabled": (
+        without_sync(network(a={**NODE_A, "eds": "synchronous.eds", "set": {"1800h:01": "0xC0000181"}})), []),
+    "synchronous_pdo_of_a_signal": (without_sync(network(signal(*SPEED, every_sync=1))), [("error", "network-sync")]),
+    "synchronous_pdo_by_set": (without_sync(network(a={**NODE_A, "set": {"1800h:01": "0x40000181", "1800h:02": 1}})),
+                               [("error", "network-sync")]),
+    "time_for_the_master": (network(m=MASTER, a={**NODE_A, "master_timeout_ms": 300}), []),
+    "time_for_the_master_in_a_second_entry": (
+        network(m=MASTER, a={**NODE_A, "master_timeout_ms": 300, "set": {"1016h:01": "0x200C8"}}), []),
+    "time_for_the_master_without_a_free_entry": (
+        network(m=MASTER, a={**NODE_A, "master_timeout_ms": 300, "set": {"1016h:01": "0x200C8", "1016h:02": "0x300C8"}}),
+        [("error", "network-value")]),
+    "time_for_a_master_without_a_heartbeat": (network(a={**NODE_A, "master_timeout_ms": 300}), [("error", "network-heartbeat")]),
+    "time_for_the_master_shorter_than_its_heartbeat": (network(m=MASTER, a={**NODE_A, "master_timeout_ms": 100}),
+                                                       [("error", "network-heartbeat")]),
+    "time_for_the_master_of_a_node_without_1016h": (network(m=MASTER, w={**wide(9), "master_timeout_ms": 300}),
+                                                    [("error", "network-value")]),
+    "time_of_the_master_for_itself": (network(m={**MASTER, "master_timeout_ms": 300}), [("error", "network-value")]),
     "a_consumer_for_each_node": (network(a={**NODE_A, "set": {"1016h:01": "0x200C8", "1016h:02": "0x300C8"}}), []),
     "number_of_an_integer16_that_fits": (network(a={**NODE_A, "set": {"2007h": "-0x8000"}}), []),
     "hexadecimal_number_of_an_integer16": (network(a={**NODE_A, "set": {"2007h": "0xFFFF"}}), []),
@@ -248,6 +280,27 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
         network(signal("x", "2000h", "m"), signal("a", "2000h", "x.2002h"), x={"node_id": 4, "eds": "missing.eds"}),
         [("error", "network-file")]),
 }
+
+
+MESSAGES = {  # name of a network: what its first finding says
+    "value_with_a_unit_of_an_entry_without_one": 'node a: 2006h:00 "Ramp" does not have a unit; write the raw number without "mA"',
+    "value_in_a_unit_of_another_dimension": "mA cannot be converted to rpm",
+    "value_in_an_unknown_unit": '"knots" is not a unit that edsc knows',
+    "value_between_two_numbers": "0.5 rpm is between 0 rpm and 1 rpm",
+    "decimal_number_of_an_integer16_that_does_not_fit": "40000",
+    "synchronous_pdo_that_the_network_does_not_use":
+        'a TPDO 1 is synchronous, but no node produces SYNC; state a "producer" in "sync", or disable the PDO by '
+        '"set": {"1800h:01": "0xC0000181"}',
+    "time_for_the_master_without_a_free_entry": "node a does not have a free entry in 1016h",
+}
+
+
+def notes_of_the_master(edsc: Path, folder: Path, *watching: str) -> int:
+    """The notes that a node does not detect the loss of the master; those of several nodes are one."""
+    slaves = {name: {**NODE_A, "node_id": i, **({"master_timeout_ms": 300} if name in watching else {})}
+              for i, name in enumerate("abc", 1)}
+    _, found = check(edsc, folder, "master_" + "".join(watching), json.dumps(network(m=MASTER, **slaves)))
+    return sum((one["severity"], one["rule"]) == ("note", "network-unmonitored") for one in found)
 
 
 def check(edsc: Path, folder: Path, name: str, text: str) -> tuple[int, list[dict]]:
@@ -301,6 +354,7 @@ def main() -> int:
         folder = Path(temporary)
         (folder / "node.eds").write_bytes((Path(__file__).parent / "node.eds").read_bytes())
         (folder / "valid.eds").write_text(sheet_with("1400sub1", "$NODEID+0x200"))
+        (folder / "synchronous.eds").write_text(sheet_with("1800sub2", "1", sheet_with("1800sub1", "$NODEID+0x40000180")))
         (folder / "slow.eds").write_text(sheet_with("1800sub3", "200"))
         (folder / "wide.eds").write_text(wide_sheet())
         (folder / "short.eds").write_text(re.sub(r"(\[1017\][^\[]*DataType=0x0006\n)", r"\g<1>HighLimit=255\n", sheet_with("1017", "0")))
@@ -321,6 +375,11 @@ def main() -> int:
             rules = [(one["severity"], one["rule"]) for one in found if one["severity"] != "note"]
             if rules != expected:
                 problems.append(f"{name}: expected {expected}, got {[one['message'] for one in found]} {rules}")
+            if name in MESSAGES and MESSAGES[name] not in next(iter(one["message"] for one in found if one["severity"] != "note")):
+                problems.append(f"{name}: expected {MESSAGES[name]}, got {[one['message'] for one in found]}")
+        notes = [notes_of_the_master(edsc, folder, *watching) for watching in ("", "ab", "abc")]
+        if notes != [1, 1, 0]:
+            problems.append(f"notes about the master: {notes}")
     examples = sorted((source / "examples/networks").glob("*.json"))
     for example in examples:
         problems += problems_of_example(edsc, source, example)

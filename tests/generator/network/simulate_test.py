@@ -121,6 +121,16 @@ class Faults(Simulation):
         self.assertAlmostEqual(self.message(found, "inputs heartbeat")["count"], 10, delta=1)
         self.assertEqual(found["faults"], ["lost:inputs@2s"])
 
+    def test_a_loss_that_no_node_detects_is_a_problem(self) -> None:
+        """"others" has no heartbeat; the nodes do not monitor the master."""
+        plant = json.loads(json.dumps(PLANT))
+        plant["nodes"]["others"]["heartbeat_ms"] = 0
+        path = self.write(plant)
+        for lost, others in (("others", "inputs"), ("control", "others")):
+            found = self.simulate(path, "--for", "3s", "--fault", f"lost:{lost}@1s", "--fault", f"lost:{others}@1s", exit_code=FAILED)
+            self.assertIn(f"no node detects that {lost} is lost", found["problems"])
+            self.assertEqual(len(found["problems"]), 2 if others == "others" else 1)
+
     def test_errors_destroy_frames_which_are_sent_again(self) -> None:
         path = self.write(PLANT)
         quiet = self.simulate(path, "--for", "5s")
@@ -189,6 +199,27 @@ class Usage(Simulation):
                             compiler="no-such-compiler")
         self.expect_refusal(path, error="false has failed", compiler="false")
         self.assertEqual(list(self.folder.glob("edsc-simulation-*")), [])
+
+    def test_objects_are_used_again(self) -> None:
+        """The folder of `-o` has one object for each source; only those of the file that has changed are compiled again."""
+        path = self.write(PLANT)
+        arguments = ("--for", "100ms", "-o", "program")
+        self.assertEqual(self.run_edsc(path, *arguments).returncode, FINE)
+        objects = {one.name: one.stat().st_mtime_ns for one in (self.folder / "program").rglob("*.o")}
+        self.assertGreater(len(objects), 2)
+
+        def changed() -> set[str]:
+            result = self.run_edsc(path, *arguments)
+            self.assertEqual(result.returncode, FINE, result.stderr)
+            return {one.name for one in (self.folder / "program").rglob("*.o") if one.stat().st_mtime_ns != objects[one.name]}
+
+        self.assertEqual(changed(), set())
+        source = next((self.folder / "program").rglob("simulate.cpp"))
+        source.write_text(source.read_text() + "// changed\n")
+        self.assertEqual(changed(), {"simulate.o"})
+        objects = {one.name: one.stat().st_mtime_ns for one in (self.folder / "program").rglob("*.o")}
+        next((self.folder / "program").rglob("simulate.o.command")).unlink()  # as after an interrupted compiler
+        self.assertEqual(changed(), {"simulate.o"})
 
     def test_the_program_remains_in_the_named_folder(self) -> None:
         path = self.write(PLANT)

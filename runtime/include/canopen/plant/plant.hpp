@@ -38,6 +38,7 @@ namespace canopen {
 /// members: `plant.axis1.position()` returns a value, `plant.axis1.target(5)` sends one. No heap.
 ///
 /// A received value is empty before the first PDO, and from the loss of its node until the first PDO after its boot-up.
+/// A value that is sent has the default value of the master's object until it is set, which may be before `start`.
 /// Handlers are called from `on_frame` and `on_time`; they may use the plant. Up to `Requests` SDO requests of the
 /// application may wait.
 template <class NetworkDescription, Bus BusType, std::size_t Requests = 4>
@@ -96,10 +97,12 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
     return value_of<SignalType>();
   }
 
-  /// Starts the master's device, resets the nodes and boots them.
+  /// Starts the master's device, resets the nodes and boots them. Values that have been set before are kept.
   void start(TimePoint now) {
     now_ = now;
+    const SentValues before = sent_values();
     node_.start(now);
+    restore(before);
     master_.start(now);
   }
   void on_frame(const Frame& frame, TimePoint now) {
@@ -171,12 +174,35 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
   template <class SignalType>
   [[nodiscard]] AbortCode store(const typename SignalType::receiver::type& value) {
     if (const AbortCode code = check_limits<typename SignalType::receiver>(value); code != ok) return code;
+    is_set_[Network::Sent::template position_of<SignalType>] = true;
     return node_.template set<typename SignalType::object>(from_raw<typename SignalType::object::type>(to_raw(value)));
   }
   /// The value of the master's object, which may not have the meaning that the node's object has.
   template <class SignalType>
   [[nodiscard]] typename SignalType::type value_of() const {
     return from_raw<typename SignalType::type>(to_raw(node_.template get<typename SignalType::object>()));
+  }
+
+  template <class SignalType>
+  struct SentValue {
+    typename SignalType::object::type value{};
+  };
+  using SentValues = typename Network::Sent::template Slots<SentValue>;
+
+  [[nodiscard]] SentValues sent_values() const {
+    SentValues values;
+    Network::Sent::for_each([&]<class SignalType, std::size_t Position>() {
+      std::get<Position>(values).value = node_.template get<typename SignalType::object>();
+    });
+    return values;
+  }
+
+  /// Sets the values that the application has set; the others keep the default values of the start.
+  void restore(const SentValues& values) {
+    Network::Sent::for_each([&]<class SignalType, std::size_t Position>() {
+      if (!is_set_[Position]) return;
+      static_cast<void>(node_.template set<typename SignalType::object>(std::get<Position>(values).value));
+    });
   }
 
   [[nodiscard]] static std::optional<std::size_t> position_of(NodeId node_id) {
@@ -289,6 +315,7 @@ class Plant : public NetworkDescription::template Nodes<Plant<NetworkDescription
   NmtMaster<BusType, count, Host, Requests> master_;
   typename Network::Received::template Slots<Function> functions_{};
   std::array<bool, Network::Received::count> fresh_{};
+  std::array<bool, Network::Sent::count> is_set_{};
   std::array<bool, count> booted_{};
 };
 
