@@ -14,11 +14,11 @@ from pathlib import Path
 
 FOLDERS = ("generator", "bus", "cli")
 BUILD_TOOLS = {"generator/text/make_code_pages.cpp"}  # a program of its own, for the build
-WRITER = "generator/system/standard_streams.cpp"
+WRITERS = {f"generator/system/{folder}standard_streams.cpp" for folder in ("", "windows/")}
 TEXT = re.compile(r'//.*|"(?:\\.|[^"\\])*"')
 QUESTION = re.compile(r"\b(?:is_terminal|on)\(stderr\)")  # asks for a property of the stream
 STREAM = re.compile(r"\b(?:stderr|cerr|clog|STDERR_FILENO|perror)\b")
-DESCRIPTORS = {WRITER, "generator/system/run_program.cpp"}  # connect the descriptor
+DESCRIPTORS = WRITERS | {"generator/system/run_program.cpp"}  # connect the descriptor
 
 
 def misuses(text: str) -> list[int]:
