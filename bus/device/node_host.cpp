@@ -34,6 +34,7 @@ struct NodeHost::Connected final : canopen::SimulatedBus {
   bool full = false;  ///< the bus had no room for the last frame
 };
 
+NodeHost::NodeHost(LiveBus& bus) : bus_{bus} {}
 NodeHost::~NodeHost() = default;
 
 void NodeHost::add(std::shared_ptr<const Sheet> sheet, canopen::NodeId node_id, const std::string& memory) {

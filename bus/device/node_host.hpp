@@ -19,7 +19,7 @@ namespace edsc {
 class NodeHost {
  public:
   /// The bus must outlive the host.
-  explicit NodeHost(LiveBus& bus) : bus_{bus} {}
+  explicit NodeHost(LiveBus& bus);
   NodeHost(const NodeHost&) = delete;
   NodeHost& operator=(const NodeHost&) = delete;
   ~NodeHost();
