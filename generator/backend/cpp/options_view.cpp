@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <canopen/lss/lss_options.hpp>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "backend/cpp/json_object.hpp"
+#include "backend/cpp/lss_support.hpp"
 #include "device/options/option_table.hpp"
 
 namespace edsc {
@@ -78,20 +77,10 @@ ordered_json runtime_rows(const Options& options) {
   return rows;
 }
 
-/// The bit rates of the EDS in the format of canopen::LssOptions::bit_rates.
-std::uint16_t lss_bit_rates(const Capabilities& capabilities) {
-  unsigned mask = 0;
-  for (std::size_t i = 0; i < std::size(canopen::lss::bit_rates); ++i) {
-    const std::uint16_t rate = canopen::lss::bit_rates[i];
-    if (rate != 0 && std::ranges::find(capabilities.baud_rates, rate) != capabilities.baud_rates.end()) mask |= 1u << i;
-  }
-  return static_cast<std::uint16_t>(mask);
-}
-
 /// The members of canopen::LssOptions in its order for a device with LSS; otherwise null.
 ordered_json lss_view(const Device& device, const Options& options) {
   const Capabilities& capabilities = device.information.capabilities;
-  if (!options.lss && !capabilities.lss_supported.value_or(false)) return nullptr;
+  if (!has_lss(device, options)) return nullptr;
   const LssSettings settings = options.lss.value_or(LssSettings{});
   std::string members = fmt::format(".bit_rates = 0x{:04X}", settings.bit_rates.value_or(lss_bit_rates(capabilities)));
   for (const OptionRow& row : options_table) {

@@ -44,6 +44,7 @@
 #include "canopen/od/closed_objects.hpp"
 #include "canopen/od/device_object.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/pdo/mpdo.hpp"
 #include "canopen/sdo/domain_handlers.hpp"
 #include "canopen/storage/storage.hpp"
@@ -219,7 +220,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// typed `set`. Length and limits are checked as for a download; read_only: it is a constant in the EDS.
   [[nodiscard]] AbortCode set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
     AccessProbe<Device>::uses(index, sub_index);
-    const entry::Word word = EntryAccess<Device>::find(index, sub_index);
+    const entry::Word word = entries().find(index, sub_index);
     if (word == Dictionary::no_object) return AbortCode::no_object;
     if (word == Dictionary::no_sub_index) return AbortCode::no_sub_index;
     if (entry::place_of(word) != entry::Place::ram) return AbortCode::read_only;
@@ -228,7 +229,9 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
       if (service::DriveModes<Device>::checks(index, sub_index) && !accepts_mode<Device>(index, bytes[0]))
         return AbortCode::invalid_value;
     }
-    if (const AbortCode code = check_closed<Device>(index, sub_index, bytes); code != ok) return code;
+    const AbortCode closed = with_sheet<Device>(
+        store_, [&](const auto&... of_node) { return check_closed<Device>(index, sub_index, bytes, of_node...); });
+    if (closed != ok) return closed;
     handler_calls_.object_is_set(object_key(index, sub_index));
     if (!entry::is_domain(word) && entries().holds(word, bytes)) return ok;
     // Values set in Initialisation belong to the configuration of the device after a reset.
@@ -343,7 +346,8 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
     if (services_.on_fixed_frame(host(), frame, cob_id)) return;
     if (cob_id == function_code::nmt) {
       if (is_nmt_command(frame, node_id_)) carry_out(static_cast<NmtCommand>(frame.data[0]));
-    } else if (is_usable_by_pdo<Device>(cob_id)) {
+    } else if (with_sheet<Device>(
+                   store_, [&](const auto&... of_node) { return is_usable_by_pdo<Device>(cob_id, of_node...); })) {
       static_cast<void>(services_.on_frame(host(), frame, cob_id));
     }
   }

@@ -49,7 +49,7 @@ class EmergencyConsumer {
       const std::uint32_t cob_id = cob_id_of(frame);
       for (std::uint8_t sub_index = 1; sub_index <= highest; ++sub_index) {
         const entry::Word word = entries.find(0x1028, sub_index);
-        if (word == Dictionary::no_sub_index || entries.number(word) != cob_id) continue;
+        if (word <= Dictionary::no_sub_index || entries.number(word) != cob_id) continue;
         if (const auto message = emergency_message(frame)) return ConsumedEmergency{sub_index, *message};
       }
     }

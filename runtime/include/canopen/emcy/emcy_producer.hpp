@@ -19,6 +19,7 @@
 #include "canopen/emcy/service_error.hpp"
 #include "canopen/od/device_options.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 
 namespace canopen {
 
@@ -26,6 +27,17 @@ namespace canopen {
 using EmergencyInfo = std::array<std::uint8_t, 5>;
 /// No such bytes.
 inline constexpr EmergencyInfo no_emergency_info{};
+
+/// Returns the manufacturer-specific bytes of an EMCY that a service of the device sends.
+template <class Device>
+[[nodiscard]] constexpr EmergencyInfo emergency_info([[maybe_unused]] const ObjectStore<Device>& store,
+                                                     std::uint16_t code) {
+  if constexpr (has_sheet<Device>) {
+    return Device::sheet_of(store).emergency_info(code);
+  } else {
+    return Device::emergency_info(code);
+  }
+}
 
 /// The errors of one device. Each error that appears is sent once, with the present register, and recorded in the
 /// history; each one that disappears is sent as code 0000h with the remaining register. Messages wait, in order, while
@@ -70,7 +82,11 @@ class EmergencyProducer {
   void appeared(ObjectStore<Device>& store, ServiceError error) {
     service_errors_ |= set_of(error);
     const std::uint8_t row = static_cast<std::uint8_t>(error);
-    note(store, service_error_codes[row], has_info ? infos[row] : no_info);
+    if constexpr (has_sheet<Device>) {
+      note(store, service_error_codes[row], emergency_info<Device>(store, service_error_codes[row]));
+    } else {
+      note(store, service_error_codes[row], has_info ? infos[row] : no_info);
+    }
   }
 
   /// Ends an error that a service has detected. Returns false if it was not present.
@@ -93,11 +109,12 @@ class EmergencyProducer {
   ///   0604 0047h  in the EDS, the object does not have the type of CiA 301
   [[nodiscard]] static AbortCode check(EntryAccess<Device> entries, std::uint16_t index,
                                        std::span<std::uint8_t> bytes) {
+    const DeviceOptions& options = options_of<Device>(entries);
     if (index == 0x1015) {
-      if constexpr (Device::options.emcy_inhibit_time_step != 1) {
+      if (options.emcy_inhibit_time_step != 1) {
         if constexpr (entry::wire_bytes(Device::dictionary.find(0x1015, 0)) != 2)
           return AbortCode::internal_incompatibility;
-        if (number_in(bytes) % Device::options.emcy_inhibit_time_step != 0) return AbortCode::invalid_value;
+        if (number_in(bytes) % options.emcy_inhibit_time_step != 0) return AbortCode::invalid_value;
       }
       return ok;
     }
@@ -105,15 +122,15 @@ class EmergencyProducer {
       return AbortCode::internal_incompatibility;
     const CobId before{entries.template number<0x1014, 0>()};
     const CobId written{number_in(bytes)};
-    const CobId after = written_cob_id(before, Device::options.emcy_cob_id_writable, bytes);
+    const CobId after = written_cob_id(before, options.emcy_cob_id_writable, bytes);
     constexpr std::uint32_t reserved_bit = 0x4000'0000;
     if ((after.value() & reserved_bit) != 0) return AbortCode::invalid_value;
     if (after.value() == function_code::sync) return AbortCode::invalid_value;
-    if constexpr (Device::options.emcy_cob_id_writable != 0xFFFF'FFFF) {
+    if (options.emcy_cob_id_writable != 0xFFFF'FFFF) {
       if (after.valid() && !is_usable(written.value() & CobId::identifier)) return AbortCode::invalid_value;
     }
-    const CobId from = Device::options.emcy_cob_id_writable_while_valid ? CobId{} : before;
-    return may_change(from, after, Device::options.pdo_extended_ids) ? ok : AbortCode::invalid_value;
+    const CobId from = options.emcy_cob_id_writable_while_valid ? CobId{} : before;
+    return may_change(from, after, options.pdo_extended_ids) ? ok : AbortCode::invalid_value;
   }
 
   /// Clears all errors and waiting messages (CiA 301, 7.2.7.1: effect of a reset).
@@ -129,11 +146,15 @@ class EmergencyProducer {
   template <Bus BusType>
   void announce_reset([[maybe_unused]] ObjectStore<Device>& store, [[maybe_unused]] BusType& bus) const {
     if constexpr (has_cob_id && Device::options.reset_emergency != 0) {
-      constexpr std::uint16_t code = Device::options.reset_emergency;
+      const std::uint16_t code = options_of<Device>(store).reset_emergency;
+      if constexpr (has_sheet<Device>) {
+        if (code == 0 || !Device::sheet_of(store).dictionary.has(0x1014, 0)) return;
+      }
       const auto bits =
           static_cast<std::uint8_t>(error_register() | static_cast<std::uint8_t>(ErrorRegister::manufacturer));
-      (void)send(store, bus, message_of(code, bits, Device::emergency_info(code)));
-      remember(store, code, Device::emergency_info(code));
+      const EmergencyInfo info = emergency_info<Device>(store, code);
+      (void)send(store, bus, message_of(code, bits, info));
+      remember(store, code, info);
     }
   }
 
@@ -237,7 +258,8 @@ class EmergencyProducer {
   void note(ObjectStore<Device>& store, std::uint16_t code, const EmergencyInfo& info) {
     const std::uint8_t bits = error_register();
     if constexpr (has_register) store_register(store, bits);
-    if (code != emergency_code::reset || Device::options.error_history_keeps_resets) remember(store, code, info);
+    if (code != emergency_code::reset || options_of<Device>(store).error_history_keeps_resets)
+      remember(store, code, info);
     if constexpr (has_cob_id) {
       if (waiting_ < depth) {
         ++waiting_;
@@ -275,10 +297,16 @@ class EmergencyProducer {
       std::uint8_t& count = *store.entries().ram(history_count);
       std::uint8_t* field = store.entries().ram(history_first);
       unsigned older = count;
-      if (older >= history_capacity) older = history_capacity - 1;  // the application may set any number
+      std::uint8_t capacity = history_capacity;
+      if constexpr (has_sheet<Device>) {
+        const Dictionary& dictionary = store.entries().dictionary();
+        capacity = dictionary.highest_sub_index(dictionary.find_index(0x1003));
+        if (capacity == 0) return;
+      }
+      if (older >= capacity) older = capacity - 1u;  // the application may set any number
       count = static_cast<std::uint8_t>(older + 1);
       std::uint32_t newest = code;
-      if constexpr (Device::options.error_history_has_info) {
+      if (options_of<Device>(store).error_history_has_info) {
         newest |= static_cast<std::uint32_t>(info[0] << 16) | (std::uint32_t{info[1]} << 24);
       }
       for (field += sizeof newest * older; older != 0; --older, field -= sizeof newest) {

@@ -15,6 +15,7 @@
 #include <type_traits>
 
 #include "canopen/lss/lss_slave.hpp"
+#include "canopen/od/sheet.hpp"
 
 namespace canopen {
 
@@ -84,6 +85,11 @@ inline constexpr bool options_fit<Device, LssHandler<Options, Port>> = Options =
 template <class Device, class Handler>
 struct SlaveOf {
   using type = LssSlave<options_of<Device, Handler>>;
+};
+template <class Device, class Port>
+requires has_sheet<Device>
+struct SlaveOf<Device, ConfiguredByLss<Port>> {
+  using type = LssSlave<LssOptions{}, true>;
 };
 template <class Device>
 struct SlaveOf<Device, void> {

@@ -38,9 +38,14 @@ concept LssSlaveHooks = requires(Type hooks, std::uint8_t sub_index, NodeId node
 /// active one, which the device uses.
 ///
 /// It holds at most one response until the bus has room; a later one replaces it.
-template <LssOptions options = LssOptions{}>
+///
+/// `AtRunTime`: the options are set before power-on; those of the type are what the code can do.
+template <LssOptions options = LssOptions{}, bool AtRunTime = false>
 class LssSlave {
  public:
+  /// Sets the options of a slave that has them at run time.
+  void set_options(const LssOptions& at_run_time) requires AtRunTime { set_.value = at_run_time; }
+
   /// Power-on, with the stored values. The pending node-ID is the persistent one.
   void start(NodeId persistent, LssBitTiming bit_timing) {
     persistent_ = persistent;
@@ -139,12 +144,24 @@ class LssSlave {
   };
   struct NoTiming {};
 
+  struct OfType {};
+  struct SetOptions {
+    LssOptions value{};
+  };
+  [[nodiscard]] constexpr const LssOptions& chosen() const {
+    if constexpr (AtRunTime) {
+      return set_.value;
+    } else {
+      return options;
+    }
+  }
+
   [[nodiscard]] bool serves(NmtState state) const {
     switch (state) {
       case NmtState::initialisation: return active_ == unconfigured_node_id;
       case NmtState::pre_operational: return true;
-      case NmtState::stopped: return options.served_in_stopped;
-      case NmtState::operational: return options.served_in_operational;
+      case NmtState::stopped: return chosen().served_in_stopped;
+      case NmtState::operational: return chosen().served_in_operational;
     }
     return false;
   }
@@ -182,7 +199,9 @@ class LssSlave {
         if (unconfigured()) answer(lss::Command::identified_non_configured);
         return;
       case lss::Command::fastscan:
-        if constexpr (options.fastscan) fastscan(frame, word, hooks);
+        if constexpr (options.fastscan) {
+          if (chosen().fastscan) fastscan(frame, word, hooks);
+        }
         return;
       case lss::Command::configure_node_id: return answer(command, configure_node_id(NodeId{frame.data[1]}, hooks));
       case lss::Command::configure_bit_timing:
@@ -281,16 +300,16 @@ class LssSlave {
   }
 
   [[nodiscard]] LssError configure_node_id(NodeId node_id, auto& hooks) {
-    const bool takes_away = options.unconfigurable && node_id == unconfigured_node_id;
+    const bool takes_away = chosen().unconfigurable && node_id == unconfigured_node_id;
     if (!node_id.valid() && !takes_away) return lss::node_id_out_of_range;
     const LssError error = hooks.accept(node_id);
     if (error.code == 0) pending_ = node_id;
     return error;
   }
 
-  [[nodiscard]] static bool supports(LssBitTiming bit_timing) {
-    if (bit_timing.table >= 128) return options.manufacturer_bit_timing;
-    return bit_timing.table == 0 && bit_timing.index < 16 && (options.bit_rates >> bit_timing.index & 1) != 0;
+  [[nodiscard]] bool supports(LssBitTiming bit_timing) const {
+    if (bit_timing.table >= 128) return chosen().manufacturer_bit_timing;
+    return bit_timing.table == 0 && bit_timing.index < 16 && (chosen().bit_rates >> bit_timing.index & 1) != 0;
   }
 
   [[nodiscard]] LssError configure_bit_timing(LssBitTiming bit_timing, auto& hooks) {
@@ -339,6 +358,7 @@ class LssSlave {
   NodeId pending_{};
   NodeId active_{};
   bool served_ = false;
+  [[no_unique_address]] std::conditional_t<AtRunTime, SetOptions, OfType> set_{};
 };
 
 }  // namespace canopen

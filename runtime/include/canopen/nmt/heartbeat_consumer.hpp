@@ -83,6 +83,12 @@ class HeartbeatConsumer {
   void configure(EntryAccess<Device> entries) {
     for (std::size_t i = 0; i < Count; ++i) {
       const entry::Word word = entries.find(0x1016, static_cast<std::uint8_t>(i + 1));
+      if constexpr (has_sheet<Device>) {
+        if (word <= Dictionary::no_sub_index) {
+          configure(i, ConsumerHeartbeatTime{0});
+          continue;
+        }
+      }
       configure(i, ConsumerHeartbeatTime{entries.number(word)});
     }
   }

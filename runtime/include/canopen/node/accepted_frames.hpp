@@ -14,8 +14,10 @@
 #include "canopen/lss/lss_handler.hpp"
 #include "canopen/lss/lss_protocol.hpp"
 #include "canopen/nmt/heartbeat_consumer.hpp"
+#include "canopen/od/device_options.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 
 namespace canopen {
 
@@ -68,14 +70,14 @@ constexpr void for_each_source(const Dictionary& dictionary, Visit&& visit) {
 }
 
 /// Calls `visit` with the frames that the value of such an entry selects, if any.
-template <class Device, class Visit>
-void accept(Source source, std::uint32_t value, Visit&& visit) {
+template <class Visit>
+void accept(const DeviceOptions& options, Source source, std::uint32_t value, Visit&& visit) {
   const auto accepted = [&](std::uint32_t cob_id, bool remote) {
     visit(AcceptedFrame{CobId{cob_id & CobId::identifier}.can_id(), (cob_id & CobId::extended_bit) != 0, remote});
   };
   const auto frames = [&](std::uint32_t cob_id, bool remote) {
     const bool is_of_pdo = source == Source::rpdo || source == Source::tpdo;
-    const bool is_allowed = is_of_pdo && is_in(Device::options.pdo_allowed_can_ids, cob_id);
+    const bool is_allowed = is_of_pdo && is_in(options.pdo_allowed_can_ids, cob_id);
     if (is_allowed || is_usable(cob_id & CobId::identifier)) accepted(cob_id, remote);
   };
   const CobId cob_id{value};
@@ -90,7 +92,7 @@ void accept(Source source, std::uint32_t value, Visit&& visit) {
       if (cob_id.valid()) frames(value, false);
       return;
     case Source::tpdo:
-      if (Device::options.tpdo_remote_frames && cob_id.valid() && cob_id.rtr_allowed()) frames(value, true);
+      if (options.tpdo_remote_frames && cob_id.valid() && cob_id.rtr_allowed()) frames(value, true);
       return;
     case Source::heartbeat:
       if (const ConsumerHeartbeatTime time{value}; time.used()) {
@@ -139,7 +141,7 @@ void for_each_accepted_frame(SomeNode& node, Visit&& visit) {
   }
   const EntryAccess entries = node.entries();
   for (const accepted_detail::Entry& row : accepted_detail::sources<Device>) {
-    accepted_detail::accept<Device>(row.source, entries.number(row.word), visit);
+    accepted_detail::accept(options_of<Device>(entries), row.source, entries.number(row.word), visit);
   }
 }
 

@@ -29,6 +29,7 @@
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/object_list.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/od/value.hpp"
 #include "canopen/sdo/domain_handlers.hpp"
 #include "canopen/storage/storage.hpp"
@@ -185,7 +186,7 @@ struct FindMissingDomains<true, Device, Handlers...> {
   using type = SelectObjects<IsMissingDomain<Device, Handlers...>, typename Device::Objects>;
 };
 template <class Device, class... Handlers>
-using MissingDomains = typename FindMissingDomains<has_domain<Device>, Device, Handlers...>::type;
+using MissingDomains = typename FindMissingDomains<has_domain<Device> && !has_sheet<Device>, Device, Handlers...>::type;
 
 /// Types that a rule does not accept: they are in the message of the compiler.
 template <class... Wrong>

@@ -13,6 +13,7 @@
 #include "canopen/od/closed_objects.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 
 namespace canopen {
 
@@ -21,8 +22,12 @@ namespace canopen {
 template <class Host>
 [[nodiscard]] inline AbortCode before_write(Host& host, std::uint16_t index, std::uint8_t sub_index,
                                             std::span<std::uint8_t> bytes) {
-  if (may_concern_services(index) || service::DriveModes<typename Host::Device>::checks(index, sub_index) ||
-      is_closed<typename Host::Device>(index, sub_index)) {
+  using Device = typename Host::Device;
+  const auto is_in_enumeration = [&](const auto&... of_node) {
+    return is_closed<Device>(index, sub_index, of_node...);
+  };
+  if (may_concern_services(index) || service::DriveModes<Device>::checks(index, sub_index) ||
+      with_sheet<Device>(host.store(), is_in_enumeration)) {
     if (const AbortCode code = host.check_write(index, sub_index, bytes); code != ok) return code;
   }
   const std::uint32_t key = object_key(index, sub_index);
@@ -47,7 +52,7 @@ inline void notify_written([[maybe_unused]] Host& host, [[maybe_unused]] std::ui
 template <class Host>
 inline void take_received(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
   using Entries = EntryAccess<typename Host::Device>;
-  const entry::Word word = Entries::find(index, sub_index);
+  const entry::Word word = host.entries().find(index, sub_index);
   if (Entries::kinds.booleans && entry::is_boolean(word)) bytes[0] = bytes[0] != 0 ? 1 : 0;
   if (host.entries().check(index, sub_index, word, bytes) != ok) return;
   if (before_write(host, index, sub_index, bytes) != ok) return;

@@ -8,6 +8,7 @@
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/od/object_list.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/od/value_bits.hpp"
 
 namespace canopen {
@@ -48,9 +49,13 @@ template <class... Objects>
 }  // namespace closed_objects_detail
 
 /// Whether an entry is in the list.
-template <class Device>
-[[nodiscard]] constexpr bool is_closed([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
-  if constexpr (HasClosedObjects<Device>) {
+/// `of_node`: the EntryAccess or ObjectStore of a device with a sheet, nothing for others.
+template <class Device, class... OfNode>
+[[nodiscard]] constexpr bool is_closed([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index,
+                                       [[maybe_unused]] const OfNode&... of_node) {
+  if constexpr (has_sheet<Device>) {
+    return (Device::sheet_of(of_node), ...).is_closed(index, sub_index);
+  } else if constexpr (HasClosedObjects<Device>) {
     return closed_objects_detail::has(typename Device::ClosedObjects{}, index, sub_index);
   } else {
     return false;
@@ -58,10 +63,13 @@ template <class Device>
 }
 
 /// Returns invalid_value if an entry of the list does not accept this value, whose length is correct.
-template <class Device>
+template <class Device, class... OfNode>
 [[nodiscard]] AbortCode check_closed([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index,
-                                     [[maybe_unused]] std::span<const std::uint8_t> bytes) {
-  if constexpr (HasClosedObjects<Device>) {
+                                     [[maybe_unused]] std::span<const std::uint8_t> bytes,
+                                     [[maybe_unused]] const OfNode&... of_node) {
+  if constexpr (has_sheet<Device>) {
+    return (Device::sheet_of(of_node), ...).check_closed(index, sub_index, bytes);
+  } else if constexpr (HasClosedObjects<Device>) {
     if (!closed_objects_detail::accept(typename Device::ClosedObjects{}, index, sub_index, bytes))
       return AbortCode::invalid_value;
   }

@@ -13,6 +13,7 @@
 #include "canopen/od/access_probe.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/entry_search.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/od/value.hpp"
 
 namespace canopen {
@@ -54,14 +55,11 @@ struct Kinds {
 
 }  // namespace entry
 
-/// Access to the entries of one node by index and sub-index, as an SDO server needs it. A reference to an ObjectStore,
-/// cheap to copy.
+/// The tables in which entries are found at run time: those of the type, by static functions.
 template <class Device>
-class EntryAccess {
+class EntryDirectory {
  public:
-  static constexpr entry::Kinds kinds = entry::kinds_of(Device::dictionary);
-
-  constexpr explicit EntryAccess(ObjectStore<Device>& store) : store_{&store} {}
+  constexpr explicit EntryDirectory(ObjectStore<Device>& store) : store_{&store} {}
 
   [[nodiscard]] static constexpr const Dictionary& dictionary() { return Device::dictionary; }
 
@@ -69,6 +67,38 @@ class EntryAccess {
   [[nodiscard, gnu::noinline]] static entry::Word find(std::uint16_t index, std::uint8_t sub_index) {
     return Device::dictionary.sub_word(EntrySearch<Device>::find(index), sub_index);
   }
+
+ protected:
+  ObjectStore<Device>* store_;
+};
+
+/// Those of the sheet of the node.
+template <class Device>
+requires has_sheet<Device>
+class EntryDirectory<Device> {
+ public:
+  constexpr explicit EntryDirectory(ObjectStore<Device>& store) : store_{&store} {}
+
+  [[nodiscard]] const Dictionary& dictionary() const { return Device::sheet_of(*store_).dictionary; }
+  [[nodiscard]] entry::Word find(std::uint16_t index, std::uint8_t sub_index) const {
+    return dictionary().find(index, sub_index);
+  }
+
+ protected:
+  ObjectStore<Device>* store_;
+};
+
+/// Access to the entries of one node by index and sub-index, as an SDO server needs it. A reference to an ObjectStore,
+/// cheap to copy.
+template <class Device>
+class EntryAccess : public EntryDirectory<Device> {
+  using Directory = EntryDirectory<Device>;
+  using Directory::store_;
+
+ public:
+  static constexpr entry::Kinds kinds = entry::kinds_of(Device::dictionary);
+
+  using Directory::Directory, Directory::dictionary, Directory::find;
 
   /// Returns the bytes of an entry as SDO sends them. Immediate values are copied to `scratch`, others are referenced
   /// in place. An unbound domain: no bytes, null pointer.
@@ -133,8 +163,8 @@ class EntryAccess {
   }
 
   /// Returns the address of an entry in the constants.
-  [[nodiscard]] static const std::uint8_t* constant(entry::Word word) {
-    return static_cast<const std::uint8_t*>(Device::dictionary.constants) + entry::offset_of(word);
+  [[nodiscard]] const std::uint8_t* constant(entry::Word word) const {
+    return static_cast<const std::uint8_t*>(dictionary().constants) + entry::offset_of(word);
   }
 
   /// Sets the number of bytes of a DOMAIN's memory that are its value.
@@ -148,13 +178,16 @@ class EntryAccess {
   [[nodiscard, gnu::noinline]] AbortCode check(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                                std::span<const std::uint8_t> bytes) const {
     if (const AbortCode length = check_length(index, sub_index, word, bytes.size()); length != ok) return length;
-    return check_value(index, sub_index, word, bytes);
+    return with_sheet<Device>(
+        *this, [&](const auto&... of_node) { return check_value(index, sub_index, word, bytes, of_node...); });
   }
 
-  /// Checks the value of bytes whose length is correct.
+  /// Checks the value of bytes whose length is correct. `of_node`: as in `with_sheet`.
+  template <class... OfNode>
   [[nodiscard]] static AbortCode check_value([[maybe_unused]] std::uint16_t index,
                                              [[maybe_unused]] std::uint8_t sub_index, entry::Word word,
-                                             [[maybe_unused]] std::span<const std::uint8_t> bytes) {
+                                             [[maybe_unused]] std::span<const std::uint8_t> bytes,
+                                             [[maybe_unused]] const OfNode&... of_node) {
     if (entry::place_of(word) != entry::Place::ram)
       return AbortCode::not_stored;  // a command such as 1010h that no service handles
     if constexpr (kinds.booleans) {
@@ -162,7 +195,8 @@ class EntryAccess {
     }
     if constexpr (has_limits) {
       if ((word & entry::limited) != 0 && entry::class_of(word) != entry::Class::special)
-        return check_limits(object_key(index, limits_sub_index(index, sub_index)), word, bytes.data());
+        return check_limits(object_key(index, limits_sub_index(index, sub_index, of_node...)), word, bytes.data(),
+                            of_node...);
     }
     return ok;
   }
@@ -179,7 +213,10 @@ class EntryAccess {
   [[nodiscard]] std::uint32_t longest([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index,
                                       entry::Word word) const {
     if constexpr (kinds.strings_in_ram) {
-      if (entry::is_string(word)) return capacity(index, sub_index);
+      if (entry::is_string(word)) {
+        return with_sheet<Device>(*this,
+                                  [&](const auto&... of_node) { return capacity(index, sub_index, of_node...); });
+      }
     }
     return is_domain(word) ? domain(word).capacity : bytes_of(word);
   }
@@ -216,9 +253,11 @@ class EntryAccess {
     copy_few_bytes(where, from, size);
   }
 
-  /// Returns the capacity of a string entry in bytes.
-  [[nodiscard]] static std::uint32_t capacity(std::uint16_t index, std::uint8_t sub_index) {
-    const Limits* row = Device::dictionary.find_limits(object_key(index, limits_sub_index(index, sub_index)));
+  /// Returns the capacity of a string entry in bytes. `of_node`: as in `with_sheet`.
+  template <class... OfNode>
+  [[nodiscard]] static std::uint32_t capacity(std::uint16_t index, std::uint8_t sub_index, const OfNode&... of_node) {
+    const std::uint32_t key = object_key(index, limits_sub_index(index, sub_index, of_node...));
+    const Limits* row = tables(of_node...).find_limits(key);
     return row == nullptr ? 0 : row->high;
   }
 
@@ -246,8 +285,8 @@ class EntryAccess {
   static constexpr std::size_t string_header = sizeof(std::uint16_t);
 
   /// Whether a 00h follows the text; its storage then has one more byte than the capacity.
-  [[nodiscard]] static bool is_terminated(entry::Word word) {
-    return Device::dictionary.zero_terminated_strings && entry::type_of(word) == entry::visible_string;
+  [[nodiscard]] bool is_terminated(entry::Word word) const {
+    return dictionary().zero_terminated_strings && entry::type_of(word) == entry::visible_string;
   }
 
   /// Loads a value that is stored as its C++ type, at an address aligned for it.
@@ -293,17 +332,31 @@ class EntryAccess {
     return is_negative(word) ? value | 0xFFFF'0000 : value;
   }
 
-  [[nodiscard]] static std::uint8_t limits_sub_index(std::uint16_t index, std::uint8_t sub_index) {
-    const bool array = entry::kind_of(Device::dictionary.find_index(index)) == entry::Kind::array;
+  /// Returns the tables of the type, or of the sheet of the node.
+  template <class... OfNode>
+  [[nodiscard]] static constexpr const Dictionary& tables([[maybe_unused]] const OfNode&... of_node) {
+    if constexpr (has_sheet<Device>) {
+      return (of_node, ...).dictionary();
+    } else {
+      return Device::dictionary;
+    }
+  }
+
+  template <class... OfNode>
+  [[nodiscard]] static std::uint8_t limits_sub_index(std::uint16_t index, std::uint8_t sub_index,
+                                                     const OfNode&... of_node) {
+    const bool array = entry::kind_of(tables(of_node...).find_index(index)) == entry::Kind::array;
     return array && sub_index > 1 ? std::uint8_t{1} : sub_index;
   }
 
-  [[nodiscard]] static AbortCode check_limits(std::uint32_t key, entry::Word word, const std::uint8_t* bytes) {
+  template <class... OfNode>
+  [[nodiscard]] static AbortCode check_limits(std::uint32_t key, entry::Word word, const std::uint8_t* bytes,
+                                              const OfNode&... of_node) {
     if constexpr (!Device::dictionary.wide_limits.empty()) {
       if (entry::size_of(word) > 4)
-        return check_against(dictionary_detail::find_by_key(Device::dictionary.wide_limits, key), word, bytes);
+        return check_against(dictionary_detail::find_by_key(tables(of_node...).wide_limits, key), word, bytes);
     }
-    return check_against(Device::dictionary.find_limits(key), word, bytes);
+    return check_against(tables(of_node...).find_limits(key), word, bytes);
   }
 
   /// `Row` is Limits or WideLimits.
@@ -340,8 +393,6 @@ class EntryAccess {
     constexpr Raw infinity = sizeof(Raw) == 4 ? Raw{0xFF00'0000} : static_cast<Raw>(0xFFE0'0000'0000'0000);
     return static_cast<Raw>(raw << 1) > infinity;
   }
-
-  ObjectStore<Device>* store_;
 };
 
 }  // namespace canopen

@@ -15,6 +15,7 @@
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/entry_access.hpp"
 #include "canopen/od/object.hpp"
+#include "canopen/od/sheet.hpp"
 
 namespace canopen {
 
@@ -88,9 +89,13 @@ class ObjectStore {
     node_id_ = node_id;
     const BoundDomains bound = bound_domains();
     const auto history = error_history();
-    Device::reset_communication(values_);
+    if constexpr (has_sheet<Device>) {
+      Device::reset_communication(values_, node_id);
+    } else {
+      Device::reset_communication(values_);
+    }
     bind_again(bound);
-    restore(history);
+    if (options_of<Device>(*this).reset_emergency != 0) restore(history);
     add_node_id(Device::node_id_relative_communication());
   }
 
@@ -98,7 +103,11 @@ class ObjectStore {
   void reset_application(NodeId node_id) {
     node_id_ = node_id;
     const BoundDomains bound = bound_domains();
-    Device::reset_application(values_);
+    if constexpr (has_sheet<Device>) {
+      Device::reset_application(values_, node_id);
+    } else {
+      Device::reset_application(values_);
+    }
     bind_again(bound);
     add_node_id(Device::node_id_relative_application());
   }

@@ -10,6 +10,7 @@
 #include "canopen/can/cob_id.hpp"
 #include "canopen/od/device_options.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/pdo/pdo_list.hpp"
 #include "canopen/pdo/transmission_type.hpp"
 #include "canopen/sync/sync.hpp"
@@ -24,16 +25,17 @@ namespace canopen {
 }
 
 /// Whether a PDO of the device may send or receive with a COB-ID: is_usable(), and the CAN-IDs that its options allow.
-template <class Device>
-[[nodiscard]] constexpr bool is_usable_by_pdo(std::uint32_t cob_id) {
-  if (is_in(Device::options.pdo_allowed_can_ids, cob_id)) return true;
+/// `of_node`: the EntryAccess of a device with a sheet, nothing for others.
+template <class Device, class... OfNode>
+[[nodiscard]] constexpr bool is_usable_by_pdo(std::uint32_t cob_id, const OfNode&... of_node) {
+  if (is_in(options_of<Device>(of_node...).pdo_allowed_can_ids, cob_id)) return true;
   return is_usable(cob_id);
 }
 
 /// The same for may_be_written() if the COB-ID is in use.
-template <class Device>
-[[nodiscard]] constexpr bool may_be_used_by_pdo(CobId cob_id, bool extended_ids) {
-  if (is_in(Device::options.pdo_allowed_can_ids, cob_id.value())) return true;
+template <class Device, class... OfNode>
+[[nodiscard]] constexpr bool may_be_used_by_pdo(CobId cob_id, bool extended_ids, const OfNode&... of_node) {
+  if (is_in(options_of<Device>(of_node...).pdo_allowed_can_ids, cob_id.value())) return true;
   return may_be_written(cob_id, true, extended_ids);
 }
 
@@ -79,26 +81,27 @@ template <class Device>
 [[nodiscard]] AbortCode check_pdo_parameter(EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index,
                                             std::span<std::uint8_t> bytes) {
   const bool tpdo = is_tpdo_communication(index);
+  const DeviceOptions& options = options_of<Device>(entries);
   const CobId cob_id{entries.number(index, pdo_parameter::cob_id)};
   switch (sub_index) {
     case pdo_parameter::cob_id: {
       if (!has_pdo_parameter_size<Device>(pdo_parameter::cob_id, 4) && bytes.size() != 4)
         return AbortCode::internal_incompatibility;
-      const CobId after = written_cob_id(cob_id, Device::options.pdo_cob_id_writable, bytes);
-      const bool is_allowed = !cob_id.valid() && is_in(Device::options.pdo_allowed_can_ids, after.value());
-      if (!is_allowed && !may_change(cob_id, after, Device::options.pdo_extended_ids)) return AbortCode::invalid_value;
-      return check_pdo_features(Device::options, tpdo, after);
+      const CobId after = written_cob_id(cob_id, options.pdo_cob_id_writable, bytes);
+      const bool is_allowed = !cob_id.valid() && is_in(options.pdo_allowed_can_ids, after.value());
+      if (!is_allowed && !may_change(cob_id, after, options.pdo_extended_ids)) return AbortCode::invalid_value;
+      return check_pdo_features(options, tpdo, after);
     }
-    case pdo_parameter::transmission_type: return check_transmission_type(Device::options, tpdo, bytes[0]);
+    case pdo_parameter::transmission_type: return check_transmission_type(options, tpdo, bytes[0]);
     case pdo_parameter::inhibit_time:
-      if (!tpdo || Device::options.inhibit_time_writable_while_valid) return ok;
+      if (!tpdo || options.inhibit_time_writable_while_valid) return ok;
       if (!has_pdo_parameter_size<Device>(pdo_parameter::inhibit_time, 2) && bytes.size() != 2)
         return AbortCode::internal_incompatibility;
       break;
     case pdo_parameter::sync_start:
       if (!tpdo) return ok;
       if (bytes[0] > highest_sync_counter) return AbortCode::invalid_value;
-      if (Device::options.sync_start_writable_while_valid) return ok;
+      if (options.sync_start_writable_while_valid) return ok;
       break;
     default: return ok;
   }

@@ -12,6 +12,7 @@
 #include "canopen/can/frame.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/pdo/parameter_column.hpp"
 #include "canopen/pdo/pdo_codec.hpp"
 #include "canopen/pdo/pdo_list.hpp"
@@ -61,9 +62,14 @@ class MappedPlaces {
   static constexpr bool any = std::ranges::any_of(capacities, [](std::uint8_t capacity) { return capacity != 0; });
 
   /// Returns the same for the PDO with this mapping parameter.
-  [[nodiscard]] static constexpr std::uint8_t capacity_of(std::uint16_t index) {
-    const std::size_t place = place_of_pdo<Pdos>(index);
-    return place < count ? capacities[place] : std::uint8_t{0};
+  [[nodiscard]] static constexpr std::uint8_t capacity_of([[maybe_unused]] EntryAccess<Device> entries,
+                                                          std::uint16_t index) {
+    if constexpr (has_sheet<Device>) {
+      return mapping_capacity(entries.dictionary(), index);
+    } else {
+      const std::size_t place = place_of_pdo<Pdos>(index);
+      return place < count ? capacities[place] : std::uint8_t{0};
+    }
   }
 
   using Runs = MappedRun<Device>;
@@ -79,7 +85,12 @@ class MappedPlaces {
       if (mapping.count() > capacity(pdo)) return 0;
       Place* const places = of(pdo);
       constexpr bool tpdo = Indices.mapping == tpdo_indices.mapping;
-      const std::uint8_t bits = mapping.template look_up<Device>(tpdo, mapping.count(), places);
+      std::uint8_t bits;
+      if constexpr (has_sheet<Device>) {
+        bits = mapping.template look_up<Device>(tpdo, mapping.count(), places, entries);
+      } else {
+        bits = mapping.template look_up<Device>(tpdo, mapping.count(), places);
+      }
       if (bits == 0) return 0;
       if constexpr (!tpdo) {
         for (std::uint8_t i = 0; i < mapping.count(); ++i) {

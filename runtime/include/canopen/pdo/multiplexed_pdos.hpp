@@ -80,8 +80,10 @@ class MultiplexedPdos {
   /// Returns the first usable one with this mode; null if there is none.
   [[nodiscard]] static const Parameters* find(EntryAccess<Device> entries, std::uint8_t wanted) {
     for (const Parameters& row : rows) {
-      if (mode(entries, row) == wanted && is_usable_by_pdo<Device>(entries.number(row.cob_id)) &&
-          event_driven(entries, row)) {
+      const auto is_usable = [&](auto... of_node) {
+        return is_usable_by_pdo<Device>(entries.number(row.cob_id), of_node...);
+      };
+      if (mode(entries, row) == wanted && with_sheet<Device>(entries, is_usable) && event_driven(entries, row)) {
         return &row;
       }
     }

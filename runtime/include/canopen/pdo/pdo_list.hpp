@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "canopen/od/dictionary.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/pdo/pdo.hpp"
 
 namespace canopen {
@@ -150,6 +151,16 @@ inline constexpr bool counts_from_one = [] {
 
 }  // namespace pdo_detail
 
+/// Returns the numbers of the PDOs of a sheet at the places of the type's list.
+template <PdoIndices Indices, class Sheet>
+[[nodiscard]] const auto& numbers_in(const Sheet& sheet) {
+  if constexpr (Indices.communication == rpdo_indices.communication) {
+    return sheet.rpdo_numbers;
+  } else {
+    return sheet.tpdo_numbers;
+  }
+}
+
 /// Returns the number of the PDO at a position in a list.
 template <class Pdos>
 [[nodiscard]] constexpr std::uint16_t number_of_pdo(std::size_t place) {
@@ -171,6 +182,29 @@ template <class Pdos>
     std::size_t i = 0;
     while (i < Pdos::count && Pdos::numbers[i] != place + 1) ++i;
     return i;
+  }
+}
+
+/// The same for the PDO of a node; its sheet may have other numbers than the list.
+template <class Device, PdoIndices Indices, class Pdos, class OfNode>
+[[nodiscard]] constexpr std::uint16_t number_of_pdo(std::size_t place, [[maybe_unused]] const OfNode& of_node) {
+  if constexpr (has_sheet<Device>) {
+    const auto& numbers = numbers_in<Indices>(Device::sheet_of(of_node));
+    return place < numbers.size() ? numbers[place] : std::uint16_t{0};
+  } else {
+    return number_of_pdo<Pdos>(place);
+  }
+}
+template <class Device, PdoIndices Indices, class Pdos, class OfNode>
+[[nodiscard]] constexpr std::size_t place_of_pdo(std::uint16_t index, [[maybe_unused]] const OfNode& of_node) {
+  if constexpr (has_sheet<Device>) {
+    const auto& numbers = numbers_in<Indices>(Device::sheet_of(of_node));
+    for (std::size_t i = 0; i < numbers.size() && i < Pdos::count; ++i) {
+      if (numbers[i] == (index & 0x1FFu) + 1) return i;
+    }
+    return Pdos::count;
+  } else {
+    return place_of_pdo<Pdos>(index);
   }
 }
 

@@ -14,6 +14,7 @@
 #include "canopen/od/data_type.hpp"
 #include "canopen/od/device_options.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/pdo/pdo_list.hpp"
 
 namespace canopen {
@@ -47,21 +48,33 @@ inline constexpr entry::Word mapped_dummy = 1;
 
 /// Returns the word of an object that can be mapped: it exists, is mappable in this direction, and has this length, a
 /// multiple of Granularity in the EDS. A BOOLEAN has one bit or eight. `mapped_dummy` for a dummy, `not_mappable` for
-/// all others.
-template <class Device>
-[[nodiscard, gnu::noinline]] entry::Word can_be_mapped(bool tpdo, MappedObject mapped) {
+/// all others. `of_node`: the EntryAccess of a device with a sheet, nothing for others.
+template <class Device, class... OfNode>
+[[nodiscard, gnu::noinline]] entry::Word can_be_mapped(bool tpdo, MappedObject mapped, OfNode... of_node) {
   const unsigned bits = mapped.bits();
-  if constexpr (Device::granularity > 1) {
+  if constexpr (has_sheet<Device>) {
+    if (const unsigned unit = (Device::sheet_of(of_node), ...).granularity; unit > 1 && bits % unit != 0)
+      return not_mappable;
+  } else if constexpr (Device::granularity > 1) {
     if (bits % Device::granularity != 0) return not_mappable;
   }
   if (mapped.is_dummy()) {
     if constexpr (Device::dummies != 0) {
-      const bool allowed = !tpdo && mapped.sub_index() == 0 && ((Device::dummies >> mapped.index()) & 1) != 0;
+      const std::uint32_t dummies = [&] {
+        if constexpr (has_sheet<Device>) return (Device::sheet_of(of_node), ...).dummies;
+        return Device::dummies;
+      }();
+      const bool allowed = !tpdo && mapped.sub_index() == 0 && ((dummies >> mapped.index()) & 1) != 0;
       if (allowed && mapped.index() < std::size(dummy_bits) && bits == dummy_bits[mapped.index()]) return mapped_dummy;
     }
     return not_mappable;
   }
-  const entry::Word word = EntryAccess<Device>::find(mapped.index(), mapped.sub_index());
+  const entry::Word word = [&] {
+    if constexpr (has_sheet<Device>)
+      return (of_node, ...).find(mapped.index(), mapped.sub_index());
+    else
+      return EntryAccess<Device>::find(mapped.index(), mapped.sub_index());
+  }();
   if ((word & (tpdo ? entry::tpdo : entry::rpdo)) == 0) return not_mappable;  // also if it does not exist
   if (entry::place_of(word) > entry::Place::rom) return not_mappable;         // an immediate value has no address
   if (EntryAccess<Device>::kinds.booleans && entry::is_boolean(word) && bits == 1) return word;
@@ -146,13 +159,13 @@ class MappingParameter {
 
   /// Returns the total length of the first `count` objects in bits; 0 if the mapping is invalid: one of them cannot be
   /// mapped, or they are longer than 64 bits. Stores their runs, unless `runs` is null.
-  template <class Device>
+  template <class Device, class... OfNode>
   [[nodiscard, gnu::noinline]] std::uint8_t look_up(bool tpdo, std::uint8_t count,
-                                                    typename MappedRun<Device>::Word* runs) const {
+                                                    typename MappedRun<Device>::Word* runs, OfNode... of_node) const {
     unsigned bits = 0;
     for (std::uint8_t i = 0; i < count; ++i) {
       const MappedObject mapped = (*this)[i];
-      const entry::Word word = can_be_mapped<Device>(tpdo, mapped);
+      const entry::Word word = can_be_mapped<Device>(tpdo, mapped, of_node...);
       bits += mapped.bits();
       if (bits > 64 || word == not_mappable) return 0;
       if (runs != nullptr) runs[i] = MappedRun<Device>::word_of(word, mapped.bits());
@@ -167,11 +180,11 @@ class MappingParameter {
 
 /// Whether the first `count` objects of a mapping parameter for up to `capacity` objects are a valid mapping, including
 /// an empty one.
-template <class Device>
+template <class Device, class... OfNode>
 [[nodiscard]] bool is_possible_mapping(const MappingParameter& mapping, bool tpdo, std::uint8_t count,
-                                       std::uint8_t capacity) {
-  if (count == 0 || (Device::options.mpdo && count >= source_multiplexed)) return true;
-  return count <= capacity && mapping.look_up<Device>(tpdo, count, nullptr) != 0;
+                                       std::uint8_t capacity, OfNode... of_node) {
+  if (count == 0 || (options_of<Device>(of_node...).mpdo && count >= source_multiplexed)) return true;
+  return count <= capacity && mapping.look_up<Device>(tpdo, count, nullptr, of_node...) != 0;
 }
 
 /// Checks whether these bytes, whose length is correct, may be written to a mapping parameter for up to `capacity`
@@ -184,7 +197,7 @@ template <class Device>
 [[nodiscard]] AbortCode check_pdo_mapping(EntryAccess<Device> entries, std::uint8_t capacity, std::uint16_t index,
                                           std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
   const bool tpdo = is_tpdo_mapping(index);
-  if constexpr (!Device::options.pdo_mapping_writable_while_valid) {
+  if (!options_of<Device>(entries).pdo_mapping_writable_while_valid) {
     const auto communication = static_cast<std::uint16_t>(index - (rpdo_indices.mapping - rpdo_indices.communication));
     const entry::Word cob_id = entries.find(communication, pdo_parameter::cob_id);
     if (cob_id > Dictionary::no_sub_index && CobId{entries.number(cob_id)}.valid())
@@ -192,12 +205,21 @@ template <class Device>
   }
   const MappingParameter mapping{entries.ram(entries.find(index, 0)), entries.ram(entries.find(index, 1))};
   if (sub_index == 0) {
-    if (is_possible_mapping<Device>(mapping, tpdo, bytes[0], capacity)) return ok;
-    return static_cast<AbortCode>(Device::options.pdo_mapping_abort_code);
+    if constexpr (has_sheet<Device>) {
+      if (is_possible_mapping<Device>(mapping, tpdo, bytes[0], capacity, entries)) return ok;
+    } else {
+      if (is_possible_mapping<Device>(mapping, tpdo, bytes[0], capacity)) return ok;
+    }
+    return static_cast<AbortCode>(options_of<Device>(entries).pdo_mapping_abort_code);
   }
   if (mapping.count() != 0) return AbortCode::unsupported_access;
   const MappedObject mapped{number_in(bytes)};
-  return mapped.empty() || can_be_mapped<Device>(tpdo, mapped) != not_mappable ? ok : AbortCode::not_mappable;
+  if constexpr (has_sheet<Device>) {
+    return mapped.empty() || can_be_mapped<Device>(tpdo, mapped, entries) != not_mappable ? ok
+                                                                                          : AbortCode::not_mappable;
+  } else {
+    return mapped.empty() || can_be_mapped<Device>(tpdo, mapped) != not_mappable ? ok : AbortCode::not_mappable;
+  }
 }
 
 }  // namespace canopen

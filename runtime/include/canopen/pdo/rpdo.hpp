@@ -14,6 +14,7 @@
 #include "canopen/can/cob_id.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/pdo/communication_parameters.hpp"
 #include "canopen/pdo/mapped_places.hpp"
 #include "canopen/pdo/parameter_column.hpp"
@@ -63,7 +64,7 @@ class RpdoService {
   /// Applies a new value of a communication or mapping parameter, 1400h..17FFh.
   template <class Watched>
   void parameter_changed(EntryAccess<Device> entries, std::uint16_t index, Watched watched) {
-    const std::size_t i = place_of_pdo<Pdos>(index);
+    const std::size_t i = place_of_pdo<Device, rpdo_indices, Pdos>(index, entries);
     if (i != count) activate(i, entries, watched);
   }
 
@@ -192,7 +193,14 @@ class RpdoService {
     }
   }
 
-  [[nodiscard]] static std::uint16_t number_of(std::size_t i) { return number_of_pdo<Pdos>(i); }
+  template <class Host>
+  [[nodiscard]] static std::uint16_t number_of(std::size_t i, [[maybe_unused]] Host host) {
+    if constexpr (has_sheet<Device>) {
+      return number_of_pdo<Device, rpdo_indices, Pdos>(i, host.entries());
+    } else {
+      return number_of_pdo<Pdos>(i);
+    }
+  }
 
   template <class Watched>
   void activate(std::size_t i, EntryAccess<Device> entries, Watched watched) {
@@ -263,7 +271,7 @@ class RpdoService {
     if (slots_[i].size == unmapped) return;
     const bool first = (slots_[i].flags & cut_short) == 0;
     slots_[i].flags |= cut_short;
-    if (first) host.happened(RpdoEvent::too_short, number_of(i));
+    if (first) host.happened(RpdoEvent::too_short, number_of(i, host));
   }
 
   /// Ends the error conditions after a valid frame, and reports an event timer that had elapsed before it.
@@ -280,7 +288,7 @@ class RpdoService {
   void end(std::size_t i, std::uint8_t condition, RpdoEvent event, Host host) {
     if ((slots_[i].flags & condition) == 0) return;
     slots_[i].flags &= static_cast<std::uint8_t>(~condition);
-    host.happened(event, number_of(i));
+    host.happened(event, number_of(i, host));
   }
 
   /// Reports an RPDO whose event timer has elapsed.
@@ -289,7 +297,7 @@ class RpdoService {
     if constexpr (has_event_timer) {
       if ((slots_[i].flags & monitored) == 0 || is_ahead(slots_[i].deadline, event_unit, host.now())) return;
       slots_[i].flags = static_cast<std::uint8_t>((slots_[i].flags & ~monitored) | missed);
-      host.happened(RpdoEvent::timeout, number_of(i));
+      host.happened(RpdoEvent::timeout, number_of(i, host));
     }
   }
 
@@ -313,7 +321,7 @@ class RpdoService {
       if (Mapped::is_dynamic(which)) take_mapped(which, data, host);
     }
     take_static(which, data, host, Pdos{}, std::make_index_sequence<count>{});
-    host.happened(RpdoEvent::taken, number_of(which));
+    host.happened(RpdoEvent::taken, number_of(which, host));
   }
 
   template <class Host, class... Pdo, std::size_t... Position>

@@ -14,6 +14,7 @@
 #include "canopen/can/cob_id.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/pdo/communication_parameters.hpp"
 #include "canopen/pdo/mapped_places.hpp"
 #include "canopen/pdo/parameter_column.hpp"
@@ -51,10 +52,11 @@ class TpdoService {
   static constexpr bool has_dynamic_mapping = Mapped::any;
 
   void enter_operational(ObjectStore<Device>& store, TimePoint now) {
+    if constexpr (has_sheet<Device>) sends_changes_.of_node = options_of<Device>(store).event_driven_on_change;
     for (std::size_t i = 0; i < count; ++i) {
       slots_[i].flags = 0;
       activate(i, store, now);
-      if (Device::options.event_driven_on_change) slots_[i].flags |= changed_bit;
+      if (options_of<Device>(store).event_driven_on_change) slots_[i].flags |= changed_bit;
     }
   }
 
@@ -94,7 +96,11 @@ class TpdoService {
 
   /// The same for an object that is known only by index and sub-index.
   void changed([[maybe_unused]] EntryAccess<Device> entries, std::uint16_t index, std::uint8_t sub_index) {
-    if (!Device::triggers_event(index, sub_index)) return;
+    if constexpr (has_sheet<Device>) {
+      if (!Device::sheet_of(entries).triggers_event(index, sub_index)) return;
+    } else {
+      if (!Device::triggers_event(index, sub_index)) return;
+    }
     const std::uint32_t key = object_key(index, sub_index);
     for (const auto row : Static::carriers) {
       if (Static::key_in(row) == key) slots_[Static::place_in(row)].flags |= changed_bit;
@@ -121,7 +127,7 @@ class TpdoService {
 
   /// Applies a new value of a communication or mapping parameter, 1800h..1BFFh.
   void parameter_changed(ObjectStore<Device>& store, std::uint16_t index, std::uint8_t sub_index, TimePoint now) {
-    const std::size_t i = place_of_pdo<Pdos>(index);
+    const std::size_t i = place_of_pdo<Device, tpdo_indices, Pdos>(index, store);
     if (i == count) return;
     if (!has_dynamic_mapping || !is_tpdo_mapping(index)) {
       if (sub_index == pdo_parameter::inhibit_time) return;
@@ -171,7 +177,7 @@ class TpdoService {
 
   /// Handles a remote frame that requests the TPDO with this CAN-ID.
   void on_remote(EntryAccess<Device> entries, std::uint32_t can_id) {
-    if constexpr (Device::options.tpdo_remote_frames) {
+    if (options_of<Device>(entries).tpdo_remote_frames) {
       for (std::size_t i = 0; i < count; ++i) {
         if (slots_[i].type != inactive && cob_id_of(i, entries) == can_id) slots_[i].flags |= asked;
       }
@@ -265,13 +271,18 @@ class TpdoService {
     return sizes[i];
   }
 
+  [[nodiscard]] static bool may_use(CobId cob_id, EntryAccess<Device> entries) {
+    return with_sheet<Device>(entries,
+                              [&](auto... of_node) { return may_be_used_by_pdo<Device>(cob_id, true, of_node...); });
+  }
+
   void activate(std::size_t i, ObjectStore<Device>& store, TimePoint now) {
     Slot& slot = slots_[i];
     const EntryAccess<Device> entries = store.entries();
     slot.type = inactive;
     slot.size = look_up(i, entries);
     const CobId cob_id{cob_id_of(i, entries)};
-    if (slot.size == 0 || !cob_id.valid() || !may_be_used_by_pdo<Device>(cob_id, true)) return;
+    if (slot.size == 0 || !cob_id.valid() || !may_use(cob_id, entries)) return;
     slot.type = static_cast<std::uint8_t>(Column<pdo_parameter::transmission_type>::get(entries, i, event_driven_type));
     if (slot.type >= first_event_driven) {
       slot.flags |= event_driven;
@@ -289,7 +300,7 @@ class TpdoService {
   /// Whether a TPDO of types 0..240 is to be sent at this SYNC.
   [[nodiscard]] bool wants_sync(std::size_t i, EntryAccess<Device> entries, Sync sync) {
     Slot& slot = slots_[i];
-    if (slot.type == 0) return (slot.flags & changed_bit) != 0 || !Device::options.tpdo_acyclic_on_change;
+    if (slot.type == 0) return (slot.flags & changed_bit) != 0 || !options_of<Device>(entries).tpdo_acyclic_on_change;
     if (has_sync_start && (slot.flags & before_start) != 0) {
       if (sync.counter != 0 && sync.counter != parameter<pdo_parameter::sync_start>(i, entries)) return false;
       slot.flags &= static_cast<std::uint8_t>(~before_start);
@@ -303,10 +314,10 @@ class TpdoService {
   }
 
   /// Whether a TPDO is to be sent for any reason except its event timer.
-  [[nodiscard]] static bool wanted(const Slot& slot) {
+  [[nodiscard]] bool wanted(const Slot& slot) const {
     if ((slot.flags & (due | asked)) != 0) return true;
     constexpr std::uint8_t event = event_driven | changed_bit;
-    return Device::options.event_driven_on_change && (slot.flags & event) == event;
+    return sends_changes_.of_node && (slot.flags & event) == event;
   }
 
   static void start_event_timer(Slot& slot, std::size_t i, EntryAccess<Device> entries, TimePoint now) {
@@ -347,12 +358,14 @@ class TpdoService {
     if constexpr (prefers_size) {
       FrameWords words;
       pack(which, store, reinterpret_cast<Data&>(words));
-      if (is_in(Device::options.pdo_allowed_can_ids, cob_id)) {
+      if (is_in(options_of<Device>(store).pdo_allowed_can_ids, cob_id)) {
         return send_words(bus, cob_id, slot.size, words.first, words.second);
       }
       return send_configured(bus, cob_id, slot.size, words.first, words.second);
     } else {
-      if (!is_usable_by_pdo<Device>(cob_id)) return true;
+      const bool usable = with_sheet<Device>(
+          store.entries(), [&](auto... of_node) { return is_usable_by_pdo<Device>(cob_id, of_node...); });
+      if (!usable) return true;
       Frame frame;
       frame.id = cob_id & 0x1FFF'FFFF;
       frame.extended = (cob_id & CobId::extended_bit) != 0;
@@ -409,7 +422,8 @@ class TpdoService {
     slot.flags &= static_cast<std::uint8_t>(~(changed_bit | due | asked));
     if ((slot.flags & event_driven) == 0) return;
     if constexpr (has_inhibit_time) {
-      const Duration inhibit = inhibit_duration(Device::options, parameter<pdo_parameter::inhibit_time>(i, entries));
+      const Duration inhibit =
+          inhibit_duration(options_of<Device>(entries), parameter<pdo_parameter::inhibit_time>(i, entries));
       if (inhibit.count() != 0) slot.flags |= inhibited;
       slot.times.inhibit_end = now + inhibit;
     }
@@ -417,8 +431,16 @@ class TpdoService {
   }
 
   struct Nothing {};
+  /// The option event_driven_on_change.
+  struct OfType {
+    static constexpr bool of_node = has_sheet<Device> || Device::options.event_driven_on_change;
+  };
+  struct OfSheet {
+    bool of_node = true;
+  };
 
   std::array<Slot, count> slots_{};
+  [[no_unique_address]] std::conditional_t<has_sheet<Device>, OfSheet, OfType> sends_changes_{};
   [[no_unique_address]] std::conditional_t<has_dynamic_mapping, Mapped, Nothing> places_{};
 };
 

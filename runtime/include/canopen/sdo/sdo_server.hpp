@@ -8,6 +8,7 @@
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/clock.hpp"
 #include "canopen/od/device_options.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/sdo/sdo_protocol.hpp"
 #include "canopen/sdo/sdo_server_blocks.hpp"
 #include "canopen/sdo/sdo_server_hooks.hpp"
@@ -32,14 +33,16 @@ class SdoServer {
   /// Accepts a request. A response that has not been sent yet is replaced.
   void on_request(const sdo::Data& request, SdoServerHooks<Device> auto&& hooks, TimePoint now) {
     if constexpr (has_timeout) last_activity_ = now;
-    if (const AbortCode code = handle(request, hooks); code != ok) transfer_.abort(code);
+    if constexpr (has_sheet<Device>)
+      timeout_.length = from_milliseconds(sdo_timeout_of(options_of<Device>(hooks.entries())));
+    if (const AbortCode code = handle(request, hooks); code != ok) transfer_.abort(code, hooks);
   }
 
   /// Aborts a transfer whose client has not sent anything for too long (0504 0000h). A sub-block that stops for half of
   /// that time is confirmed as far as it has been received, so that the client repeats the rest.
   void on_time([[maybe_unused]] TimePoint now) {
     if constexpr (has_timeout) {
-      if (transfer_.state() == State::idle || now < last_activity_ + current_timeout()) return;
+      if (transfer_.state() == State::idle || !timeout_.runs() || now < last_activity_ + current_timeout()) return;
       if constexpr (has_block) {
         if (Blocks::sub_block_begun(transfer_)) return Blocks::confirm_sub_block(transfer_);
       }
@@ -50,7 +53,7 @@ class SdoServer {
   /// Returns when the timeout of the client elapses.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     if constexpr (has_timeout) {
-      if (transfer_.state() != State::idle) return last_activity_ + current_timeout();
+      if (transfer_.state() != State::idle && timeout_.runs()) return last_activity_ + current_timeout();
     }
     return std::nullopt;
   }
@@ -65,7 +68,7 @@ class SdoServer {
     transfer_.drop_reply();
     if constexpr (has_block) {
       if (!Blocks::has_segment(transfer_)) return;
-      if (const AbortCode code = Blocks::next_segment(transfer_, hooks); code != ok) transfer_.abort(code);
+      if (const AbortCode code = Blocks::next_segment(transfer_, hooks); code != ok) transfer_.abort(code, hooks);
     }
   }
 
@@ -105,11 +108,20 @@ class SdoServer {
   using State = typename SdoServerTransfer<Device>::State;
   using Blocks = SdoServerBlocks<Device>;
 
-  static constexpr Duration timeout = from_milliseconds(sdo_timeout_of(Device::options));
-  static constexpr bool has_timeout = timeout.count() != 0;
+  /// The timeout of the type, and of a device with a sheet.
+  struct OfType {
+    static constexpr Duration length = from_milliseconds(sdo_timeout_of(Device::options));
+    [[nodiscard]] static constexpr bool runs() { return true; }
+  };
+  struct OfSheet {
+    Duration length{};
+    [[nodiscard]] bool runs() const { return length.count() != 0; }
+  };
+  static constexpr bool has_timeout = has_sheet<Device> || OfType::length.count() != 0;
   static constexpr bool has_block = Device::options.sdo_block_transfer;
 
   [[nodiscard]] AbortCode handle(const sdo::Data& request, auto& hooks) {
+    const bool blocks = has_block && options_of<Device>(hooks.entries()).sdo_block_transfer;
     if constexpr (has_block) {
       if (takes_segments() && request[0] != sdo::abort_command) return Blocks::take_segment(request, transfer_, hooks);
     }
@@ -121,10 +133,10 @@ class SdoServer {
       return ok;
     }
     if constexpr (has_block) {
-      if (command == sdo::ClientCommand::block_upload &&
+      if (blocks && command == sdo::ClientCommand::block_upload &&
           static_cast<sdo::BlockUpload>(request[0] & 3) != sdo::BlockUpload::initiate)
         return Blocks::upload(request, transfer_, hooks);
-      if (command == sdo::ClientCommand::block_download && (request[0] & 1) != 0)
+      if (blocks && command == sdo::ClientCommand::block_download && (request[0] & 1) != 0)
         return Blocks::end_download(request, transfer_, hooks);
     }
     // An unknown command does not start a transfer: its abort contains the multiplexer of the transfer that it ends.
@@ -134,8 +146,10 @@ class SdoServer {
     if (command == sdo::ClientCommand::initiate_upload) return initiate_upload(hooks);
     if (command == sdo::ClientCommand::initiate_download) return initiate_download(request, hooks);
     if constexpr (has_block) {
-      if (command == sdo::ClientCommand::block_upload) return Blocks::initiate_upload(request, transfer_, hooks);
-      if (command == sdo::ClientCommand::block_download) return Blocks::initiate_download(request, transfer_, hooks);
+      if (blocks && command == sdo::ClientCommand::block_upload)
+        return Blocks::initiate_upload(request, transfer_, hooks);
+      if (blocks && command == sdo::ClientCommand::block_download)
+        return Blocks::initiate_download(request, transfer_, hooks);
     }
     return AbortCode::command_specifier;
   }
@@ -149,7 +163,7 @@ class SdoServer {
       return ok;
     }
     if (const AbortCode code = transfer_.open_upload(hooks); code != ok) return code;
-    transfer_.answer_upload();
+    transfer_.answer_upload(hooks);
     return ok;
   }
 
@@ -173,7 +187,7 @@ class SdoServer {
   // Expedited and segmented download
 
   [[nodiscard]] AbortCode initiate_download(const sdo::Data& request, auto& hooks) {
-    if (const AbortCode code = transfer_.find_writable(); code != ok) return code;
+    if (const AbortCode code = transfer_.find_writable(hooks); code != ok) return code;
     const bool indicated = (request[0] & sdo::size_indicated) != 0;
     if ((request[0] & sdo::expedited) != 0) {
       const std::uint32_t size = indicated ? 4u - ((request[0] >> 2) & 3u) : transfer_.size_without_indication();
@@ -203,15 +217,16 @@ class SdoServer {
 
   [[nodiscard]] Duration current_timeout() const {
     if constexpr (has_block) {
-      if (Blocks::sub_block_begun(transfer_)) return timeout / 2;
+      if (Blocks::sub_block_begun(transfer_)) return timeout_.length / 2;
     }
-    return timeout;
+    return timeout_.length;
   }
 
   struct NoTime {};
 
   SdoServerTransfer<Device> transfer_{};  // first: its bytes have small offsets
   [[no_unique_address]] std::conditional_t<has_timeout, TimePoint, NoTime> last_activity_{};
+  [[no_unique_address]] std::conditional_t<has_sheet<Device>, OfSheet, OfType> timeout_{};
 };
 
 }  // namespace canopen

@@ -26,7 +26,7 @@ class SdoServerBlocks {
     if (const AbortCode code = transfer.find_readable(hooks); code != ok) return code;
     if (const AbortCode code = transfer.open_upload(hooks); code != ok) return code;
     if (transfer.size() <= request[5] && request[5] != 0) {  // protocol switch threshold; 0: no switch
-      transfer.answer_upload();
+      transfer.answer_upload(hooks);
       return ok;
     }
     transfer.hold_value();
@@ -83,7 +83,7 @@ class SdoServerBlocks {
 
   /// Starts a block download.
   [[nodiscard]] static AbortCode initiate_download(const sdo::Data& request, Transfer& transfer, auto& hooks) {
-    if (const AbortCode code = transfer.find_writable(); code != ok) return code;
+    if (const AbortCode code = transfer.find_writable(hooks); code != ok) return code;
     const bool indicated = (request[0] & sdo::block_size_indicated) != 0;
     if (const AbortCode code = transfer.open_download(indicated, sdo::word_of(request), hooks); code != ok) return code;
     transfer.progress().begin(request[0]);

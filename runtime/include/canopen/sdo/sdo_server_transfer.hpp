@@ -17,6 +17,7 @@
 #include "canopen/od/device_options.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/sdo/sdo_block_progress.hpp"
 #include "canopen/sdo/sdo_protocol.hpp"
 #include "canopen/sdo/sdo_server_hooks.hpp"
@@ -75,7 +76,7 @@ class SdoServerTransfer {
 
   /// Finds an entry that can be read now.
   [[nodiscard]] AbortCode find_readable(auto& hooks) {
-    if (const AbortCode code = find(entry::readable, AbortCode::write_only); code != ok) return code;
+    if (const AbortCode code = find(entry::readable, AbortCode::write_only, hooks); code != ok) return code;
     return hooks.before_read(index(), sub_index());
   }
 
@@ -85,7 +86,7 @@ class SdoServerTransfer {
   }
   void answer_number(auto& hooks) {
     const std::uint32_t bytes = entry::size_of(word_);
-    answer_value(bytes, hooks.entries().number(word_) & (0xFFFF'FFFF >> (32 - 8 * bytes)));
+    answer_value(bytes, hooks.entries().number(word_) & (0xFFFF'FFFF >> (32 - 8 * bytes)), hooks);
   }
 
   /// Finds the bytes to send.
@@ -123,9 +124,9 @@ class SdoServerTransfer {
   }
 
   /// Sets the response to an initiate: the value, if it fits; otherwise its size, and segments are requested next.
-  void answer_upload() {
+  void answer_upload(auto& hooks) {
     if (size_ - 1u < 4u) {
-      answer_value(size_, 0);
+      answer_value(size_, 0, hooks);
       copy_bytes(&reply_[4], bytes_, size_);
       return;
     }
@@ -167,7 +168,7 @@ class SdoServerTransfer {
   // Download
 
   /// Finds an entry that can be written.
-  [[nodiscard]] AbortCode find_writable() { return find(entry::writable, AbortCode::read_only); }
+  [[nodiscard]] AbortCode find_writable(auto& hooks) { return find(entry::writable, AbortCode::read_only, hooks); }
 
   /// Returns the size of an expedited download that does not indicate it: that of the entry, or four bytes if it
   /// is variable.
@@ -199,7 +200,7 @@ class SdoServerTransfer {
       if (is_domain() && hooks.streams_download(index(), sub_index())) return ok;
     }
     bytes_ = buffer_.data();
-    std::uint32_t room = buffer_bytes;
+    std::uint32_t room = room_in_buffer(hooks);
     const EntryAccess<Device> entries = hooks.entries();
     if (is_domain()) {
       const Domain memory = entries.domain(word_);
@@ -282,11 +283,15 @@ class SdoServerTransfer {
   /// Sets a response with the index, the sub-index and four more bytes.
   void answer(unsigned command, std::uint32_t word = 0) { put_reply(multiplexer_ | command, word); }
 
-  /// Ends the transfer with an abort.
-  void abort(AbortCode code) {
-    if constexpr (!Device::options.sdo_length_codes) {
+  /// Ends the transfer with an abort, whose code is that of the device for a wrong length.
+  void abort(AbortCode code, auto& hooks) {
+    if (!options_of<Device>(hooks.entries()).sdo_length_codes) {
       if (code == AbortCode::length_too_high || code == AbortCode::length_too_low) code = AbortCode::length_mismatch;
     }
+    abort(code);
+  }
+  /// Ends the transfer with an abort.
+  void abort(AbortCode code) {
     state_ = State::idle;
     answer(sdo::abort_command, static_cast<std::uint32_t>(code));
   }
@@ -339,9 +344,19 @@ class SdoServerTransfer {
   [[nodiscard]] std::uint8_t sub_index() const { return static_cast<std::uint8_t>(multiplexer_ >> 24); }
   [[nodiscard]] bool is_domain() const { return EntryAccess<Device>::is_domain(word_); }
 
+  /// Returns the bytes of the buffer that a download may use.
+  [[nodiscard]] static std::uint32_t room_in_buffer([[maybe_unused]] auto& hooks) {
+    if constexpr (has_sheet<Device>) {
+      const std::size_t longest = Device::sheet_of(hooks.entries()).longest_download;
+      return static_cast<std::uint32_t>(std::clamp(longest, number_bytes, buffer_bytes));  // of all strings at most
+    } else {
+      return buffer_bytes;
+    }
+  }
+
   /// Finds the entry and checks its access right; returns `refusal` if the right is missing.
-  [[nodiscard]] AbortCode find(entry::Word right, AbortCode refusal) {
-    word_ = EntryAccess<Device>::find(index(), sub_index());
+  [[nodiscard]] AbortCode find(entry::Word right, AbortCode refusal, [[maybe_unused]] auto& hooks) {
+    word_ = hooks.entries().find(index(), sub_index());
     if (word_ == Dictionary::no_object) return AbortCode::no_object;
     if (word_ == Dictionary::no_sub_index) return AbortCode::no_sub_index;
     return (word_ & right) != 0 ? ok : refusal;
@@ -362,7 +377,12 @@ class SdoServerTransfer {
   /// Writes a value, unless a check rejects it.
   [[nodiscard]] AbortCode write_value(std::span<std::uint8_t> bytes, auto& hooks) {
     const EntryAccess<Device> entries = hooks.entries();
-    if (const AbortCode code = entries.check_value(index(), sub_index(), word_, bytes); code != ok) return code;
+    if constexpr (has_sheet<Device>) {
+      if (const AbortCode code = entries.check_value(index(), sub_index(), word_, bytes, entries); code != ok)
+        return code;
+    } else {
+      if (const AbortCode code = entries.check_value(index(), sub_index(), word_, bytes); code != ok) return code;
+    }
     if (const AbortCode code = hooks.before_write(index(), sub_index(), bytes); code != ok) return code;
     // A handler may have bound a DOMAIN to other memory: the application has then taken the bytes.
     const bool in_place = !is_domain() || entries.domain(word_).data == bytes.data();
@@ -394,8 +414,8 @@ class SdoServerTransfer {
   }
 
   /// Sets an expedited response.
-  void answer_value(std::uint32_t bytes, std::uint32_t value) {
-    answer(Device::options.sdo_upload_size_indicated ? 0x43u | (4 - bytes) << 2 : 0x42u, value);
+  void answer_value(std::uint32_t bytes, std::uint32_t value, [[maybe_unused]] auto& hooks) {
+    answer(options_of<Device>(hooks.entries()).sdo_upload_size_indicated ? 0x43u | (4 - bytes) << 2 : 0x42u, value);
   }
 
   void put_reply(std::uint32_t low, std::uint32_t high) {

@@ -44,7 +44,7 @@ class SdoServers {
       if (i != 0 && cob_id_of_server(i, response_sub_index, store) == CobId::invalid_bit) continue;
       if (frame.size != 8) return true;
       if constexpr (count > 1) {
-        if (!servers_[i].takes_segments()) take_domain_from_others(i, frame.data);
+        if (!servers_[i].takes_segments()) take_domain_from_others(store, i, frame.data);
       }
       if constexpr (requires { hooks.started_command(); }) servers_[i].discard_held_reply();
       servers_[i].on_request(frame.data, hooks, now);
@@ -124,16 +124,17 @@ class SdoServers {
           sub_index == request_sub_index ? function_code::sdo_request : function_code::sdo_response;
       return base + store.node_id().value();
     }
-    const entry::Word word = EntryAccess<Device>::find(indices[i], sub_index);
+    const entry::Word word = store.entries().find(indices[i], sub_index);
     const std::uint32_t cob_id = word > Dictionary::no_sub_index ? store.entries().number(word) : CobId::invalid_bit;
     return is_usable(cob_id) ? cob_id & CobId::identifier : CobId::invalid_bit;
   }
 
-  void take_domain_from_others(std::size_t server, const std::array<std::uint8_t, 8>& request) {
+  void take_domain_from_others([[maybe_unused]] ObjectStore<Device>& store, std::size_t server,
+                               const std::array<std::uint8_t, 8>& request) {
     const sdo::ClientCommand command = sdo::client_command(request[0]);
     if (command != sdo::ClientCommand::initiate_download && command != sdo::ClientCommand::block_download) return;
     const std::uint16_t index = sdo::index_of(request);
-    const entry::Word word = EntryAccess<Device>::find(index, request[3]);
+    const entry::Word word = store.entries().find(index, request[3]);
     if (word <= Dictionary::no_sub_index || !entry::is_domain(word)) return;
     for (std::size_t i = 0; i < count; ++i) {
       if (i != server) servers_[i].domain_rebound(index, request[3]);

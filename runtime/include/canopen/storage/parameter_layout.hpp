@@ -31,6 +31,29 @@ namespace parameter_detail {
   return (word & entry::rw) == entry::rw && to_tpdo == from_rpdo;
 }
 
+/// The owner of an entry that is not stored; all others are sections.
+inline constexpr std::uint8_t not_stored = 0xFE;
+
+/// Returns the owner of the entries of an object that are parameters.
+[[nodiscard]] constexpr std::uint8_t parameter_owner(std::uint16_t index) {
+  return can_be_parameter(index) ? static_cast<std::uint8_t>(section_of(index)) : not_stored;
+}
+
+/// Returns the section that stores an entry in RAM, by its access and the options of the device, or `not_stored`.
+/// `as_parameter` is `parameter_owner(index)`.
+[[nodiscard]] constexpr std::uint8_t owner_of(std::uint16_t index, entry::Word word, Storing storing,
+                                              std::uint8_t as_parameter) {
+  if (entry::is_domain(word)) return not_stored;
+  switch (storing) {
+    case Storing::never: return not_stored;
+    case Storing::always: return static_cast<std::uint8_t>(section_of(index));
+    case Storing::with_node_id: return static_cast<std::uint8_t>(ParameterSection::with_node_id);
+    case Storing::by_access: break;
+    default: return static_cast<std::uint8_t>(std::countr_zero(sections_of(sub_index_of(storing))));
+  }
+  return has_access_of_parameter(word) ? as_parameter : not_stored;
+}
+
 [[nodiscard]] constexpr std::uint32_t mix(std::uint32_t hash, std::uint32_t word) {
   return (std::rotl(hash, 5) ^ word) * 0x9E37'79B1u;
 }
@@ -66,7 +89,7 @@ class ParameterLayout {
 
   // Owner of a byte of Values: a section, or one of these.
   static constexpr std::uint8_t padding = 0xFF;
-  static constexpr std::uint8_t not_stored = 0xFE;
+  static constexpr std::uint8_t not_stored = parameter_detail::not_stored;
 
   [[nodiscard]] static constexpr Storing storing([[maybe_unused]] std::uint16_t index,
                                                  [[maybe_unused]] std::uint8_t sub_index) {
@@ -95,27 +118,6 @@ class ParameterLayout {
     Device::Tpdos::for_each(add);
     return keys;
   }();
-
-  /// Returns the owner of the entries of an object that are parameters.
-  [[nodiscard]] static constexpr std::uint8_t parameter_owner(std::uint16_t index) {
-    if (!parameter_detail::can_be_parameter(index)) return not_stored;
-    return static_cast<std::uint8_t>(parameter_detail::section_of(index));
-  }
-
-  [[nodiscard]] static constexpr std::uint8_t owner_of(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
-                                                       std::uint8_t as_parameter) {
-    if (entry::is_domain(word)) return not_stored;
-    switch (storing(index, sub_index)) {
-      case Storing::never: return not_stored;
-      case Storing::always: return static_cast<std::uint8_t>(parameter_detail::section_of(index));
-      case Storing::with_node_id: return static_cast<std::uint8_t>(ParameterSection::with_node_id);
-      case Storing::by_access: break;
-      default:
-        return static_cast<std::uint8_t>(
-            std::countr_zero(canopen::sections_of(sub_index_of(storing(index, sub_index)))));
-    }
-    return parameter_detail::has_access_of_parameter(word) ? as_parameter : not_stored;
-  }
 
   /// Sets the owner of the bytes of an entry.
   static constexpr void give(std::uint8_t* bytes, std::uint16_t index, std::uint8_t sub_index, entry::Word word,
@@ -159,9 +161,10 @@ class ParameterLayout {
     std::uint16_t object = 0;
     std::uint8_t as_parameter = not_stored;
     for_each_in_ram([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
-      if (index != object) as_parameter = parameter_owner(index);
+      if (index != object) as_parameter = parameter_detail::parameter_owner(index);
       object = index;
-      give(bytes.data(), index, sub_index, word, owner_of(index, sub_index, word, as_parameter));
+      const Storing how = storing(index, sub_index);
+      give(bytes.data(), index, sub_index, word, parameter_detail::owner_of(index, word, how, as_parameter));
     });
     for (const std::uint32_t key : carried) {
       const auto index = static_cast<std::uint16_t>(key >> 8);

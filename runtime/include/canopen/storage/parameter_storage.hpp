@@ -14,6 +14,7 @@
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/storage/parameter_layout.hpp"
 #include "canopen/storage/storage.hpp"
 #include "canopen/storage/stored_format.hpp"
@@ -37,7 +38,7 @@ template <class Device>
   std::uint32_t signature = 0;
   std::memcpy(&signature, bytes.data(), std::min(bytes.size(), sizeof signature));
   if (signature != (index == store_parameters ? save_signature : load_signature)) {
-    return static_cast<AbortCode>(Device::options.storage_signature_abort_code);
+    return static_cast<AbortCode>(options_of<Device>(entries).storage_signature_abort_code);
   }
   const bool on_command = (entries.number(entries.find(index, sub_index)) & 1u) != 0;
   return on_command ? ok : AbortCode::not_stored;

@@ -14,6 +14,7 @@
 #include "canopen/can/frame.hpp"
 #include "canopen/od/device_options.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 
 namespace canopen {
 
@@ -58,6 +59,9 @@ class SyncConsumer {
   [[nodiscard]] static Sync sync_of(const ObjectStore<Device>& store, const Frame& frame) {
     const std::uint8_t overflow = overflow_of(store);
     if (!has_overflow) return Sync{0, true};
+    if constexpr (has_sheet<Device>) {
+      if (!Device::sheet_of(store).dictionary.has(0x1019, 0)) return Sync{0, true};
+    }
     return Sync{overflow != 0 ? frame.data[0] : std::uint8_t{0}, frame.size == (overflow != 0 ? 1 : 0)};
   }
 
@@ -78,6 +82,17 @@ class SyncProducer {
   static constexpr bool exists = SyncConsumer<Device>::exists && Device::dictionary.has(0x1006, 0) &&
                                  (entry::place_of(Device::dictionary.find(0x1005, 0)) == entry::Place::ram ||
                                   entry::place_of(Device::dictionary.find(0x1006, 0)) == entry::Place::ram);
+
+  /// Whether 1005h and 1006h allow the device to produce SYNC.
+  [[nodiscard]] static bool can_be_switched_on([[maybe_unused]] EntryAccess<Device> entries) {
+    if constexpr (has_sheet<Device>) {
+      const entry::Word period = entries.find(0x1006, 0);
+      return period > Dictionary::no_sub_index && (entry::place_of(period) == entry::Place::ram ||
+                                                   entry::place_of(entries.find(0x1005, 0)) == entry::Place::ram);
+    } else {
+      return exists;
+    }
+  }
 
   /// Handles a new value of 1005h or 1006h, or a state in which SYNCs are sent: the first one is due one period later.
   /// The counter starts with 1 if `restart` is set (after Stopped and at boot-up) and when production starts.
@@ -188,14 +203,14 @@ template <class Device>
       return AbortCode::internal_incompatibility;
     const CobId before{entries.template number<0x1005, 0>()};
     const CobId written{number_in(bytes)};
-    const CobId after = written_cob_id(before, Device::options.sync_cob_id_writable, bytes);
-    if constexpr (!SyncProducer<Device>::exists) {
+    const CobId after = written_cob_id(before, options_of<Device>(entries).sync_cob_id_writable, bytes);
+    if (!SyncProducer<Device>::can_be_switched_on(entries)) {
       if ((written.value() & CobId::no_rtr_bit) != 0) return AbortCode::invalid_value;
     }
     const bool generates = (before.value() & after.value() & CobId::no_rtr_bit) != 0;
     const bool changed = ((before.value() ^ after.value()) & CobId::identifier) != 0;
     if (generates && changed) return AbortCode::invalid_value;
-    return may_be_written(after, true, Device::options.pdo_extended_ids) ? ok : AbortCode::invalid_value;
+    return may_be_written(after, true, options_of<Device>(entries).pdo_extended_ids) ? ok : AbortCode::invalid_value;
   }
   if (index == 0x1006) return is_sync_period(number_in(bytes)) ? ok : AbortCode::value_too_high;
   if constexpr (SyncConsumer<Device>::has_overflow) {

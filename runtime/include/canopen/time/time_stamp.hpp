@@ -11,6 +11,7 @@
 #include "canopen/can/frame.hpp"
 #include "canopen/od/device_options.hpp"
 #include "canopen/od/object_store.hpp"
+#include "canopen/od/sheet.hpp"
 #include "canopen/od/value.hpp"
 
 namespace canopen {
@@ -65,7 +66,8 @@ template <class Device>
   const std::uint32_t after = number_in(bytes);
   const std::uint32_t before = entries.template number<0x1012, 0>();
   if ((before & after & in_use) != 0 && ((before ^ after) & ~in_use) != 0) return AbortCode::invalid_value;
-  return may_be_written(CobId{after}, true, Device::options.pdo_extended_ids) ? ok : AbortCode::invalid_value;
+  return may_be_written(CobId{after}, true, options_of<Device>(entries).pdo_extended_ids) ? ok
+                                                                                          : AbortCode::invalid_value;
 }
 
 }  // namespace canopen

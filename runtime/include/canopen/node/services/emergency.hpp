@@ -8,6 +8,7 @@
 #include "canopen/emcy/emcy_producer.hpp"
 #include "canopen/node/functions.hpp"
 #include "canopen/node/service_set.hpp"
+#include "canopen/od/sheet.hpp"
 
 namespace canopen::service {
 
@@ -22,8 +23,8 @@ class Emergency : public ServiceDefaults<Emergency<Device>> {
     producer_.reset();
   }
   template <class Host>
-  void on_state(Host&, [[maybe_unused]] NmtState before, NmtState) {
-    if constexpr (Device::options.emcy_stopped_keeps_last) {
+  void on_state([[maybe_unused]] Host& host, [[maybe_unused]] NmtState before, NmtState) {
+    if (options_of<Device>(host.store()).emcy_stopped_keeps_last) {
       if (before == NmtState::stopped) producer_.keep_last();
     }
   }
@@ -49,7 +50,7 @@ class Emergency : public ServiceDefaults<Emergency<Device>> {
   static AbortCode check_write([[maybe_unused]] Host& host, std::uint16_t index, std::uint8_t sub_index,
                                std::span<std::uint8_t> bytes) {
     if constexpr (has_writable_history) {
-      if (index == 0x1003) return sub_index == 0 && bytes[0] != 0 ? not_cleared : ok;
+      if (index == 0x1003) return sub_index == 0 && bytes[0] != 0 ? not_cleared(host) : ok;
     }
     if constexpr (Producer::has_parameters) return Producer::check(host.entries(), index, bytes);
     return ok;
@@ -58,7 +59,8 @@ class Emergency : public ServiceDefaults<Emergency<Device>> {
   template <class Host>
   static AbortCode before_read([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t index,
                                [[maybe_unused]] std::uint8_t sub_index) {
-    if constexpr (Device::dictionary.has(0x1003, 0) && !Device::options.error_history_empty_is_zero) {
+    if constexpr (Device::dictionary.has(0x1003, 0)) {
+      if (options_of<Device>(host.store()).error_history_empty_is_zero) return ok;
       if (index == 0x1003 && sub_index > host.store().template number<0x1003, 0>()) return AbortCode::no_data;
     }
     return ok;
@@ -66,7 +68,8 @@ class Emergency : public ServiceDefaults<Emergency<Device>> {
 
   template <class Host>
   static void after_write([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t index, std::uint8_t) {
-    if constexpr (has_writable_history && Device::options.error_history_empty_is_zero) {
+    if constexpr (has_writable_history) {
+      if (!options_of<Device>(host.store()).error_history_empty_is_zero) return;
       if (index == 0x1003) Producer::clear_history(host.store());
     }
   }
@@ -120,7 +123,10 @@ class Emergency : public ServiceDefaults<Emergency<Device>> {
   [[nodiscard]] std::uint16_t lost() const { return producer_.lost(); }
 
  private:
-  static constexpr auto not_cleared = static_cast<AbortCode>(Device::options.error_history_abort_code);
+  template <class Host>
+  [[nodiscard]] static AbortCode not_cleared([[maybe_unused]] Host& host) {
+    return static_cast<AbortCode>(options_of<Device>(host.store()).error_history_abort_code);
+  }
 
   Producer producer_{};
 };

@@ -26,6 +26,10 @@ class NodeGuarding : public ServiceDefaults<NodeGuarding<Device>> {
   template <class Host>
   bool on_remote_frame(Host& host, const Frame& frame) {
     if (!is_guarding_request(frame, host.node_id())) return false;
+    if constexpr (has_sheet<Device>) {
+      const Dictionary& dictionary = host.entries().dictionary();
+      if (!dictionary.has(0x100C, 0) || !dictionary.has(0x100D, 0)) return false;
+    }
     if (heartbeat_period(host.store()).count() != 0) return true;
     const bool was_lost = slave_.failed();
     slave_.on_request(guard_time(host), life_time_factor(host), host.now());

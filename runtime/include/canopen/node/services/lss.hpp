@@ -9,6 +9,7 @@
 #include "canopen/lss/lss_handler.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/od/dictionary.hpp"
+#include "canopen/od/sheet.hpp"
 
 namespace canopen::service {
 
@@ -23,6 +24,9 @@ class Lss : public ServiceDefaults<Lss<Device, Handlers...>> {
 
   template <class Host>
   void on_start(Host& host) {
+    if constexpr (has_sheet<Device>) {
+      if (const auto& options = Device::sheet_of(host.store()).lss_options; options) slave_.set_options(*options);
+    }
     slave_.start(host.node_id(), port(host).bit_timing());
   }
   /// The pending node-ID is activated by reset communication.
@@ -42,6 +46,9 @@ class Lss : public ServiceDefaults<Lss<Device, Handlers...>> {
 
   template <class Host>
   bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
+    if constexpr (has_sheet<Device>) {
+      if (!Device::sheet_of(host.store()).lss_options) return false;
+    }
     slave_.on_frame(frame, Hooks<Host>{host}, host.now());
     if (slave_.has_reply()) host.attend();
     return false;
@@ -71,7 +78,7 @@ class Lss : public ServiceDefaults<Lss<Device, Handlers...>> {
   struct Hooks {
     Host& host;
     [[nodiscard]] std::uint32_t identity(std::uint8_t sub_index) const {
-      const entry::Word word = Host::Device::dictionary.find(0x1018, sub_index);
+      const entry::Word word = host.entries().dictionary().find(0x1018, sub_index);
       return word > Dictionary::no_sub_index ? host.entries().number(word) : 0;
     }
     [[nodiscard]] LssError accept(NodeId node_id) const { return port(host).accept(node_id); }

@@ -56,8 +56,9 @@ class PdoMapping : public ServiceDefaults<PdoMapping<Device>> {
       if (code != ok) return code;
     }
     if constexpr (is_dynamic) {
-      const std::uint8_t capacity = is_tpdo_mapping(index) ? TpdoService<Device>::Mapped::capacity_of(index)
-                                                           : RpdoService<Device>::Mapped::capacity_of(index);
+      const std::uint8_t capacity = is_tpdo_mapping(index)
+                                        ? TpdoService<Device>::Mapped::capacity_of(host.entries(), index)
+                                        : RpdoService<Device>::Mapped::capacity_of(host.entries(), index);
       return check_pdo_mapping(host.entries(), capacity, index, sub_index, bytes);
     }
     return ok;

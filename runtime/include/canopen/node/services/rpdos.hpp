@@ -152,7 +152,7 @@ class Rpdos : public ServiceDefaults<Rpdos<Device>> {
     [[nodiscard]] bool operator()(MappedObject mapped) const {
       constexpr entry::Kinds kinds = EntryAccess<Device>::kinds;
       if (mapped.is_dummy()) return false;  // has already been marked
-      const entry::Word word = EntryAccess<Device>::find(mapped.index(), mapped.sub_index());
+      const entry::Word word = host.entries().find(mapped.index(), mapped.sub_index());
       const std::uint8_t size = EntryAccess<Device>::bytes_of(word);
       if ((word & entry::limited) != 0 || (kinds.booleans && entry::is_boolean(word)) ||
           (kinds.padded && (size & (size - 1)) != 0))

@@ -73,7 +73,8 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
     stored_.reset_communication(host.handlers().storage(), host.store(), host.node_id(), hook);
     if (!stored_.damaged()) return;
     constexpr std::uint16_t code = emergency_code::data_set;
-    host.template service<Emergency<Device>>().report(host, code, ErrorRegister::generic, Device::emergency_info(code));
+    host.template service<Emergency<Device>>().report(host, code, ErrorRegister::generic,
+                                                      emergency_info<Device>(host.store(), code));
   }
 
   /// Writes the next part of an image.

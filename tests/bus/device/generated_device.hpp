@@ -1,0 +1,10 @@
+/// The generated devices that are compared with those whose EDS is loaded at run time.
+#pragma once
+
+#include <canopen/host/simulated_node.hpp>
+#include <memory>
+
+#define EDSC_DECLARE(device) \
+  std::unique_ptr<canopen::SimulatedNode> make_##device(canopen::SimulatedBus& bus, canopen::SimulatedMemory& memory);
+EDSC_FOR_EACH_DEVICE(EDSC_DECLARE)
+#undef EDSC_DECLARE

@@ -1,0 +1,11 @@
+/// The generated devices as a program in simulated time; the name of a device is that of its C++ namespace.
+#include <canopen/host/simulated_device.hpp>
+
+#include "generated_device.hpp"
+
+int main(int argc, char** argv) {
+#define EDSC_ROW(device) canopen::SimulatedDevice{#device, &make_##device},
+  constexpr canopen::SimulatedDevice devices[] = {EDSC_FOR_EACH_DEVICE(EDSC_ROW)};
+#undef EDSC_ROW
+  return canopen::simulate_devices(argc, argv, devices);
+}
