@@ -1,7 +1,9 @@
 # The libraries in the program edsc: one table, from which the build writes THIRD-PARTY-NOTICES with their licenses, and
 # edsc.cdx.json, a bill of materials in CycloneDX 1.5, in the folder third_party. Both are installed with the documents.
-find_package(CLI11 QUIET REQUIRED)
-find_package(nlohmann_json QUIET REQUIRED)
+if(NOT WIN32)
+  find_package(CLI11 QUIET REQUIRED)
+  find_package(nlohmann_json QUIET REQUIRED)
+endif()
 
 # edsc_third_party(NAME VERSION version LICENSE expression PURL type/name URL url LINKED header|library|file
 #                  [DEBIAN package | TEXT file] [LICENSES name...])
@@ -76,6 +78,19 @@ if(EDSC_STATIC AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND NOT WIN32)
   string(REGEX MATCH "__GLIBC_MINOR__ ([0-9]+)" minor "${macros}")
   edsc_third_party("GNU C Library" VERSION ${glibc}.${CMAKE_MATCH_1} LICENSE LGPL-2.1-or-later PURL generic/glibc
                    URL https://www.gnu.org/software/libc LINKED library DEBIAN libc6-dev${cross} LICENSES LGPL-2.1)
+endif()
+
+if(WIN32)
+  edsc_third_party("libstdc++, libgcc and libssp" VERSION ${CMAKE_CXX_COMPILER_VERSION}
+                   LICENSE "GPL-3.0-or-later WITH GCC-exception-3.1" PURL generic/gcc URL https://gcc.gnu.org LINKED library
+                   DEBIAN gcc-mingw-w64-base LICENSES GPL-3)
+  execute_process(COMMAND ${CMAKE_CXX_COMPILER} -E -dM -include _mingw.h -x c++ /dev/null OUTPUT_VARIABLE macros
+                          COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX MATCH "__MINGW64_VERSION_MAJOR ([0-9]+)" major "${macros}")
+  set(mingw ${CMAKE_MATCH_1})
+  string(REGEX MATCH "__MINGW64_VERSION_MINOR ([0-9]+)" minor "${macros}")
+  edsc_third_party("MinGW-w64 runtime and winpthreads" VERSION ${mingw}.${CMAKE_MATCH_1} LICENSE "ZPL-2.1 AND MIT"
+                   PURL generic/mingw-w64 URL https://www.mingw-w64.org LINKED library DEBIAN mingw-w64-x86-64-dev)
 endif()
 
 set(third_party_dir ${PROJECT_BINARY_DIR}/third_party)

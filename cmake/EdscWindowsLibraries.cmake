@@ -23,6 +23,33 @@ function(edsc_add_linked_library name)
   target_compile_definitions(${name} INTERFACE ${ARGN})
 endfunction()
 
+# edsc_read_version(VARIABLE HEADER PATTERN...) reads the version of a library, as CMake packages state it: the numbers of one
+# pattern after another.
+function(edsc_read_version variable header)
+  file(READ ${EDSC_HOST_INCLUDE_DIR}/${header} text)
+  set(numbers "")
+  foreach(pattern IN LISTS ARGN)
+    if(NOT text MATCHES "${pattern}")
+      message(FATAL_ERROR "${header} does not state its version")
+    endif()
+    list(APPEND numbers ${CMAKE_MATCH_1})
+  endforeach()
+  list(JOIN numbers . version)
+  set(${variable} ${version} PARENT_SCOPE)
+endfunction()
+
+edsc_read_version(fmt_number fmt/core.h "FMT_VERSION ([0-9]+)")
+math(EXPR fmt_major "${fmt_number} / 10000")
+math(EXPR fmt_minor "${fmt_number} / 100 % 100")
+math(EXPR fmt_patch "${fmt_number} % 100")
+set(fmt_VERSION ${fmt_major}.${fmt_minor}.${fmt_patch})
+edsc_read_version(CLI11_VERSION CLI/Version.hpp "CLI11_VERSION \"([0-9.]+)\"")
+set(json_version "NLOHMANN_JSON_VERSION_")
+edsc_read_version(nlohmann_json_VERSION nlohmann/detail/abi_macros.hpp "${json_version}MAJOR ([0-9]+)" "${json_version}MINOR ([0-9]+)"
+                  "${json_version}PATCH ([0-9]+)")
+string(REGEX MATCH "pugixml_([0-9.]+)\\.orig" pugixml_VERSION "${EDSC_PUGIXML_ARCHIVE}")
+set(pugixml_VERSION ${CMAKE_MATCH_1})
+
 edsc_add_linked_library(fmt::fmt-header-only FMT_HEADER_ONLY)
 edsc_add_linked_library(nlohmann_json::nlohmann_json)
 edsc_add_linked_library(CLI11::CLI11)
