@@ -60,7 +60,8 @@ void NodeHost::run() {
   }
 }
 
-/// What nodes send in response waits for the next turn: nodes that respond to each other endlessly do not stop the others.
+/// What nodes send in response waits for the next turn: nodes that respond to each other endlessly do not stop the
+/// others.
 void NodeHost::deliver() {
   for (std::size_t left = sent_.size(); left > 0; --left) {
     const Sent sent = sent_.front();

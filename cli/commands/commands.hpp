@@ -29,6 +29,7 @@ AddOptions add_lss_options;
 AddOptions add_conform_options;
 AddOptions add_accept_options;
 AddOptions add_bus_options;
+AddOptions add_node_options;
 AddOptions add_record_options;
 AddOptions add_decode_options;
 AddOptions add_plot_options;
@@ -78,6 +79,7 @@ inline constexpr CommandRow commands[] = {
     {"Bus", "conform", "test a node against CiA 301 and its EDS", add_conform_options},
     {"Bus", "accept", "compare a node with its EDS and test it; acceptance report", add_accept_options},
     {"Bus", "bus", "virtual CAN buses on this machine, for socketcand clients", add_bus_options},
+    {"Bus", "node", "run an EDS, DCF or XDD as a node of a bus", add_node_options},
     {"Logs", "record", "write the frames of a bus as a candump log", add_record_options},
 #endif
     {"Logs", "decode", "decode the frames of a log", add_decode_options},

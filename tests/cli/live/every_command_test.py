@@ -90,9 +90,22 @@ class EveryCommand(ReferenceDevices):
                 self.run_command("document", plant, "--node-pages", "-o", f"{plant.stem}.html")
         self.run_command("network simulate", PLANTS[-1], "--for", "2s")
 
+    def run_as_node(self, node_id: int, sheet: Path) -> None:
+        """An EDS as a further node, until it has sent its boot-up message."""
+        self.used.add(("node",))
+        node = subprocess.Popen([str(EDSC), "node", self.network.address, str(sheet), "--node-id", str(node_id)], env=ENVIRONMENT,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(node.kill)
+        self.wait_for(f"{0x700 + node_id:03X} 00")
+        node.terminate()
+        _, error = node.communicate(timeout=600)
+        self.assertNotRegex(error, REPORT)
+        self.assertEqual(node.returncode, FINE, error)
+
     def test_3_bus(self) -> None:
         """On a bus with all devices; a log of it is the input of the commands for logs."""
         self.start_devices()
+        self.run_as_node(20, SOURCE_DIR / "eds/cpd.eds")
         with tempfile.TemporaryFile("w+") as log:
             recorder = subprocess.Popen([str(EDSC), "record", self.network.address], stdout=log, stderr=subprocess.PIPE,
                                         text=True, env=ENVIRONMENT)

@@ -42,6 +42,7 @@ MORE = {
     "send pdo": ("send @ pdo 5 1 6040h=6 60FFh=0 --eds device.eds", FINE),
     "conform": ("conform @ 100 device.eds --only 2.1 --timeout 10ms", FAILED),
     "accept": ("accept @ 100 device.eds --only 2.1 --timeout 10ms", FAILED),
+    "node": ("node @ broken.eds --node-id 9", FAILED),
     "overlay apply": ("overlay apply wrong.overlay -o none.eds", FAILED),
     "overlay rebase": ("overlay rebase wrong.overlay device.eds -o none.overlay", FAILED),
     "overlay from-bus": ("overlay from-bus @ 100 device.eds -o none.overlay --timeout 10ms", FAILED),
@@ -80,7 +81,8 @@ WAITING = {
     "lss activate": "lss @ activate --delay 30s",
 }
 # Ctrl-C is their regular end.
-ENDED_BY_USER = {"bus": "bus --listen 127.0.0.1:0", "monitor": "monitor @", "record": "record @ -o recorded.log"}
+ENDED_BY_USER = {"bus": "bus --listen 127.0.0.1:0", "monitor": "monitor @", "record": "record @ -o recorded.log",
+                 "node": "node @ device.eds --node-id 9"}
 NOT_WAITING = {"lss state"}
 
 
@@ -143,7 +145,7 @@ class ExitCodes(standard_streams_test.PreparedFiles):
 
     def test_of_a_missing_bus(self) -> None:
         checked = 0
-        for name, text in (WAITING | {key: ENDED_BY_USER[key] for key in ("monitor", "record")}).items():
+        for name, text in (WAITING | {key: ENDED_BY_USER[key] for key in ENDED_BY_USER if key != "bus"}).items():
             if name == "configure":
                 text = text.replace("--timeout", "--keep-state --timeout")
             with self.subTest(command=name):
@@ -151,11 +153,11 @@ class ExitCodes(standard_streams_test.PreparedFiles):
                 self.assertEqual(code, WRONG_USAGE, error)
                 self.assertIn("127.0.0.1:1", error)
                 checked += 1
-        self.assertEqual(checked, len(WAITING) + 2)
+        self.assertEqual(checked, len(WAITING) + 3)
 
     def test_of_an_interrupt(self) -> None:
         with_bus = {name for name, command in COMMANDS.items() if command["usage"].replace("[BUS]", "BUS").count("BUS")}
-        self.assertEqual(with_bus, set(WAITING) | {"monitor", "record"} | NOT_WAITING)
+        self.assertEqual(with_bus, set(WAITING) | {"monitor", "record", "node"} | NOT_WAITING)
         for name, text in (WAITING | ENDED_BY_USER).items():
             with self.subTest(command=name):
                 process = subprocess.Popen(self.words_of(text), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

@@ -1,0 +1,211 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/lss/lss_protocol.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "commands/commands.hpp"
+#include "device/entry_text.hpp"
+#include "device/load_sheet.hpp"
+#include "device/node_host.hpp"
+#include "device/value_overlay.hpp"
+#include "load/load_device.hpp"
+#include "shared/common_options.hpp"
+#include "shared/define_command.hpp"
+#include "shared/exit_code.hpp"
+#include "shared/live_device.hpp"
+#include "shared/live_options.hpp"
+#include "shared/output.hpp"
+#include "shared/with_bus.hpp"
+#include "text/printable.hpp"
+
+namespace edsc {
+namespace {
+
+constexpr const char* examples = R"(Examples:
+  edsc node socketcan:vcan0 drive.eds --node-id 5             until Ctrl-C
+  edsc node socketcan:vcan0 drive.dcf                         with the node-ID of the DCF
+  edsc node socketcan:vcan0 io.eds --node-id 10 --count 4     nodes 10, 11, 12 and 13
+  edsc node socketcan:vcan0 --node 5=drive.eds --node 6=io.eds
+  edsc node socketcan:vcan0 drive.eds --node-id 5 --set serial_number=1234 --set 1017h="500 ms"
+  edsc node socketcan:vcan0 drive.eds --node-id 5 --memory drive.mem     keep what a master stores)";
+
+constexpr unsigned highest_node_id = 127;
+
+struct Settings {
+  std::string bus;
+  std::string file;
+  std::optional<std::uint8_t> node_id;
+  std::uint64_t count = 1;
+  std::vector<std::string> nodes;
+  std::string options;
+  std::vector<std::string> values;
+  std::string memory;
+  bool keep_going = false;
+  bool quiet = false;
+  ColorOption color;
+};
+
+/// A file, and the sheet that its nodes share.
+struct File {
+  std::unique_ptr<LoadedDevice> loaded;
+  std::shared_ptr<const Sheet> sheet;
+};
+
+struct PlannedNode {
+  unsigned node_id;  ///< 255: LSS gives the node a node-ID
+  const File* file;
+};
+
+std::string bad_value(const std::string& text) {
+  const std::size_t at = text.find('=');
+  if (at != std::string::npos && at != 0) return "";
+  return fmt::format("\"{}\" is not OBJECT=VALUE", printable(text));
+}
+
+/// The value of an entry that has these bytes.
+Value value_of_bytes(const canopen::DataTypeRow& type, const std::vector<std::uint8_t>& bytes) {
+  Value value;
+  if (type.bits == 0) {
+    value.bytes.assign(bytes.begin(), bytes.end());
+    return value;
+  }
+  const bool negative = type.kind == canopen::DataClass::signed_integer && !bytes.empty() && (bytes.back() & 0x80) != 0;
+  value.bits = negative ? ~std::uint64_t{0} : 0;
+  for (std::size_t i = bytes.size(); i-- > 0;) value.bits = value.bits << 8 | bytes[i];
+  return value;
+}
+
+/// Replaces default values by those of --set.
+void set_values(LoadedDevice& loaded, const std::vector<std::string>& texts) {
+  if (texts.empty()) return;
+  ValueOverlay values;
+  for (const std::string& text : texts) {
+    const std::size_t at = text.find('=');
+    const LiveEntry named_entry = name_entry(&loaded, text.substr(0, at));
+    const ParsedValue value = parse_value_text(*named_entry.entry, text.substr(at + 1));
+    if (!value.ok()) fail(value.problem);
+    values.set(*named_entry.entry, value_of_bytes(*named_entry.entry->type, value.bytes));
+  }
+  Diagnostics of_mapping;
+  loaded.device = with_values(*loaded.device, values, loaded.options, of_mapping);
+}
+
+/// Ends the command if the file has errors, unless --keep-going is given.
+File load_file(const Settings& settings, const std::string& path) {
+  Diagnostics diagnostics;
+  diagnostics.limit_notes(Notes::none);
+  LoadSettings load;
+  load.path = path;
+  load.options_path = settings.options;
+  load.keep_going = settings.keep_going;
+  File file{load_device(load, diagnostics), nullptr};
+  if (diagnostics.errors() > 0) print_findings(diagnostics, settings.color);
+  if (!file.loaded->device || diagnostics.errors() > 0)
+    throw Exit{file.loaded->unreadable ? exit_wrong_usage : exit_input_has_errors};
+  set_values(*file.loaded, settings.values);
+  LoadedSheet made = load_sheet(*file.loaded->device, file.loaded->options);
+  for (const std::string& note : made.notes) {
+    if (!settings.quiet || !made.sheet) print_to_stderr("edsc: {}: {}\n", printable(path), note);
+  }
+  if (!made.sheet) throw Exit{exit_input_has_errors};
+  file.sheet = std::move(made.sheet);
+  return file;
+}
+
+/// The node-ID of FILE: that of --node-id, else of the DCF, else 255 if the device has LSS.
+unsigned first_node_id(const Settings& settings, const File& file) {
+  if (settings.node_id) return *settings.node_id;
+  if (file.loaded->device->node_id) return *file.loaded->device->node_id;
+  if (file.sheet->lss_options && settings.count == 1) return canopen::unconfigured_node_id.value();
+  fail(fmt::format("{}: the file does not state a node-ID; give it with --node-id", printable(settings.file)));
+}
+
+class Plan {
+ public:
+  explicit Plan(const Settings& settings) : settings_{settings} {
+    if (!settings.file.empty()) add_file();
+    for (const std::string& text : settings.nodes) {
+      const std::optional<NodeFile> node = parse_node_file(text);
+      if (!node) fail(fmt::format("\"{}\" is not NODE-ID=FILE", printable(text)));
+      add(node->node_id, file(node->path));
+    }
+    if (nodes_.empty()) throw_required("FILE or --node");
+    if (!settings.memory.empty() && nodes_.size() != 1) fail("--memory is the file of one node");
+  }
+
+  [[nodiscard]] const std::vector<PlannedNode>& nodes() const { return nodes_; }
+
+ private:
+  /// Each file is loaded once.
+  const File& file(const std::string& path) {
+    const auto at = files_.find(path);
+    return at != files_.end() ? at->second : files_.emplace(path, load_file(settings_, path)).first->second;
+  }
+
+  void add_file() {
+    const File& of_all = file(settings_.file);
+    const unsigned first = first_node_id(settings_, of_all);
+    for (unsigned i = 0; i < settings_.count; ++i) add(first + i, of_all);
+  }
+
+  void add(unsigned node_id, const File& of_node) {
+    if (node_id > highest_node_id && node_id != canopen::unconfigured_node_id.value())
+      fail(fmt::format("node-ID {} is above {}", node_id, highest_node_id));
+    if (!node_ids_.insert(node_id).second) fail(fmt::format("two nodes have the node-ID {}", node_id));
+    nodes_.push_back({node_id, &of_node});
+  }
+
+  const Settings& settings_;
+  std::map<std::string, File> files_;
+  std::vector<PlannedNode> nodes_;
+  std::set<unsigned> node_ids_;
+};
+
+void report_ready(const PlannedNode& node, const std::string& bus) {
+  const std::string id =
+      node.node_id <= highest_node_id ? fmt::format("node {}", node.node_id) : std::string{"node without node-ID"};
+  print_visibly(stdout, "{} \"{}\" on {}\n", id, node.file->loaded->device->product_name, bus);
+}
+
+int run_node(const Settings& settings) {
+  const Plan plan{settings};
+  return with_bus(settings.bus, [&](LiveBus& bus) {
+    NodeHost host{bus};
+    for (const PlannedNode& node : plan.nodes()) {
+      host.add(node.file->sheet, canopen::NodeId{static_cast<std::uint8_t>(node.node_id)}, settings.memory);
+    }
+    host.start();
+    if (!settings.quiet) {
+      for (const PlannedNode& node : plan.nodes()) report_ready(node, settings.bus);
+    }
+    flush_output();
+    host.run();
+    return exit_fine;
+  });
+}
+
+}  // namespace
+
+void add_node_options(Command command, int& exit_code) {
+  Settings& settings = define_command(command, examples, run_node, exit_code);
+  add_bus_argument(command, settings.bus);
+  command.add_option("FILE", settings.file, "EDS, DCF, XDD or XDC of the nodes");
+  add_node_id_option(command, settings.node_id);
+  command.add_option("--count", settings.count, "with consecutive node-IDs").range(1, highest_node_id);
+  command.add_option("--node", settings.nodes);
+  add_options_option(command, settings.options);
+  command.add_option("--set", settings.values).check(bad_value);
+  command.add_option("--memory", settings.memory);
+  command.add_flag("--keep-going", settings.keep_going);
+  command.add_flag("--quiet", settings.quiet);
+  settings.color.add_to(command);
+}
+
+}  // namespace edsc

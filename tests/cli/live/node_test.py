@@ -1,0 +1,176 @@
+#!/usr/bin/env python3
+"""edsc node runs an EDS as a node: python-can, with an SDO client of its own, is the master on a bus of edsc bus.
+
+    node_test.py SOURCE_DIR EDSC
+"""
+
+from __future__ import annotations
+
+import configparser
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+SOURCE_DIR = Path(sys.argv[1]).resolve()
+EDSC = Path(sys.argv[2]).resolve()
+sys.path.insert(0, str(SOURCE_DIR / "tests/masters"))
+
+from sdo import Abort, SdoClient  # noqa: E402
+from wire import Wire  # noqa: E402
+
+FINE, FAILED, WRONG_USAGE = 0, 1, 2
+PATIENCE = 20.0
+OPERATIONAL = 0x05
+PRE_OPERATIONAL = 0x7F
+NMT = 0x000
+START, RESET_NODE = 0x01, 0x81
+
+
+def device(name: str) -> Path:
+    return SOURCE_DIR / f"eds/{name}.eds"
+
+
+def default_value(name: str, section: str) -> int:
+    """The number that the EDS states, read without edsc."""
+    eds = configparser.ConfigParser(interpolation=None, strict=False)
+    eds.read(device(name), encoding="latin-1")
+    return int(eds[section]["DefaultValue"], 0)
+
+
+class NodeTest(unittest.TestCase):
+    def setUp(self) -> None:
+        folder = tempfile.TemporaryDirectory(prefix="edsc-node-")
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        bus = self.run_program("bus", "--listen", "127.0.0.1:0")
+        self.address = bus.stdout.readline().strip()
+        self.wire = Wire(self.address)
+        self.addCleanup(self.wire.close)
+
+    def run_program(self, *words: object) -> subprocess.Popen[str]:
+        process = subprocess.Popen([EDSC, *map(str, words)], cwd=self.folder, text=True, stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        return process
+
+    def node(self, *words: object, ready: int = 1) -> tuple[subprocess.Popen[str], list[str]]:
+        """A running `edsc node`, and the lines that it prints when it is ready."""
+        process = self.run_program("node", self.address, *words)
+        lines = [process.stdout.readline() for _ in range(ready)]
+        return process, lines
+
+    def end(self, process: subprocess.Popen[str]) -> None:
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=60), FINE)
+
+    def refused(self, exit_code: int, *words: object) -> str:
+        result = subprocess.run([EDSC, "node", self.address, *map(str, words)], cwd=self.folder, text=True, capture_output=True,
+                                timeout=60, check=False)
+        self.assertEqual(result.returncode, exit_code, result.stderr)
+        return result.stderr
+
+    def expect_frame(self, can_id: int, data: bytes) -> None:
+        """Waits for a frame with this CAN-ID and data."""
+        end = time.monotonic() + PATIENCE
+        seen = []
+        while time.monotonic() < end:
+            seen.append(self.wire.receive(can_id, PATIENCE))
+            if seen[-1] == data:
+                return
+        self.fail(f"{can_id:03X} {data.hex(' ')} is missing: {seen[-5:]}")
+
+    def test_boot_up_identity_and_heartbeat(self) -> None:
+        process, lines = self.node(device("cpc-tc1"), "--node-id", 5)
+        self.assertRegex(lines[0], rf'\Anode 5 ".+" on {self.address}\n\Z')
+        self.expect_frame(0x705, b"\0")
+        sdo = SdoClient(self.wire, 5, PATIENCE)
+        for sub_index in (1, 2, 3):
+            expected = default_value("cpc-tc1", f"1018sub{sub_index}")
+            self.assertEqual(sdo.upload(0x1018, sub_index), struct.pack("<I", expected))
+        sdo.download(0x1017, 0, struct.pack("<H", 50))
+        self.expect_frame(0x705, bytes([PRE_OPERATIONAL]))
+        self.wire.send(NMT, bytes([START, 5]))
+        self.expect_frame(0x705, bytes([OPERATIONAL]))
+        with self.assertRaises(Abort) as refused:
+            sdo.upload(0x2FFF, 0)
+        self.assertEqual(refused.exception.code, 0x0602_0000)
+        self.end(process)
+
+    def test_pdos(self) -> None:
+        """RPDO 1 of the drive is the controlword, TPDO 1 the statusword (eds/cpc-tc1.eds)."""
+        self.node(device("cpc-tc1"), "--node-id", 6, "--set", "6041h=592")
+        self.expect_frame(0x706, b"\0")
+        self.wire.send(NMT, bytes([START, 0]))
+        self.expect_frame(0x186, struct.pack("<H", 592))
+        sdo = SdoClient(self.wire, 6, PATIENCE)
+        self.wire.send(0x206, bytes([0x0F, 0x00]))
+        end = time.monotonic() + PATIENCE
+        while sdo.upload(0x6040, 0) != b"\x0f\0" and time.monotonic() < end:
+            pass
+        self.assertEqual(sdo.upload(0x6040, 0), b"\x0f\0")
+
+    def test_nodes_receive_the_frames_of_each_other(self) -> None:
+        """Node 11 monitors the heartbeat of node 10 on the same connection: EMCY 8130h follows when that ends."""
+        _, lines = self.node(device("cpd"), "--node-id", 10, "--count", 3, ready=3)
+        self.assertEqual([line.split()[1] for line in lines], ["10", "11", "12"])
+        for node_id in (10, 11, 12):
+            self.expect_frame(0x700 + node_id, b"\0")
+        producer, consumer = SdoClient(self.wire, 10, PATIENCE), SdoClient(self.wire, 11, PATIENCE)
+        producer.download(0x1017, 0, struct.pack("<H", 50))
+        consumer.download(0x1016, 1, struct.pack("<I", 10 << 16 | 2000))
+        self.assertIsNone(self.wire.receive(0x08B, 3.0))
+        producer.download(0x1017, 0, struct.pack("<H", 0))
+        emergency = self.wire.receive(0x08B, PATIENCE)
+        self.assertIsNotNone(emergency)
+        self.assertEqual(struct.unpack_from("<H", emergency)[0], 0x8130)
+
+    def test_values_of_the_command_line_survive_resets(self) -> None:
+        self.node(device("cpd"), "--node-id", 5, "--set", "1017h=70", "--set", "1018h:04=1234")
+        self.expect_frame(0x705, b"\0")
+        sdo = SdoClient(self.wire, 5, PATIENCE)
+        sdo.download(0x1017, 0, struct.pack("<H", 500))
+        self.wire.send(NMT, bytes([RESET_NODE, 5]))
+        self.expect_frame(0x705, b"\0")
+        self.assertEqual(sdo.upload(0x1017, 0), struct.pack("<H", 70))
+        self.assertEqual(sdo.upload(0x1018, 4), struct.pack("<I", 1234))
+
+    def test_stored_parameters_in_a_file(self) -> None:
+        arguments = (device("cpd"), "--node-id", 5, "--memory", "drive.mem")
+        process, _ = self.node(*arguments)
+        self.expect_frame(0x705, b"\0")
+        sdo = SdoClient(self.wire, 5, PATIENCE)
+        sdo.download(0x1017, 0, struct.pack("<H", 777))
+        sdo.download(0x1010, 1, b"save")
+        self.end(process)
+        self.node(*arguments)
+        self.expect_frame(0x705, b"\0")
+        self.assertEqual(sdo.upload(0x1017, 0), struct.pack("<H", 777))
+
+    def test_different_devices(self) -> None:
+        _, lines = self.node("--node", f"5={device('cpd')}", "--node", f"6={device('rk5c')}", ready=2)
+        self.assertEqual([line.split()[1] for line in lines], ["5", "6"])
+        for node_id, name in ((5, "cpd"), (6, "rk5c")):
+            self.expect_frame(0x700 + node_id, b"\0")
+            expected = default_value(name, "1018sub2")
+            self.assertEqual(SdoClient(self.wire, node_id, PATIENCE).upload(0x1018, 2), struct.pack("<I", expected))
+
+    def test_what_cannot_be_a_node(self) -> None:
+        broken = self.folder / "broken.eds"
+        broken.write_text(device("cpd").read_text(encoding="latin-1").replace("DataType=0x0007", "DataType=0x7777", 1))
+        self.assertIn("7777", self.refused(FAILED, broken, "--node-id", 5))
+        self.assertIn("--node-id", self.refused(WRONG_USAGE, device("cpd")))
+        self.assertIn("two nodes have the node-ID 5",
+                      self.refused(WRONG_USAGE, device("cpd"), "--node-id", 5, "--node", f"5={device('rk5c')}"))
+        self.assertIn("node-ID 128 is above 127", self.refused(WRONG_USAGE, device("cpd"), "--node-id", 127, "--count", 2))
+        self.assertIn("no_such.eds", self.refused(WRONG_USAGE, "no_such.eds", "--node-id", 5))
+        self.assertIn("--memory", self.refused(WRONG_USAGE, device("cpd"), "--node-id", 5, "--count", 2, "--memory", "file"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
