@@ -4,7 +4,7 @@
 #include <canopen/host/simulated_node.hpp>
 #include <memory>
 
-#define EDSC_DECLARE(device) \
+#define EDSC_ROW(device) \
   std::unique_ptr<canopen::SimulatedNode> make_##device(canopen::SimulatedBus& bus, canopen::SimulatedMemory& memory);
-EDSC_FOR_EACH_DEVICE(EDSC_DECLARE)
-#undef EDSC_DECLARE
+#include "generated_device_rows.inc"
+#undef EDSC_ROW

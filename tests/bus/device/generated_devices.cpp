@@ -5,7 +5,9 @@
 
 int main(int argc, char** argv) {
 #define EDSC_ROW(device) canopen::SimulatedDevice{#device, &make_##device},
-  constexpr canopen::SimulatedDevice devices[] = {EDSC_FOR_EACH_DEVICE(EDSC_ROW)};
+  constexpr canopen::SimulatedDevice devices[] = {
+#include "generated_device_rows.inc"
+  };
 #undef EDSC_ROW
   return canopen::simulate_devices(argc, argv, devices);
 }
