@@ -152,8 +152,8 @@ std::string unit_of(std::string_view text) {
 
 /// Sets a number with a unit, or the name of a value, as `edsc write` takes it.
 void set_with_meaning(NetworkNode& node, const OtherNotation& other, Diagnostics& diagnostics) {
-  const auto& [entry_text, text] = *other.written;
-  const Entry& entry = *EntryFinder{node.named()}.find_one(entry_text.value).entry;
+  const Written<std::string>& text = other.written->value;
+  const Entry& entry = *EntryFinder{node.named()}.find_one(other.written->entry.value).entry;
   const auto error = [&](const std::string& why) {
     diagnostics.error("network-value", text.position, fmt::format("node {}: {}", node.name, why));
   };
