@@ -45,7 +45,12 @@ ROWS = {
 }
 
 
+NEW_NODES = {"node"}  # their EDS files need not be in a network file
+
+
 def takes_node(command: dict) -> bool:
+    if command["command"] in NEW_NODES:
+        return False
     return any(argument["names"] == ["NODE"] for argument in command["arguments"]) or any(
         option["names"] == ["--node"] for option in command["options"])
 
