@@ -11,8 +11,9 @@ import sys
 from pathlib import Path
 
 SOURCE_DIR = Path(sys.argv[1]).resolve()
-# Messages of the operating system and of the linker.
-FOREIGN = {"No such device", "Network is down", "Permission denied", "Connection refused", "multiple definition"}
+# Messages of the operating system, the compiler, the linker and CMake.
+FOREIGN = {"No such device", "Network is down", "Permission denied", "Connection refused", "multiple definition",
+           "cstdint: No such file or directory", 'unable to find a build program corresponding to "Ninja"'}
 FOLDERS = ("cli", "bus", "generator", "cmake", "runtime")
 MESSAGE_ROW = re.compile(r"^\| `([^`]+)`", re.MULTILINE)
 ABORT_ROW = re.compile(r"^\| ([0-9A-F]{4}) ([0-9A-F]{4})h, ([^|]+) \|", re.MULTILINE)
