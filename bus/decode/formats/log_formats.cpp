@@ -40,7 +40,8 @@ std::string_view conversion_of(std::string_view beginning) {
   const std::string_view first = beginning.substr(0, first_lines);
   const auto* const found = std::ranges::find_if(foreign_rows, [&](const ForeignRow& row) {
     if (!row.beginning.empty()) return beginning.starts_with(row.beginning);
-    return !std::ranges::search(first, row.word, {}, to_lower).empty();
+    const auto is_letter = [](char one, char lower) { return to_lower(one) == lower; };
+    return std::search(first.begin(), first.end(), row.word.begin(), row.word.end(), is_letter) != first.end();
   });
   return found == std::end(foreign_rows) ? std::string_view{} : found->conversion;
 }
