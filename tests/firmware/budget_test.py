@@ -67,7 +67,7 @@ class Budget(unittest.TestCase):
         told = self.refused("much_flash")
         self.assertRegex(told, r"error: much_flash\.elf has \d+ bytes of flash, \d+ more than its limit of 5000\n"
                                r"largest in flash:\n( +\d+  \S+\n)* +\d+  canopen::[\w:]+\n")
-        largest = told.split("largest in flash:\n")[1].split("the data sheet's")[0].splitlines()
+        largest = told.split("largest in flash:\n")[1].split("the largest objects of the EDS:")[0].splitlines()
         sizes = [int(line.split()[0]) for line in largest]
         self.assertEqual(sizes, sorted(sizes, reverse=True))
         self.assertRegex(told, r"the largest objects of the EDS:\n  object  flash     RAM\n(  [0-9A-F]{4}h +\d+ +\d+\n)+")

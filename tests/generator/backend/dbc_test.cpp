@@ -148,8 +148,8 @@ TEST(Dbc, ShortensLongNamesAndKeepsThemInAttributes) {
 /// Readers replace the name of a signal by its long name, and reject two of one name in a message.
 TEST(Dbc, HasDifferentLongNamesForAnObjectThatIsMappedTwice) {
   const Dbc dbc =
-      dbc_from(pdo("1800", "1A00", "$NODEID+0x180", {"0x20100108", "0x20010010", "0x20100108", "0x20010010"}));
-  EXPECT_NE(dbc.text.find(" SG_ torque_2 : 40|16"), std::string::npos) << dbc.text;
+      dbc_from(pdo("1800", "1A00", "$NODEID+0x180", {"0x20100108", "0x60410010", "0x20100108", "0x60410010"}));
+  EXPECT_NE(dbc.text.find(" SG_ statusword_2 : 32|16"), std::string::npos) << dbc.text;
   EXPECT_TRUE(has_line(dbc,
                        "BA_ \"SystemSignalLongSymbol\" SG_ 389 axis_values_of_the_left_hand_sid "
                        "\"axis_values_of_the_left_hand_side_drive_speed\";"));
