@@ -1,5 +1,5 @@
-/// Makes the tables of a device at run time, by the rules by which edsc generates them: places, constants and limits
-/// are those of backend/cpp/placement.hpp.
+/// Makes the tables of a device at run time, by the rules by which edsc generates them: it takes places,
+/// constants and limits from backend/cpp/placement.hpp.
 #pragma once
 
 #include <memory>

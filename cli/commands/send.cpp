@@ -41,7 +41,7 @@ struct Settings {
   std::optional<std::uint32_t> overflow;
   std::optional<std::vector<std::uint8_t>> time;
   NodeSettings node;
-  std::string name_in_network;  ///< of the node, whose PDOs are those of the network file; empty with --eds
+  std::string name_in_network;  ///< of the node, whose PDOs the network file configures; empty with --eds
   std::uint32_t number = 0;
   std::vector<std::string> values;
   bool transmit = false;

@@ -19,7 +19,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--allow-new",      0,   "",          flag,       "accept a file that the older version does not have"},
     {"--application",    0,   "",          flag,       "write objects from 2000h, then restore the original values"},
     {"--audience",       0,   "WORD",      word,       "whose breaking changes to report: wire (masters, PDO partners), source (C++ code) or all"},
-    {"--author",         0,   "TEXT",      text,       "who has made the document"},
+    {"--author",         0,   "TEXT",      text,       "author of the document"},
     {"--bit-rate",       0,   "KBIT",      number,     "bit rate in kbit/s"},
     {"--block",          0,   "",          flag,       "use block transfer for all values"},
     {"--check",          0,   "",          flag,       "write nothing; list the files that would change; exit code 1 if there is one"},

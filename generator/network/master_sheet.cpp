@@ -242,8 +242,8 @@ class MasterSheet {
     }
   }
 
-  /// The initial value: a value that is sent is that of the receiver until the application sets it, so that a PDO with
-  /// several values changes only those that are set.
+  /// The initial value of one that is sent: the default value of the receiver, so that a PDO with several values
+  /// changes only those that the application has set.
   static std::string initial_value(const MasterEntry& entry) {
     const Entry& original = *entry.original;
     if (!entry.is_sent || !original.default_value) return "0";

@@ -25,9 +25,9 @@ namespace edsc {
 
 [[nodiscard]] std::string absolute_path(std::string_view path);
 
-/// A path as a URI reference (RFC 3986, RFC 8089): `file:///home/a%20b.eds` for an absolute path, and on a system whose
+/// A path as a URI reference (RFC 3986, RFC 8089): `file:///a%20b.eds` for an absolute path, and on a system whose
 /// paths have a drive, `file:///C:/b.eds` and `file://server/share/b.eds`. A relative path remains relative.
-/// `separator` is that of the system; the path itself has `/`.
+/// `separator` is the one of the system; the path itself has `/`.
 [[nodiscard]] std::string uri_of_path(std::string_view path,
                                       char separator = static_cast<char>(std::filesystem::path::preferred_separator));
 

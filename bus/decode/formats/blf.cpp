@@ -167,7 +167,7 @@ class BlfSource final : public LogSource {
     return true;
   }
 
-  /// Returns false for an object that is no frame.
+  /// Returns false for an object that is not a frame.
   [[nodiscard]] bool parse(std::string_view object, LogLine& line) {
     constexpr std::uint32_t ten_microseconds = 1;
     const std::size_t header = blf_number(object, 4, 2);
@@ -190,7 +190,7 @@ class BlfSource final : public LogSource {
     return true;
   }
 
-  /// Returns false for an object that is no frame.
+  /// Returns false for an object that is not a frame.
   [[nodiscard]] static bool parse_body(ObjectType type, std::string_view body, LogLine& line) {
     constexpr std::uint64_t remote = 0x80, fd = 1, remote_64 = 0x10, fd_64 = 0x1000;
     switch (type) {

@@ -31,7 +31,7 @@ inline constexpr bool has_sheet = requires {
 template <class Device, class... OfNode>
 [[nodiscard, gnu::always_inline]] constexpr const DeviceOptions& options_of([[maybe_unused]] const OfNode&... of_node) {
   if constexpr (has_sheet<Device>) {
-    static_assert(sizeof...(OfNode) == 1, "the sheet is that of a node");
+    static_assert(sizeof...(OfNode) == 1, "a sheet belongs to a node");
     return (Device::sheet_of(of_node), ...).options;
   } else {
     return Device::options;

@@ -283,7 +283,7 @@ class SdoServerTransfer {
   /// Sets a response with the index, the sub-index and four more bytes.
   void answer(unsigned command, std::uint32_t word = 0) { put_reply(multiplexer_ | command, word); }
 
-  /// Ends the transfer with an abort, whose code is that of the device for a wrong length.
+  /// Ends the transfer with an abort, with the code of the device for a wrong length.
   void abort(AbortCode code, auto& hooks) {
     if (!options_of<Device>(hooks.entries()).sdo_length_codes) {
       if (code == AbortCode::length_too_high || code == AbortCode::length_too_low) code = AbortCode::length_mismatch;
