@@ -17,7 +17,7 @@ help() {
   firmware  the images of the reference devices for Cortex-M under QEMU
   odr       no two sources of edsc define different types of one name (g++ with -flto)
   long      before a release: odr; the packages of the static programs for x86-64 and Arm, what the programs write in an empty
-            root folder compared with the release build, and the packages of builds in two folders; edsc.exe under wine, with
+            root folder compared with the release build, and the packages of builds in two folders; edsc.exe under wine with
             all files of the repository; each header of the runtime alone; each fuzz target for a minute
 
 Without a gear: gates, test, asan, firmware. The last two use the program edsc of the release build, and build it there

@@ -2,13 +2,16 @@
 """The code generated from each EDS becomes a device that passes the conformance test, in simulated time.
 
     conform_test.py SOURCE_DIR EDSC WORK_DIR [--compiler CXX] [--flags FLAGS] [--launcher "PROGRAM ARGUMENT..."]
-                    [--only TEXT]... [--case PATTERN]... [--each N]
+                    [--only TEXT]... [--case PATTERN]... [--each N] [--dynamic PROGRAM]
 
 Each EDS, DCF and XDD of the corpus, of eds/ and of the tests' fixtures becomes code that is compiled with a node, several of
 them into one program, and `edsc conform --level all` tests it. A failure that the file causes is not a failure of the device:
 the report names a rule, and `edsc check` must report this rule for the file, too. A file that `edsc generate` rejects is
 generated with --keep-going; such a device may reject its own values: its failures and the values that are not restored are
 only counted, but the run must reach its end. Deviations that NAME.deviations.json beside a file declares must fail.
+
+With --dynamic (tests/bus/device/dynamic_device.cpp) each file also runs as a node without a compiler, as with `edsc node`, which
+must get the same verdict in each case; DYNAMIC_DIFFERENCES has the exceptions, each with its reason.
 
 The corpus is in the folder EDSC_CORPUS, or in ../shared/eds-corpus beside the repository; without a corpus only the files of
 the repository are tested. To test one file, and all of them:
@@ -43,6 +46,8 @@ NODE_ID = 5
 SHEETS_PER_PROGRAM = 12
 FLAGS = "-std=c++20 -O0 -w -fno-exceptions -fno-rtti"
 SHOWN = 6  # maximum of printed problems per file
+# Cases whose verdict may differ without a compiler: (text in the path of the file, case, reason).
+DYNAMIC_DIFFERENCES: tuple[tuple[str, str, str], ...] = ()
 MAIN = """#include <canopen/host/simulated_device.hpp>
 
 extern const std::span<const canopen::SimulatedDevice> devices;
@@ -142,19 +147,41 @@ class Driver:
                 self.build([job])
 
     def run(self, job: Job) -> None:
-        node_id = node_id_of(job.path)
-        report = self.work / f"{job.name}.json"
+        if report := self.report_of(job, f"{job.program}@{node_id_of(job.path)},{job.name}", job.name):
+            job.problems += self.problems_in(report, job)
+            if self.arguments.dynamic:
+                job.problems += self.dynamic_problems(job, report)
+
+    def report_of(self, job: Job, device: str, name: str) -> dict | None:
+        """Tests a simulated device; returns the report, or None if there is none, which is a problem of the job."""
+        report = self.work / f"{name}.json"
         report.unlink(missing_ok=True)
-        command = [self.edsc, "conform", f"simulated:{job.program}@{node_id},{job.name}", str(node_id), job.path, "--level", "all",
-                   "--quiet", "--json", report, *(f"--only={case}" for case in self.arguments.case)]
+        command = [self.edsc, "conform", f"simulated:{device}", str(node_id_of(job.path)), job.path, "--level", "all", "--quiet",
+                   "--json", report, *(f"--only={case}" for case in self.arguments.case)]
         deviations = job.path.with_suffix(".deviations.json")
         if deviations.is_file():
             command += ["--deviations", deviations]
         result = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=600)
         if not report.is_file():
-            job.problems.append(f"edsc conform ends with {result.returncode}: {result.stderr.strip()[-300:]}")
-            return
-        job.problems += self.problems_in(json.loads(report.read_text(encoding="utf-8")), job)
+            job.problems.append(f"{name}: edsc conform ends with {result.returncode}: {result.stderr.strip()[-300:]}")
+            return None
+        return json.loads(report.read_text(encoding="utf-8"))
+
+    def dynamic_problems(self, job: Job, generated: dict) -> list[str]:
+        """Returns the verdicts that the device gets as generated code, but not as a node without a compiler."""
+        script = self.work / f"{job.name}_dynamic"  # a simulated device has no arguments
+        script.write_text(f'#!/bin/sh\nexec {shlex.quote(str(self.arguments.dynamic.resolve()))} {shlex.quote(str(job.path))}\n')
+        script.chmod(0o755)
+        dynamic = self.report_of(job, f"{script}@{node_id_of(job.path)}", script.name)
+        if dynamic is None:
+            return []
+        expected, got = ({case["id"]: case for case in report["cases"]} for report in (generated, dynamic))
+        allowed = {case for text, case, _ in DYNAMIC_DIFFERENCES if text in job.title}
+        nothing = {"verdict": "not run", "got": ""}
+        return [f"{case} without a compiler: expected {one['verdict']}; got {other['verdict']}: {other['got']}"
+                for case in sorted(expected.keys() | got.keys())
+                if (one := expected.get(case, nothing))["verdict"] != (other := got.get(case, nothing))["verdict"]
+                and case not in allowed]
 
     def problems_in(self, report: dict, job: Job) -> list[str]:
         problems = []
@@ -203,6 +230,7 @@ def arguments_of() -> argparse.Namespace:
     parser.add_argument("--launcher", default="")
     parser.add_argument("--only", action="append", default=[], help="files whose path contains this text, or one of several")
     parser.add_argument("--each", type=int, default=1, metavar="N", help="each Nth file of the corpus")
+    parser.add_argument("--dynamic", type=Path, metavar="PROGRAM", help="runs an EDS without a compiler: compare the verdicts")
     parser.add_argument("--case", action="append", default=[], help="cases, as for edsc conform --only")
     return parser.parse_args()
 

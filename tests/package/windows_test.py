@@ -24,12 +24,14 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from support.wine import WINE_FOLDER, Wine, has_wine  # noqa: E402
+
 SOURCE_DIR, BUILD_DIR, EDSC = (Path(argument).resolve() for argument in sys.argv[1:4])
 WANTS_ALL = "--all" in sys.argv[4:]
 WINDOWS_BUILD = BUILD_DIR.parent / "windows"
 EXE = WINDOWS_BUILD / "generator/edsc.exe"
 OFFLINE = BUILD_DIR.parent / "offline/generator/edsc"  # built by offline_test.py; EDSC has more commands
-WINE_FOLDER = Path("/usr/lib/wine")
 SECONDS = 600
 LOG = "(1.000000) can0 705#00\n(1.050000) can0 000#0105\n(1.100000) can0 605#4064600000000000\n" \
       "(1.200000) can0 585#4364600001000000\n(1.300000) can0 185#3706\n(1.400000) can0 185#3702\n"
@@ -68,39 +70,6 @@ def run(*command: object) -> None:
 
 def tree(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
-
-
-class Wine:
-    """An own drive C: in a temporary folder. The server keeps running between the commands, which start in a third of a second."""
-
-    def __init__(self) -> None:
-        self.folder = tempfile.TemporaryDirectory(prefix="edsc-wine-", ignore_cleanup_errors=True)
-        self.environment = {name: value for name, value in os.environ.items() if not name.startswith("EDSC_")}
-        self.environment |= {"WINEPREFIX": self.folder.name, "WINEDEBUG": "-all", "WINEDLLOVERRIDES": "mscoree,mshtml=",
-                             "DISPLAY": "", "LC_ALL": "C.UTF-8", "TERM": "xterm"}
-        self.server("-p")
-        # The services of Windows start with the first command and keep its output open.
-        subprocess.run([WINE_FOLDER / "wine64", "cmd", "/c", "ver"], env=self.environment, timeout=SECONDS,
-                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
-
-    @property
-    def drive_c(self) -> Path:
-        return Path(self.folder.name) / "drive_c"
-
-    def server(self, argument: str) -> None:
-        subprocess.run([WINE_FOLDER / "wineserver", argument], env=self.environment, timeout=SECONDS,
-                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
-
-    def run(self, *command: object, cwd: Path | None = None, stdin: bytes | int = subprocess.DEVNULL,
-            variables: dict[str, str] | None = None) -> subprocess.CompletedProcess:
-        given = {"input": stdin} if isinstance(stdin, bytes) else {"stdin": stdin}
-        return subprocess.run([WINE_FOLDER / "wine64", *map(str, command)], cwd=cwd, env=self.environment | (variables or {}),
-                              capture_output=True, timeout=SECONDS, **given)
-
-    def end(self) -> None:
-        self.server("-k")
-        self.server("-w")
-        self.folder.cleanup()
 
 
 class Pair:
@@ -149,10 +118,6 @@ class Pair:
         files, others = tree(self.linux), tree(self.windows)
         return found + [f"{' '.join(arguments)}: {name}: expected {files.get(name)!r:.300}, got {others.get(name)!r:.300}"
                         for name in sorted(files.keys() | others.keys()) if files.get(name) != others.get(name)]
-
-
-def has_wine() -> bool:
-    return (WINE_FOLDER / "wine64").is_file()
 
 
 def build() -> None:
