@@ -178,8 +178,12 @@ class EntryAccess : public EntryDirectory<Device> {
   [[nodiscard, gnu::noinline]] AbortCode check(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                                std::span<const std::uint8_t> bytes) const {
     if (const AbortCode length = check_length(index, sub_index, word, bytes.size()); length != ok) return length;
-    return with_sheet<Device>(
-        *this, [&](const auto&... of_node) { return check_value(index, sub_index, word, bytes, of_node...); });
+    // Without with_sheet, whose reference to the node would stay a parameter of this function.
+    if constexpr (has_sheet<Device>) {
+      return check_value(index, sub_index, word, bytes, *this);
+    } else {
+      return check_value(index, sub_index, word, bytes);
+    }
   }
 
   /// Checks the value of bytes whose length is correct. `of_node`: as in `with_sheet`.
@@ -214,8 +218,11 @@ class EntryAccess : public EntryDirectory<Device> {
                                       entry::Word word) const {
     if constexpr (kinds.strings_in_ram) {
       if (entry::is_string(word)) {
-        return with_sheet<Device>(*this,
-                                  [&](const auto&... of_node) { return capacity(index, sub_index, of_node...); });
+        if constexpr (has_sheet<Device>) {
+          return capacity(index, sub_index, *this);
+        } else {
+          return capacity(index, sub_index);
+        }
       }
     }
     return is_domain(word) ? domain(word).capacity : bytes_of(word);
