@@ -118,7 +118,11 @@ class Builder {
       }
       if (pdo.mapping != nullptr && (pdo.broken || pdo.multiplexed) && !pdo.dynamic) unused_.insert(pdo.mapping->index);
       for (const PdoEntry& mapped : pdo.entries) {
-        if (mapped.object != nullptr && !pdo.broken) mapped_.insert(object_key(mapped.index, mapped.sub_index));
+        if (mapped.object == nullptr || pdo.broken) continue;
+        mapped_.insert(object_key(mapped.index, mapped.sub_index));
+        if (entry::is_string(type_word(*mapped.object->type)))
+          note(fmt::format("{} is not served: it maps {}, a string", pdo_label(pdo),
+                           entry_label(mapped.index, mapped.sub_index)));
       }
     }
   }
@@ -159,6 +163,9 @@ class Builder {
     const bool in_frame = known > Dictionary::no_sub_index && entry::place_of(known) == entry::Place::ram &&
                           entry::type_of(known) == type;
     if (in_frame && !unused_.contains(one.index)) set_number(entry::offset_of(known), one);
+    if (!in_frame && known > Dictionary::no_sub_index && entry::place_of(known) == entry::Place::ram)
+      note(fmt::format("{} does not have the type of CiA 301: no service of the node uses it",
+                       entry_label(one.index, one.sub_index)));
     const MemoryPlace place = place_of(object, one, type);
     entry::Word word = type | rights(object, one);
     switch (place) {
