@@ -1,5 +1,8 @@
 #include "device/sheet_options.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -79,6 +82,23 @@ constexpr LssMember lss_members[] = {
     {"served_in_stopped", &LssOptions::served_in_stopped},
     {"served_in_operational", &LssOptions::served_in_operational},
 };
+
+/// Whether a member has the name `member_of(row)`, or of an LSS option the name of the row.
+[[nodiscard]] constexpr bool has_member(const OptionRow& row) {
+  if (row.group.name == option_table::lss.name)
+    return std::ranges::find(lss_members, row.name, &LssMember::name) != std::end(lss_members);
+  return std::ranges::any_of(option_members, [&](const OptionMember& member) {
+    if (!row.flat_name.empty()) return member.name == row.flat_name;
+    const std::size_t prefix = row.group.name.size();
+    return member.name.size() == prefix + 1 + row.name.size() && member.name.starts_with(row.group.name) &&
+           member.name[prefix] == '_' && member.name.ends_with(row.name);
+  });
+}
+static_assert(std::ranges::all_of(options_table,
+                                  [](const OptionRow& row) {
+                                    return row.form == OptionForm::structured || has_member(row);
+                                  }),
+              "a node without a compiler ignores an option");
 
 /// The enumerators of canopen::Storing that an options file can name.
 struct StoringName {
