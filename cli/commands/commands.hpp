@@ -23,6 +23,7 @@ AddOptions add_write_options;
 AddOptions add_configure_options;
 AddOptions add_save_options;
 AddOptions add_monitor_options;
+AddOptions add_watch_options;
 AddOptions add_nmt_options;
 AddOptions add_send_options;
 AddOptions add_lss_options;
@@ -73,6 +74,7 @@ inline constexpr CommandRow commands[] = {
     {"Bus", "configure", "write the values of a DCF that differ from the values of a node", add_configure_options},
     {"Bus", "save", "read the configuration of a node and write it as a DCF", add_save_options},
     {"Bus", "monitor", "show nodes, states, PDO values, rates and load of a bus, live", add_monitor_options},
+    {"Bus", "watch", "raise an alarm for what a network file does not allow on its bus", add_watch_options},
     {"Bus", "nmt", "start, stop or reset nodes", add_nmt_options},
     {"Bus", "send", "send SYNC, TIME, a PDO or a frame, once or periodically", add_send_options},
     {"Bus", "lss", "configure node-ID and bit rate of devices (CiA 305)", add_lss_options},

@@ -15,23 +15,32 @@ namespace {
 
 constexpr const char* automatic = "auto";
 
-}  // namespace
-
-Option add_log_options(Command command, LogSettings& settings) {
-  const Option log = command.add_option(
-      "LOG", settings.log,
-      "log of candump, CANoe (asc), PCAN-View (trc), tcpdump or Wireshark; \"-\" for standard input");
+void add_log_format(Command command, std::string& log_format) {
   std::vector<std::string> formats{automatic};
   std::string help = "auto: by its content";
   for (const LogFormat* const row : log_formats) {
     formats.emplace_back(row->name);
     help += fmt::format("; {}: {}", row->name, row->description);
   }
-  add_choice(command, "--log-format", settings.log_format, formats, help);
+  add_choice(command, "--log-format", log_format, formats, help);
+}
+
+}  // namespace
+
+Option add_log_options(Command command, LogSettings& settings) {
+  const Option log = command.add_option(
+      "LOG", settings.log,
+      "log of candump, CANoe (asc), PCAN-View (trc), tcpdump or Wireshark; \"-\" for standard input");
+  add_log_format(command, settings.log_format);
   add_nodes_options(command, settings);
   command.add_option("--interface", settings.interface);
   settings.color.add_to(command);
   return log;
+}
+
+void add_log_format_options(Command command, std::string& log_format, std::string& interface) {
+  add_log_format(command, log_format);
+  command.add_option("--interface", interface);
 }
 
 std::function<void()> read_log(const LogSettings& settings, const std::function<void(LogLine&)>& use,

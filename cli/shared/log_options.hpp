@@ -24,6 +24,9 @@ struct LogSettings : NodesSettings {
 /// LOG, --log-format, --node, --network, --interface, --color.
 Option add_log_options(Command command, LogSettings& settings);
 
+/// --log-format, --interface.
+void add_log_format_options(Command command, std::string& log_format, std::string& interface);
+
 /// Reads the log to its end or to an interrupt: `use` gets each line or packet, and `before_waiting` is called when no
 /// input is available, to flush output. Ends the command if the log cannot be read. The returned function does the same
 /// for an error that occurred while reading; call it after the output of what was read.

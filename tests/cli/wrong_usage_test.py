@@ -54,6 +54,7 @@ BY_HAND = (
     "record slcan:/dev/no_such", "record simulated:./no_such@5", "completion fish", "help chek", "chek device.eds",
     "read {bus} 5 1018h --timeout 5 --tmeout", "check device.eds --force", "check -x device.eds", "--verson", "", "version 1",
     "check device.eds --strict=5", "read {bus} 5 no_such_name", "read {bus} 5 1018h --type u7", "save {bus} 5", "audit bus.log --silence x",
+    "watch", "watch bus.log", "watch bus.log --network no_such.json", "watch bus.log --network bad.json --allow x", "watch bus.log --silence x",
 )
 
 

@@ -174,6 +174,7 @@ class EveryCommand(ReferenceDevices):
         for form in ("text", "json", "html"):
             self.run_command("audit", "bus.log", *self.sheets, "--cycles", "--bit-rate", "500", "--format", form,
                              exit_codes=(FINE, FAILED))
+        self.run_command("watch", "bus.log", "--network", PLANTS[0], exit_codes=(FAILED,))
         self.run_command("plot", "bus.log", "6/1017h", *self.sheets, "-o", "plot.svg")
 
 

@@ -43,6 +43,7 @@ MORE = {
     "conform": ("conform @ 100 device.eds --only 2.1 --timeout 10ms", FAILED),
     "accept": ("accept @ 100 device.eds --only 2.1 --timeout 10ms", FAILED),
     "node": ("node @ broken.eds --node-id 9", FAILED),
+    "watch": ("watch good.log --network plant.json --silence sdo-write --silence node-missing", FINE),
     "overlay apply": ("overlay apply wrong.overlay -o none.eds", FAILED),
     "overlay rebase": ("overlay rebase wrong.overlay device.eds -o none.overlay", FAILED),
     "overlay from-bus": ("overlay from-bus @ 100 device.eds -o none.overlay --timeout 10ms", FAILED),
@@ -82,6 +83,7 @@ WAITING = {
 }
 # Ctrl-C is their regular end.
 ENDED_BY_USER = {"bus": "bus --listen 127.0.0.1:0", "monitor": "monitor @", "record": "record @ -o recorded.log",
+                 "watch": "watch @ --network plant.json",
                  "node": "node @ device.eds --node-id 9"}
 NOT_WAITING = {"lss state"}
 
@@ -153,11 +155,11 @@ class ExitCodes(standard_streams_test.PreparedFiles):
                 self.assertEqual(code, WRONG_USAGE, error)
                 self.assertIn("127.0.0.1:1", error)
                 checked += 1
-        self.assertEqual(checked, len(WAITING) + 3)
+        self.assertEqual(checked, len(WAITING) + len(ENDED_BY_USER) - 1)
 
     def test_of_an_interrupt(self) -> None:
         with_bus = {name for name, command in COMMANDS.items() if command["usage"].replace("[BUS]", "BUS").count("BUS")}
-        self.assertEqual(with_bus, set(WAITING) | {"monitor", "record", "node"} | NOT_WAITING)
+        self.assertEqual(with_bus, set(WAITING) | set(ENDED_BY_USER) - {"bus", "watch"} | NOT_WAITING)
         for name, text in (WAITING | ENDED_BY_USER).items():
             with self.subTest(command=name):
                 process = subprocess.Popen(self.words_of(text), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

@@ -48,6 +48,7 @@ ROWS = {
     "configure": ("configure @ 5 axis1.dcf --all --dry-run --format json", "configure @ 5 axis1.dcf --format json --timeout 60s"),
     "save": ("save @ 5 device.eds -o saved.dcf --format json --timeout 60s",),
     "monitor": ("monitor @ --node 5=device.eds --once 300ms --format json",),
+    "watch": ("watch can0.log --network line.json --format json", "watch --list-alarms --format json"),
     "lss assign": ("lss @ assign --node-id 6 --format json --timeout 10ms --step 5ms",),
     "lss fastscan": ("lss @ fastscan --format json --timeout 10ms --step 5ms",),
     "lss inquire": ("lss @ inquire --format json --timeout 10ms",),

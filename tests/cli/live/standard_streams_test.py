@@ -70,6 +70,8 @@ ROWS = (
     Row("save", (5, "device.eds", "-o", "saved.dcf"), files=("saved.dcf",), bus=True),
     Row("save", (5, "device.eds"), bus=True, warns=True),
     Row("monitor", ("--once", "100ms"), bus=True),
+    Row("watch", ("--network", "plant.json", "--for", "100ms", "--silence", "node-unknown"), bus=True),
+    Row("watch", ("bus.log", "--network", "plant.json"), FAILED, warns=True),
     Row("nmt", ("start", 5), bus=True),
     Row("send sync", (), bus=True),
     Row("send time", (), bus=True),
