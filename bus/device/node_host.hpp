@@ -7,6 +7,7 @@
 #include <canopen/can/node_id.hpp>
 #include <cstddef>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,14 +25,18 @@ class NodeHost {
   NodeHost& operator=(const NodeHost&) = delete;
   ~NodeHost();
 
-  /// Adds a node. `memory`: the file of its stored values; empty: they are lost at the end of the program.
-  void add(std::shared_ptr<const Sheet> sheet, canopen::NodeId node_id, const std::string& memory);
+  /// Adds a node that is off, and returns its place. `memory`: the file of its stored values; empty: they are lost at
+  /// the end of the program.
+  std::size_t add(std::shared_ptr<const Sheet> sheet, canopen::NodeId node_id, const std::string& memory);
 
-  /// Starts all nodes: they send their boot-up messages.
+  /// Switches all nodes on: they send their boot-up messages.
   void start();
+  void switch_on(std::size_t place);
+  /// A node that is off neither sends nor receives. It keeps what it has stored.
+  void switch_off(std::size_t place);
 
-  /// Serves the nodes until there is an Interruption. Throws BusLost.
-  void run();
+  /// Serves the nodes until there is an Interruption. `each_turn` is called at least every 100 ms. Throws BusLost.
+  void run(const std::function<void()>& each_turn = [] {});
 
  private:
   struct Connected;
