@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <canopen/host/simulated_node.hpp>
 #include <optional>
-#include <utility>
 
-#include "device/dynamic_node.hpp"
 #include "online/interruption.hpp"
 
 namespace edsc {
 namespace {
 
-/// How often an interruption is checked, and a bus without room is tried again.
-constexpr canopen::Duration longest_wait{100'000}, try_again{1'000};
+/// How often a bus without room is tried again.
+constexpr canopen::Duration try_again{1'000};
 
 }  // namespace
 
@@ -24,6 +22,7 @@ struct NodeHost::Connected final : canopen::SimulatedBus {
     full = !host.bus_.send(frame);
     if (full) return false;
     host.sent_.push_back({place, frame});
+    if (host.on_frame) host.on_frame(frame);
     return true;
   }
 
@@ -37,9 +36,9 @@ struct NodeHost::Connected final : canopen::SimulatedBus {
 NodeHost::NodeHost(LiveBus& bus) : bus_{bus} {}
 NodeHost::~NodeHost() = default;
 
-void NodeHost::add(std::shared_ptr<const Sheet> sheet, canopen::NodeId node_id, const std::string& memory) {
+void NodeHost::add(canopen::NodeId node_id, const MakeNode& make) {
   Connected& added = *nodes_.emplace_back(std::make_unique<Connected>(*this, nodes_.size(), node_id));
-  added.node = make_dynamic_node(std::move(sheet), added, added.memory, memory);
+  added.node = make(added, added.memory);
 }
 
 void NodeHost::start() {
@@ -49,9 +48,10 @@ void NodeHost::start() {
   }
 }
 
-void NodeHost::run() {
-  while (!Interruption::noted()) {
-    const std::optional<canopen::Frame> frame = bus_.receive(idle_time());
+void NodeHost::run(const std::function<bool()>& turn, const std::function<canopen::Duration()>& pause) {
+  while (!Interruption::noted() && turn()) {
+    const std::optional<canopen::Frame> frame = bus_.receive(idle_time(pause()));
+    if (frame && on_frame) on_frame(*frame);
     for (const auto& connected : nodes_) {
       if (frame) connected->node->on_frame(*frame, bus_.now());
       connected->node->on_time(bus_.now());
@@ -72,10 +72,10 @@ void NodeHost::deliver() {
   }
 }
 
-canopen::Duration NodeHost::idle_time() const {
+canopen::Duration NodeHost::idle_time(canopen::Duration longest) const {
   if (!sent_.empty()) return canopen::Duration{0};
   const canopen::TimePoint now = bus_.now();
-  canopen::Duration wait = longest_wait;
+  canopen::Duration wait = longest;
   for (const auto& connected : nodes_) {
     const std::optional<canopen::TimePoint> due = connected->node->next_deadline();
     if (!due) continue;
