@@ -1,5 +1,6 @@
 #include "device/dynamic_node.hpp"
 
+#include <array>
 #include <canopen/host/file_storage.hpp>
 #include <canopen/host/memory_storage.hpp>
 #include <cstdint>
@@ -40,13 +41,14 @@ class NodeStorage {
   std::optional<canopen::FileStorage> file_;
 };
 
-class DynamicNode final : public canopen::SimulatedNode {
+class NodeOfSheet final : public DynamicNode {
  public:
-  DynamicNode(std::shared_ptr<const Sheet> sheet, canopen::SimulatedBus& bus, canopen::SimulatedMemory& memory,
-              const std::string& file)
+  NodeOfSheet(std::shared_ptr<const Sheet> sheet, canopen::SimulatedBus& bus, canopen::SimulatedMemory& memory,
+              const std::string& file, NodeWatch* watch)
       : sheet_{std::move(sheet)},
         storage_{memory.parameters, file},
-        node_{bus, memory.node_id(), canopen::stored_in(storage_), canopen::configured_by_lss(memory)} {
+        node_{bus, memory.node_id(), canopen::stored_in(storage_), canopen::configured_by_lss(memory),
+              WatchedBy{watch}} {
     node_.values().sheet = sheet_.get();
     domains_.reserve(sheet_->domains.size());
     for (const SheetDomain& domain : sheet_->domains) bind(domain);
@@ -77,6 +79,24 @@ class DynamicNode final : public canopen::SimulatedNode {
   void emergency_over(canopen::ErrorRegister bits) override { node_.emergency_over(bits); }
   [[nodiscard]] std::string composition() const override { return " composition=edsc"; }
 
+  [[nodiscard]] std::optional<std::vector<std::uint8_t>> get(std::uint16_t index, std::uint8_t sub_index) override {
+    const auto entries = node_.entries();
+    const canopen::entry::Word word = entries.find(index, sub_index);
+    if (word <= canopen::Dictionary::no_sub_index) return std::nullopt;
+    if (canopen::entry::is_domain(word)) {
+      const canopen::Domain domain = entries.domain(word);
+      return std::vector<std::uint8_t>(domain.data, domain.data + domain.size);
+    }
+    std::array<std::uint8_t, 8> scratch{};
+    const std::span<const std::uint8_t> bytes = entries.read(word, scratch);
+    return std::vector<std::uint8_t>(bytes.begin(), bytes.end());
+  }
+  void request(canopen::NmtCommand command, canopen::TimePoint now) override { node_.request(command, now); }
+  void on_bus_status(const canopen::BusStatus& status, canopen::TimePoint now) override {
+    node_.on_bus_status(status, now);
+  }
+  [[nodiscard]] canopen::NodeId node_id() const override { return node_.node_id(); }
+
  private:
   /// A node has to be served every half hour at least.
   static constexpr canopen::Duration longest_pause{1'000'000'000};
@@ -96,17 +116,17 @@ class DynamicNode final : public canopen::SimulatedNode {
   std::vector<std::vector<std::uint8_t>> domains_;
   NodeStorage storage_;
   canopen::Node<DynamicDevice, canopen::SimulatedBus, canopen::StoredIn<NodeStorage>,
-                canopen::ConfiguredByLss<canopen::SimulatedMemory>>
+                canopen::ConfiguredByLss<canopen::SimulatedMemory>, WatchedBy>
       node_;
   canopen::TimePoint serve_until_{};
 };
 
 }  // namespace
 
-std::unique_ptr<canopen::SimulatedNode> make_dynamic_node(std::shared_ptr<const Sheet> sheet,
-                                                          canopen::SimulatedBus& bus, canopen::SimulatedMemory& memory,
-                                                          const std::string& file) {
-  return std::make_unique<DynamicNode>(std::move(sheet), bus, memory, file);
+std::unique_ptr<DynamicNode> make_dynamic_node(std::shared_ptr<const Sheet> sheet, canopen::SimulatedBus& bus,
+                                               canopen::SimulatedMemory& memory, const std::string& file,
+                                               NodeWatch* watch) {
+  return std::make_unique<NodeOfSheet>(std::move(sheet), bus, memory, file, watch);
 }
 
 }  // namespace edsc

@@ -3,48 +3,44 @@
 #include <algorithm>
 #include <canopen/host/simulated_node.hpp>
 #include <optional>
-#include <utility>
 
-#include "device/dynamic_node.hpp"
 #include "online/interruption.hpp"
 
 namespace edsc {
 namespace {
 
-/// How often an interruption is checked, and a bus without room is tried again.
-constexpr canopen::Duration longest_wait{100'000}, try_again{1'000};
+/// How often a bus without room is tried again.
+constexpr canopen::Duration try_again{1'000};
 
 }  // namespace
 
 /// A node and its connection.
 struct NodeHost::Connected final : canopen::SimulatedBus {
-  Connected(NodeHost& of, std::size_t at, std::shared_ptr<const Sheet> of_node, canopen::NodeId node_id,
-            std::string of_memory)
-      : host{of}, place{at}, sheet{std::move(of_node)}, file{std::move(of_memory)}, memory{node_id} {}
+  Connected(NodeHost& of, std::size_t at, canopen::NodeId node_id) : host{of}, place{at}, memory{node_id} {}
 
   bool send(const canopen::Frame& frame) override {
     full = !host.bus_.send(frame);
     if (full) return false;
     host.sent_.push_back({place, frame});
+    if (host.on_frame) host.on_frame(frame);
     return true;
   }
 
   NodeHost& host;
   std::size_t place;
-  std::shared_ptr<const Sheet> sheet;
-  std::string file;
   canopen::SimulatedMemory memory;
-  std::unique_ptr<canopen::SimulatedNode> node;  ///< null: it is off
-  bool full = false;                             ///< the bus had no room for the last frame
+  std::unique_ptr<canopen::SimulatedNode> node;
+  bool is_on = false;
+  bool full = false;  ///< the bus had no room for the last frame
 };
 
 NodeHost::NodeHost(LiveBus& bus) : bus_{bus} {}
 NodeHost::~NodeHost() = default;
 
-std::size_t NodeHost::add(std::shared_ptr<const Sheet> sheet, canopen::NodeId node_id, const std::string& memory) {
-  const std::size_t place = nodes_.size();
-  nodes_.push_back(std::make_unique<Connected>(*this, place, std::move(sheet), node_id, memory));
-  return place;
+std::size_t NodeHost::add(canopen::NodeId node_id, const MakeNode& make) {
+  Connected& added = *nodes_.emplace_back(std::make_unique<Connected>(*this, nodes_.size(), node_id));
+  added.node = make(added, added.memory);
+  return added.place;
 }
 
 void NodeHost::start() {
@@ -53,20 +49,20 @@ void NodeHost::start() {
 
 void NodeHost::switch_on(std::size_t place) {
   Connected& connected = *nodes_[place];
-  connected.node = make_dynamic_node(connected.sheet, connected, connected.memory, connected.file);
+  connected.is_on = true;
   connected.full = false;
   connected.node->start(bus_.now());
   deliver();
 }
 
-void NodeHost::switch_off(std::size_t place) { nodes_[place]->node.reset(); }
+void NodeHost::switch_off(std::size_t place) { nodes_[place]->is_on = false; }
 
-void NodeHost::run(const std::function<void()>& each_turn) {
-  while (!Interruption::noted()) {
-    const std::optional<canopen::Frame> frame = bus_.receive(idle_time());
-    each_turn();
+void NodeHost::run(const std::function<bool()>& turn, const std::function<canopen::Duration()>& pause) {
+  while (!Interruption::noted() && turn()) {
+    const std::optional<canopen::Frame> frame = bus_.receive(idle_time(pause()));
+    if (frame && on_frame) on_frame(*frame);
     for (const auto& connected : nodes_) {
-      if (!connected->node) continue;
+      if (!connected->is_on) continue;
       if (frame) connected->node->on_frame(*frame, bus_.now());
       connected->node->on_time(bus_.now());
     }
@@ -81,17 +77,17 @@ void NodeHost::deliver() {
     const Sent sent = sent_.front();
     sent_.pop_front();
     for (const auto& connected : nodes_) {
-      if (connected->node && connected->place != sent.from) connected->node->on_frame(sent.frame, bus_.now());
+      if (connected->is_on && connected->place != sent.from) connected->node->on_frame(sent.frame, bus_.now());
     }
   }
 }
 
-canopen::Duration NodeHost::idle_time() const {
+canopen::Duration NodeHost::idle_time(canopen::Duration longest) const {
   if (!sent_.empty()) return canopen::Duration{0};
   const canopen::TimePoint now = bus_.now();
-  canopen::Duration wait = longest_wait;
+  canopen::Duration wait = longest;
   for (const auto& connected : nodes_) {
-    if (!connected->node) continue;
+    if (!connected->is_on) continue;
     const std::optional<canopen::TimePoint> due = connected->node->next_deadline();
     if (!due) continue;
     const canopen::Duration own = now < *due ? *due - now : canopen::Duration{0};

@@ -5,14 +5,13 @@
 #include <canopen/base/clock.hpp>
 #include <canopen/can/frame.hpp>
 #include <canopen/can/node_id.hpp>
+#include <canopen/host/simulated_node.hpp>
 #include <cstddef>
 #include <deque>
 #include <functional>
 #include <memory>
-#include <string>
 #include <vector>
 
-#include "device/sheet.hpp"
 #include "online/live_bus.hpp"
 
 namespace edsc {
@@ -25,18 +24,26 @@ class NodeHost {
   NodeHost& operator=(const NodeHost&) = delete;
   ~NodeHost();
 
-  /// Adds a node that is off, and returns its place. `memory`: the file of its stored values; empty: they are lost at
-  /// the end of the program.
-  std::size_t add(std::shared_ptr<const Sheet> sheet, canopen::NodeId node_id, const std::string& memory);
+  /// Makes a node, which sends through the bus and keeps its node-ID in the memory; both outlive it.
+  using MakeNode =
+      std::function<std::unique_ptr<canopen::SimulatedNode>(canopen::SimulatedBus&, canopen::SimulatedMemory&)>;
+
+  /// Adds a node that is off, and returns its place.
+  std::size_t add(canopen::NodeId node_id, const MakeNode& make);
 
   /// Switches all nodes on: they send their boot-up messages.
   void start();
   void switch_on(std::size_t place);
-  /// A node that is off neither sends nor receives. It keeps what it has stored.
+  /// A node that is off neither sends nor receives. It keeps what it has stored, and starts again when it is switched
+  /// on.
   void switch_off(std::size_t place);
 
-  /// Serves the nodes until there is an Interruption. `each_turn` is called at least every 100 ms. Throws BusLost.
-  void run(const std::function<void()>& each_turn = [] {});
+  /// Serves the nodes until there is an Interruption, or `turn` returns false, which is called after each frame, and at
+  /// least as often as `pause` returns. Throws BusLost.
+  void run(const std::function<bool()>& turn, const std::function<canopen::Duration()>& pause);
+
+  /// Called with each frame of the bus and of the nodes.
+  std::function<void(const canopen::Frame&)> on_frame;
 
  private:
   struct Connected;
@@ -47,8 +54,8 @@ class NodeHost {
 
   /// Passes the frames that nodes have sent to the other nodes.
   void deliver();
-  /// Returns how long no node has anything to do.
-  [[nodiscard]] canopen::Duration idle_time() const;
+  /// Returns how long no node has anything to do, `longest` at most.
+  [[nodiscard]] canopen::Duration idle_time(canopen::Duration longest) const;
 
   LiveBus& bus_;
   std::vector<std::unique_ptr<Connected>> nodes_;

@@ -1,7 +1,11 @@
 #include <fmt/format.h>
+#include <time.h>
 
 #include <algorithm>
 #include <canopen/lss/lss_protocol.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,11 +15,15 @@
 #include <vector>
 
 #include "commands/commands.hpp"
+#include "commands/node_commands.hpp"
+#include "device/behaving_node.hpp"
 #include "device/entry_text.hpp"
 #include "device/load_sheet.hpp"
 #include "device/node_host.hpp"
 #include "device/value_overlay.hpp"
 #include "load/load_device.hpp"
+#include "lookup/find_entry.hpp"
+#include "server/candump_line.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -34,7 +42,10 @@ constexpr const char* examples = R"(Examples:
   edsc node socketcan:vcan0 io.eds --node-id 10 --count 4     nodes 10, 11, 12 and 13
   edsc node socketcan:vcan0 --node 5=drive.eds --node 6=io.eds
   edsc node socketcan:vcan0 drive.eds --node-id 5 --set serial_number=1234 --set 1017h="500 ms"
-  edsc node socketcan:vcan0 drive.eds --node-id 5 --memory drive.mem     keep what a master stores)";
+  edsc node socketcan:vcan0 drive.eds --node-id 5 --memory drive.mem     keep what a master stores
+  edsc node socketcan:vcan0 drive.eds --node-id 5 --script drive.behaviour.json --start
+
+Commands on standard input set values, start generators and inject faults; "help" lists them.)";
 
 constexpr unsigned highest_node_id = 127;
 
@@ -47,6 +58,10 @@ struct Settings {
   std::string options;
   std::vector<std::string> values;
   std::string memory;
+  std::string script;
+  std::string log;
+  std::uint64_t seed = 0;
+  bool start = false;
   bool keep_going = false;
   bool quiet = false;
   ColorOption color;
@@ -56,6 +71,8 @@ struct Settings {
 struct File {
   std::unique_ptr<LoadedDevice> loaded;
   std::shared_ptr<const Sheet> sheet;
+  std::unique_ptr<EntryFinder> names;
+  BehaviourScript script;
 };
 
 struct PlannedNode {
@@ -105,7 +122,8 @@ File load_file(const Settings& settings, const std::string& path) {
   load.path = path;
   load.options_path = settings.options;
   load.keep_going = settings.keep_going;
-  File file{load_device(load, diagnostics), nullptr};
+  File file;
+  file.loaded = load_device(load, diagnostics);
   if (diagnostics.errors() > 0) print_findings(diagnostics, settings.color);
   if (!file.loaded->device || diagnostics.errors() > 0)
     throw Exit{file.loaded->unreadable ? exit_wrong_usage : exit_input_has_errors};
@@ -116,6 +134,13 @@ File load_file(const Settings& settings, const std::string& path) {
   }
   if (!made.sheet) throw Exit{exit_input_has_errors};
   file.sheet = std::move(made.sheet);
+  file.names = std::make_unique<EntryFinder>(file.loaded->named());
+  if (settings.script.empty()) return file;
+  std::string problem;
+  if (!load_behaviour(settings.script, *file.names, settings.color, file.script, problem)) {
+    if (!problem.empty()) fail(problem);
+    throw Exit{exit_input_has_errors};
+  }
   return file;
 }
 
@@ -174,19 +199,71 @@ void report_ready(const PlannedNode& node, const std::string& bus) {
   print_visibly(stdout, "{} \"{}\" on {}\n", id, node.file->loaded->device->product_name, bus);
 }
 
+/// Writes frames as a candump log, with the time of day.
+class FrameLog {
+ public:
+  FrameLog(const std::string& path, const std::string& bus) : interface_{interface_of(bus)} {
+    file_.reset(std::fopen(path.c_str(), "we"));
+    if (!file_) fail(fmt::format("{}: {}", printable(path), std::strerror(errno)));
+  }
+  void write(const canopen::Frame& frame) {
+    timespec time{};
+    ::clock_gettime(CLOCK_REALTIME, &time);
+    const socketcand::TimeStamp stamp{time.tv_sec, static_cast<std::int32_t>(time.tv_nsec / 1000)};
+    fmt::print(file_.get(), "{}\n", candump_line(frame, interface_, stamp));
+    std::fflush(file_.get());
+  }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::unique_ptr<std::FILE, Close> file_;
+  std::string interface_;
+};
+
+/// Reports what an action of a script could not do.
+void report_problem(unsigned node_id, const std::string& problem) {
+  print_to_stderr("edsc: node {}: {}\n", node_id, problem);
+}
+
+CommandedNode add_node(NodeHost& host, const PlannedNode& node, const Settings& settings) {
+  BehavingNode* added = nullptr;
+  host.add(canopen::NodeId{static_cast<std::uint8_t>(node.node_id)}, [&](canopen::SimulatedBus& port,
+                                                                         canopen::SimulatedMemory& memory) {
+    BehavingNodeSettings of_node{node.file->sheet, settings.memory, settings.seed + node.node_id, settings.start};
+    auto made = std::make_unique<BehavingNode>(std::move(of_node), port, memory);
+    added = made.get();
+    return made;
+  });
+  added->behaviour().report = [node_id = node.node_id](const std::string& problem) {
+    report_problem(node_id, problem);
+  };
+  added->behaviour().add(node.file->script);
+  return {added, node.file->names.get()};
+}
+
+/// How often standard input is read while it is open: without it, an idle node does not use the computer.
+constexpr canopen::Duration command_wait{20'000}, idle_wait{100'000};
+
 int run_node(const Settings& settings) {
   const Plan plan{settings};
   return with_bus(settings.bus, [&](LiveBus& bus) {
     NodeHost host{bus};
-    for (const PlannedNode& node : plan.nodes()) {
-      host.add(node.file->sheet, canopen::NodeId{static_cast<std::uint8_t>(node.node_id)}, settings.memory);
+    std::optional<FrameLog> log;
+    if (!settings.log.empty()) {
+      log.emplace(settings.log, settings.bus);
+      host.on_frame = [&log](const canopen::Frame& frame) { log->write(frame); };
     }
+    std::vector<CommandedNode> nodes;
+    for (const PlannedNode& node : plan.nodes()) nodes.push_back(add_node(host, node, settings));
+    NodeCommands commands{std::move(nodes), settings.color};
     host.start();
     if (!settings.quiet) {
       for (const PlannedNode& node : plan.nodes()) report_ready(node, settings.bus);
     }
     flush_output();
-    host.run();
+    host.run([&] { return commands.serve(); }, [&] { return commands.is_open() ? command_wait : idle_wait; });
     return exit_fine;
   });
 }
@@ -203,6 +280,10 @@ void add_node_options(Command command, int& exit_code) {
   add_options_option(command, settings.options);
   command.add_option("--set", settings.values).check(bad_value);
   command.add_option("--memory", settings.memory);
+  command.add_option("--script", settings.script);
+  command.add_option("--seed", settings.seed);
+  command.add_flag("--start", settings.start, "the nodes become Operational after each boot-up");
+  command.add_option("--log", settings.log);
   command.add_flag("--keep-going", settings.keep_going);
   command.add_flag("--quiet", settings.quiet);
   settings.color.add_to(command);

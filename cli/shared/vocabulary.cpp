@@ -101,6 +101,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--revision",       0,   "NUMBER",    number,     "revision number, 1018h:03"},
     {"--run",            0,   "COMMAND",   text,       "command line for the shell, run for each alarm"},
     {"--runtime",        0,   "DIR",       folder,     "include folder of the runtime (default: the folder of edsc)"},
+    {"--script",         0,   "FILE",      file,       "behaviour of the nodes (JSON), by convention NAME.behaviour.json"},
     {"--seed",           0,   "NUMBER",    number,     "seed of random choices; the same seed has the same result"},
     {"--segmented",      0,   "",          flag,       "do not use block transfer"},
     {"--serial",         0,   "NUMBER",    number,     "serial number, 1018h:04"},

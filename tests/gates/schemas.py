@@ -3,7 +3,7 @@
 
     schemas.py SOURCE_DIR
 
-A file belongs to a schema by its name (x.options.json, x.deviations.json) or by a member "$schema" that names a schema of
+A file belongs to a schema by its name (x.options.json, x.deviations.json, x.behaviour.json) or by a member "$schema" that names a schema of
 docs/schema by its $id or as a path. A file of docs/schema is a schema with an $id of its own. All other files are JSON.
 """
 
@@ -16,7 +16,7 @@ from pathlib import Path
 
 import jsonschema
 
-KINDS = ("options", "deviations")
+KINDS = ("options", "deviations", "behaviour")
 METASCHEMA = "https://json-schema.org/draft/2020-12/schema"
 ID = "urn:edsc:schema:"
 

@@ -32,8 +32,10 @@ int main(int argc, char** argv) {
   for (const std::string& note : made.notes) fmt::print(stderr, "{}\n", note);
   if (!made.sheet) return 2;
   the_sheet = std::move(made.sheet);
-  const canopen::SimulatedDevice device{"device", [](canopen::SimulatedBus& bus, canopen::SimulatedMemory& memory) {
-                                          return edsc::make_dynamic_node(the_sheet, bus, memory);
-                                        }};
+  const canopen::SimulatedDevice device{
+      "device",
+      [](canopen::SimulatedBus& bus, canopen::SimulatedMemory& memory) -> std::unique_ptr<canopen::SimulatedNode> {
+        return edsc::make_dynamic_node(the_sheet, bus, memory);
+      }};
   return canopen::simulate_devices(1, argv, {&device, 1});
 }

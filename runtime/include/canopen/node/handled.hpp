@@ -55,6 +55,9 @@ struct HandlesNothing {
   using BeforeWrite = ObjectList<>;  ///< objects, before a received value is stored
   using AfterWrite = ObjectList<>;   ///< the same, after it has been stored
   using Read = ObjectList<>;         ///< objects, before they are sent
+  /// Whether the handler itself has the functions `before_write(key, bytes)`, `after_write(key)` and
+  /// `before_read(key)`, for all objects; a device with a sheet only (od/sheet.hpp).
+  static constexpr bool takes_any_object = false;
   /// Whether the handler has the function of an event.
   template <class Event>
   static constexpr bool has_event_function = false;

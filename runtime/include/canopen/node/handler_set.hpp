@@ -47,6 +47,9 @@ class HandlerSet {
   constexpr explicit HandlerSet(std::tuple<Given...> parts)
       : HandlerSet{parts, std::index_sequence_for<Handlers...>{}} {}
 
+  /// Whether any handler is called for all objects.
+  static constexpr bool takes_any_object = (Handled<Handlers>::takes_any_object || ...);
+
   /// Whether the value of `Object` is checked before it is written, or used after it.
   template <DictionaryObject Object>
   static constexpr bool handles_write = (handler_detail::has_object<Object, typename Handled<Handlers>::BeforeWrite> ||
@@ -56,7 +59,8 @@ class HandlerSet {
                                            ...);
 
   /// Whether any handler is called after an object has been written, or before it is read.
-  static constexpr bool has_written_handlers = ((Handled<Handlers>::AfterWrite::size != 0) || ...);
+  static constexpr bool has_written_handlers = ((Handled<Handlers>::AfterWrite::size != 0) || ...) || takes_any_object;
+  /// Whether any handler supplies objects; one of all objects is called for SDO only.
   static constexpr bool has_read_handlers = ((Handled<Handlers>::Read::size != 0) || ...);
   /// Whether any handler is called when an object is read or written over the bus.
   static constexpr bool has_access_handlers =
@@ -64,7 +68,7 @@ class HandlerSet {
 
   /// Whether the object with this key has a handler that is called before it is written.
   [[nodiscard]] static constexpr bool handles([[maybe_unused]] std::uint32_t key) {
-    return (handler_detail::has_key(key, typename Handled<Handlers>::BeforeWrite{}) || ...);
+    return takes_any_object || (handler_detail::has_key(key, typename Handled<Handlers>::BeforeWrite{}) || ...);
   }
   /// The same for after or before.
   [[nodiscard]] static constexpr bool watches([[maybe_unused]] std::uint32_t key) {
@@ -88,6 +92,9 @@ class HandlerSet {
   AbortCode before_write(Node& node, std::uint32_t key, std::span<std::uint8_t> bytes) {
     AbortCode code = ok;
     for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
+      if constexpr (Handled<Handler>::takes_any_object) {
+        if (code == ok) code = handler.before_write(key, bytes);
+      }
       Handled<Handler>::BeforeWrite::for_each([&]<class Object>() {
         if (code != ok || key != object_key(Object::index, Object::sub_index)) return;
         AccessProbe<Device>::uses(Object::index, Object::sub_index);
@@ -112,6 +119,7 @@ class HandlerSet {
   template <class Store>
   void after_write(Node& node, std::uint32_t key, const Store& store) {
     for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
+      if constexpr (Handled<Handler>::takes_any_object) handler.after_write(key);
       Handled<Handler>::AfterWrite::for_each([&]<class Object>() {
         if (key != object_key(Object::index, Object::sub_index)) return;
         AccessProbe<Device>::uses(Object::index, Object::sub_index);
@@ -124,6 +132,9 @@ class HandlerSet {
   AbortCode before_read(Node& node, std::uint32_t key) {
     AbortCode code = ok;
     for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
+      if constexpr (Handled<Handler>::takes_any_object) {
+        if (code == ok) code = handler.before_read(key);
+      }
       Handled<Handler>::Read::for_each([&]<class Object>() {
         if (code != ok || key != object_key(Object::index, Object::sub_index)) return;
         AccessProbe<Device>::uses(Object::index, Object::sub_index);

@@ -1,0 +1,238 @@
+#include "device/node_faults.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <canopen/base/abort_code.hpp>
+#include <canopen/can/cob_id.hpp>
+#include <iterator>
+#include <utility>
+
+#include "text/printable.hpp"
+#include "text/suggestion.hpp"
+
+namespace edsc {
+namespace {
+
+// clang-format off
+constexpr NodeFaultRow fault_table[] = {
+    {FaultKind::silent,       "silent",       "",                        "sends nothing; still executes what it receives"},
+    {FaultKind::no_boot_up,   "no-boot-up",   "",                        "does not send its boot-up message"},
+    {FaultKind::no_heartbeat, "no-heartbeat", "",                        "does not send heartbeats or responses to node guarding"},
+    {FaultKind::no_sdo,       "no-sdo",       "[OBJECT]",                "does not respond to SDO requests, of this object or of all"},
+    {FaultKind::sdo_delay,    "sdo-delay",    "TIME",                    "sends SDO responses later by this time"},
+    {FaultKind::sdo_drop,     "sdo-drop",     "1/N",                     "does not send every Nth SDO response"},
+    {FaultKind::sdo_toggle,   "sdo-toggle",   "",                        "sends segments with the wrong toggle bit"},
+    {FaultKind::abort,        "abort",        "OBJECT CODE [read|write]", "aborts SDO transfers of this object with this code"},
+    {FaultKind::pdo_short,    "pdo-short",    "N BYTES",                 "sends TPDO N with this number of bytes at most"},
+    {FaultKind::no_pdo,       "no-pdo",       "N",                       "does not send TPDO N"},
+    {FaultKind::babbling,     "babbling",     "",                        "sends EMCY FF00h each millisecond"},
+    {FaultKind::stuck,        "stuck",        "OBJECT",                  "the value does not change any more"},
+    {FaultKind::twin,         "twin",         "",                        "another node has the same node-ID: each frame is sent twice"},
+    {FaultKind::lost_node_id, "lost-node-id", "",                        "restarts without node-ID, as an unconfigured LSS slave"},
+};
+// clang-format on
+
+constexpr std::uint64_t babbling_us = 1'000;
+constexpr std::uint32_t sdo_response_id = 0x580, sdo_request_id = 0x600, error_control_id = 0x700, emcy_id = 0x080;
+constexpr std::uint8_t toggle_bit = 0x10, command_mask = 0xE0;
+
+[[nodiscard]] bool has_id(const canopen::Frame& frame, std::uint32_t can_id) {
+  return !frame.extended && !frame.remote && frame.id == can_id;
+}
+
+/// An SDO request that begins a transfer.
+struct Initiate {
+  std::uint16_t index;
+  std::uint8_t sub_index;
+  bool is_read;
+};
+std::optional<Initiate> initiate_of(const canopen::Frame& frame) {
+  if (frame.size < 8) return std::nullopt;
+  const unsigned command = frame.data[0] & command_mask;
+  // Download, upload, block upload and block download; segments and the other steps of a block have other commands.
+  const bool is_download = command == 0x20 || (command == 0xC0 && (frame.data[0] & 1U) == 0);
+  const bool is_upload = command == 0x40 || (command == 0xA0 && (frame.data[0] & 3U) == 0);
+  if (!is_download && !is_upload) return std::nullopt;
+  return Initiate{static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8), frame.data[3], is_upload};
+}
+
+/// Whether the object of a fault, which may have none, is this entry.
+bool names_entry(const NodeFault& fault, std::uint16_t index, std::uint8_t sub_index) {
+  const CommandArguments& arguments = fault.arguments;
+  if (arguments.object == nullptr) return true;
+  return arguments.object->index == index && (arguments.entry == nullptr || arguments.entry->sub_index == sub_index);
+}
+
+bool aborts(const NodeFault& fault, const Initiate& request) {
+  const std::string& when = fault.arguments.word;
+  return fault.row->kind == FaultKind::abort && names_entry(fault, request.index, request.sub_index) &&
+         (when.empty() || (when == "read") == request.is_read);
+}
+
+/// An SDO response to a segment.
+bool is_segment_response(const canopen::Frame& frame) {
+  const unsigned command = frame.data[0] & command_mask;
+  return command == 0x00 || command == 0x20;
+}
+
+}  // namespace
+
+std::span<const NodeFaultRow> fault_rows() { return fault_table; }
+
+std::string read_fault(std::span<const std::string> words, EntryFinder& names, NodeFault& fault) {
+  if (words.empty()) return "the name of a fault is missing";
+  const auto* const row = std::ranges::find(fault_table, std::string_view{words[0]}, &NodeFaultRow::name);
+  if (row == std::end(fault_table)) {
+    std::vector<std::string_view> all;
+    for (const NodeFaultRow& one : fault_table) all.push_back(one.name);
+    return fmt::format("\"{}\" is not a fault{}", printable(words[0]), did_you_mean(words[0], all));
+  }
+  fault.row = row;
+  words = words.subspan(1);
+  if (words.size() >= 2 && words[words.size() - 2] == "for") {
+    fault.span_us = command_time(words.back());
+    if (!fault.span_us) return fmt::format("\"{}\" is not a duration", printable(words.back()));
+    words = words.first(words.size() - 2);
+  }
+  return read_arguments(row->arguments, words, names, fault.arguments);
+}
+
+NodeFaults::NodeFaults(Node node) : node_{std::move(node)} {}
+
+void NodeFaults::start(NodeFault fault, std::uint64_t now_us) {
+  std::erase_if(active_, [&](const Active& active) {
+    const CommandArguments &a = active.fault.arguments, &b = fault.arguments;
+    return active.fault.row == fault.row && a.object == b.object && a.entry == b.entry && a.number == b.number;
+  });
+  Active active{std::move(fault), std::nullopt, now_us};
+  if (active.fault.span_us) active.end_us = now_us + *active.fault.span_us;
+  if (active.fault.row->kind == FaultKind::twin) {
+    canopen::Frame boot_up{};
+    boot_up.id = error_control_id + node_.node_id();
+    boot_up.size = 1;
+    queue(boot_up, now_us);
+  }
+  active_.push_back(std::move(active));
+}
+
+void NodeFaults::clear() { active_.clear(); }
+
+void NodeFaults::on_time(std::uint64_t now_us) {
+  std::erase_if(active_, [&](const Active& active) { return active.end_us && *active.end_us <= now_us; });
+  for (Active& active : active_) {
+    if (active.fault.row->kind != FaultKind::babbling || active.next_us > now_us) continue;
+    canopen::Frame frame{};
+    frame.id = emcy_id + node_.node_id();
+    frame.size = 8;
+    frame.data = {0x00, 0xFF, 0x01};
+    queue(frame, now_us);
+    active.next_us = now_us + babbling_us;
+  }
+}
+
+std::optional<std::uint64_t> NodeFaults::next_us() const {
+  std::optional<std::uint64_t> next;
+  const auto consider = [&next](std::uint64_t time) { next = next ? std::min(*next, time) : time; };
+  for (const Active& active : active_) {
+    if (active.end_us) consider(*active.end_us);
+    if (active.fault.row->kind == FaultKind::babbling) consider(active.next_us);
+  }
+  if (!queue_.empty()) consider(queue_.front().due_us);
+  return next;
+}
+
+bool NodeFaults::has(FaultKind kind) const {
+  return std::ranges::any_of(active_, [kind](const Active& active) { return active.fault.row->kind == kind; });
+}
+
+bool NodeFaults::has(FaultKind kind, std::uint16_t index, std::uint8_t sub_index) const {
+  return std::ranges::any_of(active_, [&](const Active& active) {
+    return active.fault.row->kind == kind && names_entry(active.fault, index, sub_index);
+  });
+}
+
+std::string NodeFaults::text() const {
+  std::string text;
+  for (const Active& active : active_) text.append(text.empty() ? "" : ", ").append(active.fault.row->name);
+  return text;
+}
+
+bool NodeFaults::receive(const canopen::Frame& frame, std::uint64_t now_us) {
+  if (!has_id(frame, sdo_request_id + node_.node_id())) return true;
+  const std::optional<Initiate> request = initiate_of(frame);
+  for (const Active& active : active_) {
+    const NodeFault& fault = active.fault;
+    if (fault.row->kind == FaultKind::no_sdo) {
+      if (fault.arguments.object == nullptr) return false;
+      if (request && names_entry(fault, request->index, request->sub_index)) return false;
+    }
+    if (!request || !aborts(fault, *request)) continue;
+    canopen::Frame response{};
+    response.id = sdo_response_id + node_.node_id();
+    response.size = 8;
+    response.data = {0x80, frame.data[1], frame.data[2], frame.data[3]};
+    for (unsigned i = 0; i < 4; ++i) response.data[4 + i] = static_cast<std::uint8_t>(*fault.arguments.code >> (8 * i));
+    send(response, now_us);
+    return false;
+  }
+  return true;
+}
+
+bool NodeFaults::is_tpdo(const Active& active, const canopen::Frame& frame) const {
+  const std::optional<std::uint32_t> cob_id = node_.cob_id_of_tpdo(*active.fault.arguments.number);
+  return cob_id && canopen::can_id_of(*cob_id, frame.extended) == frame.id && !frame.remote;
+}
+
+bool NodeFaults::change(Active& active, canopen::Frame& frame, std::uint64_t& due_us) const {
+  const CommandArguments& arguments = active.fault.arguments;
+  const bool is_response = has_id(frame, sdo_response_id + node_.node_id());
+  const bool is_error_control = has_id(frame, error_control_id + node_.node_id());
+  switch (active.fault.row->kind) {
+    case FaultKind::silent: return false;
+    case FaultKind::no_boot_up: return !is_error_control || frame.data[0] != 0;
+    case FaultKind::no_heartbeat: return !is_error_control || frame.data[0] == 0;
+    case FaultKind::sdo_delay:
+      if (is_response) due_us += *arguments.time_us;
+      return true;
+    case FaultKind::sdo_drop: return !is_response || ++active.frames % *arguments.number != 0;
+    case FaultKind::sdo_toggle:
+      if (is_response && is_segment_response(frame)) frame.data[0] ^= toggle_bit;
+      return true;
+    case FaultKind::pdo_short:
+      if (is_tpdo(active, frame))
+        frame.size = static_cast<std::uint8_t>(std::min<unsigned>(frame.size, *arguments.count));
+      return true;
+    case FaultKind::no_pdo: return !is_tpdo(active, frame);
+    case FaultKind::no_sdo:
+    case FaultKind::abort:
+    case FaultKind::babbling:
+    case FaultKind::stuck:
+    case FaultKind::twin:
+    case FaultKind::lost_node_id: return true;
+  }
+  return true;
+}
+
+void NodeFaults::send(const canopen::Frame& frame, std::uint64_t now_us) {
+  canopen::Frame changed = frame;
+  std::uint64_t due_us = now_us;
+  for (Active& active : active_) {
+    if (!change(active, changed, due_us)) return;
+  }
+  queue(changed, due_us);
+  if (has(FaultKind::twin)) queue(changed, due_us);
+}
+
+void NodeFaults::queue(const canopen::Frame& frame, std::uint64_t due_us) {
+  const auto at = std::ranges::upper_bound(queue_, due_us, {}, &Queued::due_us);
+  queue_.insert(at, {frame, due_us});
+}
+
+const canopen::Frame* NodeFaults::first_due(std::uint64_t now_us) const {
+  return !queue_.empty() && queue_.front().due_us <= now_us ? &queue_.front().frame : nullptr;
+}
+
+void NodeFaults::sent() { queue_.erase(queue_.begin()); }
+
+}  // namespace edsc
