@@ -198,7 +198,7 @@ inline constexpr bool has_event<Event, ApplicationType, Node, function::Argument
 
 template <class Device, class Node, class Handler>
 requires is_application<typename ApplicationOf<Handler>::type>
-struct Handled<Device, Node, Handler> {
+struct Handled<Device, Node, Handler> : HandlesNothing {
   using Application = typename ApplicationOf<Handler>::type;
   using BeforeWrite = typename ObjectsWith<Device, Node, Application, function::Write>::type;
   using AfterWrite = typename ObjectsWith<Device, Node, Application, function::Written>::type;
