@@ -17,10 +17,10 @@ constexpr const char* automatic = "auto";
 
 }  // namespace
 
-Option add_log_options(Command command, LogSettings& settings) {
+Option add_log_input_options(Command command, LogSettings& settings, const std::string& more) {
   const Option log = command.add_option(
       "LOG", settings.log,
-      "log of candump, CANoe (asc), PCAN-View (trc), tcpdump or Wireshark; \"-\" for standard input");
+      "log of candump, CANoe (asc), PCAN-View (trc), tcpdump or Wireshark; \"-\" for standard input" + more);
   std::vector<std::string> formats{automatic};
   std::string help = "auto: by its content";
   for (const LogFormat* const row : log_formats) {
@@ -28,8 +28,13 @@ Option add_log_options(Command command, LogSettings& settings) {
     help += fmt::format("; {}: {}", row->name, row->description);
   }
   add_choice(command, "--log-format", settings.log_format, formats, help);
-  add_nodes_options(command, settings);
   command.add_option("--interface", settings.interface);
+  return log;
+}
+
+Option add_log_options(Command command, LogSettings& settings) {
+  const Option log = add_log_input_options(command, settings);
+  add_nodes_options(command, settings);
   settings.color.add_to(command);
   return log;
 }

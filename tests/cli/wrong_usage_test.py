@@ -54,6 +54,9 @@ BY_HAND = (
     "record slcan:/dev/no_such", "record simulated:./no_such@5", "completion fish", "help chek", "chek device.eds",
     "read {bus} 5 1018h --timeout 5 --tmeout", "check device.eds --force", "check -x device.eds", "--verson", "", "version 1",
     "check device.eds --strict=5", "read {bus} 5 no_such_name", "read {bus} 5 1018h --type u7", "save {bus} 5", "audit bus.log --silence x",
+    "replay bus.log", "replay bus.log can0", "replay no_such.log --node 5=device.eds", "replay bus.log {bus} --speed 0",
+    "replay bus.log {bus}", "replay bus.log --node 5=device.eds --ignore no_such_name", "discover no_such.log",
+    "discover bus.log --eds no_such.eds -o x.json", "discover bus.log --eds device.eds", "discover bus.log --for 1ms",
 )
 
 
