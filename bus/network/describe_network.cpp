@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 std::string quoted(const std::string& text) { return json_text(nlohmann::json(text)); }
 
 /// `Live device; vendor-ID 00ABCDEFh, product code 00001001h`
-std::string device_text(const FoundNode& node) {
-  if (!node.answers_sdo) return "does not answer over SDO";
+std::string device_text(const FoundNode& node, bool only_listened) {
+  if (!node.answers_sdo && !only_listened) return "does not answer over SDO";
   std::string text = node.name ? printable(*node.name) : std::string{};
   std::string_view separator = text.empty() ? "" : "; ";
   for (const IdentityNumber& number : identity_numbers) {
@@ -28,7 +28,7 @@ std::string device_text(const FoundNode& node) {
     text += fmt::format("{}{} {:08X}h", separator, number.name, *value);
     separator = ", ";
   }
-  return text;
+  return text.empty() ? "identity not known" : text;
 }
 
 std::string match_text(const FittingSheet& sheet, const Identity& identity) {
@@ -55,13 +55,16 @@ class NetworkText {
       if (i < last_node_) text += is_node_[i] ? "," : "";
       text += '\n';
     }
-    text += "  }\n}\n";
+    text += settings_.guessed.empty() ? "  }\n}\n" : "  },\n" + guessed_lines() + "}\n";
     return std::move(result_);
   }
 
  private:
   void add(const FoundNode& node) {
-    comment(fmt::format("node {}: {}", node.node_id, device_text(node)));
+    comment(fmt::format("node {}: {}", node.node_id, device_text(node, settings_.only_listened)));
+    if (const auto remark = settings_.remarks.find(node.node_id); remark != settings_.remarks.end()) {
+      comment(fmt::format("node {}: {}", node.node_id, remark->second));
+    }
     if (node.has_extra_responses) error(node, extra_responses_text(node.node_id));
     const auto fitting = fitting_sheets(sheets_, node.node_id, node.identity);
     if (fitting.empty()) {
@@ -90,7 +93,7 @@ class NetworkText {
 
   /// The closest file and its differences help to find out why.
   void add_without_file(const FoundNode& node) {
-    std::string why = node.answers_sdo ? "no file fits" : "does not answer over SDO";
+    std::string why = node.answers_sdo || settings_.only_listened ? "no file fits" : "does not answer over SDO";
     const SheetFile* closest = nullptr;
     for (const SheetFile& sheet : sheets_) {
       const unsigned count = count_differences(sheet.identity, node.identity);
@@ -103,6 +106,17 @@ class NetworkText {
     }
     error(node, why);
     comment(fmt::format("\"node_{}\": {{\"node_id\": {}, \"eds\": \"\"}}", node.node_id, node.node_id));
+  }
+
+  /// The member, indented.
+  [[nodiscard]] std::string guessed_lines() const {
+    std::string text =
+        "  // Guesses from the frames of the bus. Commands for networks ignore this member.\n  \"guessed\": ";
+    for (const char c : settings_.guessed) {
+      text += c;
+      if (c == '\n') text += "  ";
+    }
+    return text + '\n';
   }
 
   void error(const FoundNode& node, const std::string& text) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,8 +14,11 @@
 namespace edsc {
 
 struct DescribeSettings {
-  std::string folder;                ///< of the network file; the paths of the files are relative to it
-  std::optional<unsigned> bit_rate;  ///< kbit/s
+  std::string folder;                             ///< of the network file; the paths of the files are relative to it
+  std::optional<unsigned> bit_rate;               ///< kbit/s
+  bool only_listened = false;                     ///< the nodes were not asked: what others did not read is not known
+  std::map<std::uint8_t, std::string> remarks{};  ///< comments about nodes
+  std::string guessed{};                          ///< JSON value of the member "guessed"; empty: none
 };
 
 struct DescribedNetwork {

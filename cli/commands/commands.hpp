@@ -32,6 +32,8 @@ AddOptions add_accept_options;
 AddOptions add_bus_options;
 AddOptions add_node_options;
 AddOptions add_record_options;
+AddOptions add_replay_options;
+AddOptions add_discover_options;
 AddOptions add_decode_options;
 AddOptions add_plot_options;
 AddOptions add_audit_options;
@@ -83,6 +85,8 @@ inline constexpr CommandRow commands[] = {
     {"Bus", "bus", "virtual CAN buses on this machine, for socketcand clients", add_bus_options},
     {"Bus", "node", "run an EDS, DCF or XDD as a node of a bus", add_node_options},
     {"Logs", "record", "write the frames of a bus as a candump log", add_record_options},
+    {"Logs", "replay", "send the requests of a log to nodes again; report different responses", add_replay_options},
+    {"Logs", "discover", "describe an unknown bus by its frames, and write a network file", add_discover_options},
 #endif
     {"Logs", "decode", "decode the frames of a log", add_decode_options},
     {"Logs", "audit", "check a log against the EDS files of its nodes", add_audit_options},

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 
 #include "pdo/mapping_fault.hpp"
 #include "shared/default_scales.hpp"
@@ -70,15 +69,17 @@ void add_network(const std::string& path, const ColorOption& color, GivenNodes& 
   for (const NetworkNode& node : nodes.network->network.nodes) {
     nodes.labels.set_name(node.node_id, node.name);
     std::map<std::uint8_t, GivenNode>& known = node.has_file() ? nodes.devices : nodes.masters;
-    known.emplace(node.node_id, GivenNode{node.named(), node.loaded->options.inhibit_time_unit()});
+    known.emplace(node.node_id,
+                  GivenNode{node.named(), &node.loaded->options, node.loaded->options.inhibit_time_unit()});
   }
 }
 
-void add_node(const std::string& text, const ColorOption& color, std::set<std::uint8_t>& given, GivenNodes& nodes) {
+void add_node(const std::string& text, const ColorOption& color, GivenNodes& nodes) {
   NodeArgument argument = parse_node_argument(text, nodes.network.get());
   std::unique_ptr<LoadedDevice> loaded = argument.path.empty() ? nullptr : load_node(argument, color);
   const std::uint8_t node_id = *argument.node_id;
-  if (!given.insert(node_id).second) fail(fmt::format("--node {}: node {} is given twice", text, node_id));
+  if (!nodes.of_node_options.insert(node_id).second)
+    fail(fmt::format("--node {}: node {} is given twice", text, node_id));
   if (!loaded) {
     if (nodes.devices.contains(node_id)) return;
     fail(fmt::format("--node {}: the network file does not state an EDS of node {}", text, node_id));
@@ -87,7 +88,7 @@ void add_node(const std::string& text, const ColorOption& color, std::set<std::u
   if (commissioning && nodes.labels.name(node_id).empty()) nodes.labels.set_name(node_id, commissioning->node_name);
   nodes.devices.erase(node_id);
   nodes.masters.erase(node_id);
-  nodes.devices.emplace(node_id, GivenNode{loaded->named(), loaded->options.inhibit_time_unit()});
+  nodes.devices.emplace(node_id, GivenNode{loaded->named(), &loaded->options, loaded->options.inhibit_time_unit()});
   nodes.files.push_back(std::move(loaded));
 }
 
@@ -130,8 +131,7 @@ std::unique_ptr<LoadedNetwork> load_given_network(const std::string& path, const
 GivenNodes load_given_nodes(const NodesSettings& settings, const ColorOption& color) {
   GivenNodes nodes;
   add_network(network_or_default(settings.network), color, nodes);
-  std::set<std::uint8_t> given;
-  for (const std::string& text : settings.nodes) add_node(text, color, given, nodes);
+  for (const std::string& text : settings.nodes) add_node(text, color, nodes);
   for (const auto& [node_id, node] : nodes.devices) report_default_scales(node_id, node.named.device);
   return nodes;
 }

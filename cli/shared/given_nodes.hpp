@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,7 @@ void add_nodes_options(Command command, NodesSettings& settings);
 /// A device and its names. Those of a network file are as the network configures them.
 struct GivenNode {
   NamedDevice named;
+  const Options* options = nullptr;
   std::uint32_t inhibit_time_unit = 0;  ///< of its PDOs, in microseconds
 };
 
@@ -38,6 +40,7 @@ struct GivenNodes {
   std::unique_ptr<LoadedNetwork> network;            ///< null without a network file
   std::map<std::uint8_t, GivenNode> devices;         ///< by node-ID
   std::map<std::uint8_t, GivenNode> masters;         ///< those without a file: the network generates their EDS
+  std::set<std::uint8_t> of_node_options;            ///< the nodes that --node names
   NodeLabels labels;
 
   [[nodiscard]] std::vector<KnownNode> known() const;

@@ -15,7 +15,9 @@ namespace {
 
 constexpr const char* automatic = "auto";
 
-void add_log_format(Command command, std::string& log_format) {
+}  // namespace
+
+void add_log_format_options(Command command, std::string& log_format, std::string& interface) {
   std::vector<std::string> formats{automatic};
   std::string help = "auto: by its content";
   for (const LogFormat* const row : log_formats) {
@@ -23,24 +25,22 @@ void add_log_format(Command command, std::string& log_format) {
     help += fmt::format("; {}: {}", row->name, row->description);
   }
   add_choice(command, "--log-format", log_format, formats, help);
+  command.add_option("--interface", interface);
 }
 
-}  // namespace
-
-Option add_log_options(Command command, LogSettings& settings) {
+Option add_log_input_options(Command command, LogSettings& settings, const std::string& more) {
   const Option log = command.add_option(
       "LOG", settings.log,
-      "log of candump, CANoe (asc), PCAN-View (trc), tcpdump or Wireshark; \"-\" for standard input");
-  add_log_format(command, settings.log_format);
-  add_nodes_options(command, settings);
-  command.add_option("--interface", settings.interface);
-  settings.color.add_to(command);
+      "log of candump, CANoe (asc), PCAN-View (trc), tcpdump or Wireshark; \"-\" for standard input" + more);
+  add_log_format_options(command, settings.log_format, settings.interface);
   return log;
 }
 
-void add_log_format_options(Command command, std::string& log_format, std::string& interface) {
-  add_log_format(command, log_format);
-  command.add_option("--interface", interface);
+Option add_log_options(Command command, LogSettings& settings) {
+  const Option log = add_log_input_options(command, settings);
+  add_nodes_options(command, settings);
+  settings.color.add_to(command);
+  return log;
 }
 
 std::function<void()> read_log(const LogSettings& settings, const std::function<void(LogLine&)>& use,

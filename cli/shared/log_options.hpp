@@ -21,7 +21,10 @@ struct LogSettings : NodesSettings {
   [[nodiscard]] std::string log_name() const { return log == "-" ? "<stdin>" : log; }
 };
 
-/// LOG, --log-format, --node, --network, --interface, --color.
+/// LOG, --log-format, --interface.
+Option add_log_input_options(Command command, LogSettings& settings, const std::string& more = "");
+
+/// The same, and --node, --network, --color.
 Option add_log_options(Command command, LogSettings& settings);
 
 /// --log-format, --interface.

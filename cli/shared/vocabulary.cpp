@@ -15,6 +15,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--access-types",   0,   "WORD",      text,       "how the file writes access types"},
     {"--against",        0,   "FILE",      file,       "older version to compare with: a file, or git:REF"},
     {"--all",            0,   "",          flag,       "all entries, not only those that differ or that are named"},
+    {"--all-differences", 0, "",         flag,       "show all differences, not only the first one"},
     {"--all-findings",   0,   "",          flag,       "list the findings that follow from others too, and all places of each cause"},
     {"--allow",          0,   "NODE.OBJECT", text,     "entry that the application of the master writes, such as axis1.6040h"},
     {"--allow-new",      0,   "",          flag,       "accept a file that the older version does not have"},
@@ -53,6 +54,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--format",         0,   "FORMAT",    word,       "format of the output"},
     {"--html",           0,   "FILE",      file,       "write the report as one HTML file, which a browser prints as PDF"},
     {"--id",             0,   "CAN-ID",    text,       "CAN-ID of the frame, such as 81h; above 7FFh an extended one"},
+    {"--ignore",         0,   "OBJECT",    object,     "object or entry whose SDO transfers are not compared"},
     {"--in-place",       'i', "",          flag,       "write each file itself"},
     {"--interface",      0,   "NAME",      text,       "frames of this interface or channel of the log only, such as can0"},
     {"--json",           0,   "FILE",      file,       "write the report as JSON"},
@@ -89,6 +91,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--output",         'o', "PATH",      path,       "file or folder to write"},
     {"--outputs",        0,   "",          flag,       "send RPDOs and SYNC: outputs may move"},
     {"--overflow",       0,   "NUMBER",    number,     "send the counter of SYNC, from 1 to this number, as in 1019h"},
+    {"--pdos",           0,   "",          flag,       "also compare the contents of TPDOs"},
     {"--place",          0,   "TEXT",      text,       "where the test is done, for the report"},
     {"--product",        0,   "NUMBER",    number,     "product code, 1018h:02"},
     {"--profile",        0,   "FILE",      file,       "profile database in the syntax of an EDS: object codes, data types and access types"},
@@ -107,6 +110,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--serial",         0,   "NUMBER",    number,     "serial number, 1018h:04"},
     {"--silence",        0,   "RULE",      rule,       "rule, or alarm, not to report"},
     {"--skip",           0,   "NAME",      text,       "node to ignore"},
+    {"--speed",          0,   "PERCENT",   number,     "speed of the replay, in percent of the speed of the log"},
     {"--start",          0,   "",          flag,       "start the node after success"},
     {"--static-mapping", 0,   "",          flag,       "no PDO can be mapped over the bus, for smaller firmware"},
     {"--step",           0,   "DURATION",  duration,   "time of each step of Fastscan; more on a slow bus"},
@@ -138,7 +142,7 @@ constexpr CommandOptionRow rows_of_options[] = {
 constexpr ArgumentRow rows_of_arguments[] = {
     {"BASE", file},     {"BUS", bus},      {"COMMAND", command_words}, {"FILE", path},
     {"KBIT", number},   {"LOG", file},     {"NAME", text},             {"NODE", node},
-    {"NUMBER", number}, {"OBJECT", object}, {"SOURCE", path},
+    {"NUMBER", number}, {"OBJECT", object}, {"SOURCE", path}, {"TARGET", bus},
 };
 
 constexpr OldOptionRow rows_of_old_options[] = {

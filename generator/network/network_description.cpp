@@ -60,7 +60,8 @@ class NetworkReader {
       error(root, "a network file is a JSON object");
       return network;
     }
-    read_members(root, network, network_members, {"$schema", "sync", "assume", "nodes", "signals"});
+    read_members(root, network, network_members, {"$schema", "sync", "assume", "nodes", "signals", "guessed"});
+    object_at(root, "guessed");  // of edsc discover, for people
     if (const Json* const sync = object_at(root, "sync")) {
       read_members(*sync, network.sync, sync_members, {});
     }

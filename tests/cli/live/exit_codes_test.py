@@ -50,6 +50,8 @@ MORE = {
     "format": ("format broken.ini -o none.eds", FAILED),
     "decode": ("decode good.log", FINE),
     "audit": ("audit good.log --node 5=device.eds", FINE),
+    "replay": ("replay good.log --node 5=device.eds --ignore 1017h", FINE),
+    "discover": ("discover good.log", FINE),
     "plot": ("plot good.log 1017h --node 5=device.eds -o plot.svg", FINE),
 }
 # A device in LSS configuration state is needed; lss_test.py has it.
@@ -134,7 +136,7 @@ class ExitCodes(standard_streams_test.PreparedFiles):
             arguments = [one["names"][0] for one in command["arguments"]]
             if not {"FILE", "LOG", "BASE"} & set(arguments) or name in ("completion", "network generate"):
                 continue
-            value = {"BUS": NO_BUS, "NODE": "5", "FILE": "no_such.eds", "LOG": "no_such.log", "BASE": "no_such.eds", "OBJECT": "1017h"}
+            value = {"BUS": NO_BUS, "NODE": "5", "FILE": "no_such.eds", "LOG": "no_such.log", "BASE": "no_such.eds", "OBJECT": "1017h", "TARGET": NO_BUS}
             given = [value[one] for one in arguments]
             if name == "diff":
                 given = ["no_such.eds", "device.eds"]

@@ -56,6 +56,8 @@ ROWS = {
     "accept": ("accept @ 5 device.eds --only 2.1 --json % --timeout 60s",),
     "decode": ("decode can0.log --node 5=device.eds --summary --format json",),
     "audit": ("audit can0.log --node 5=device.eds --format json", "audit --list-rules --format json"),
+    "replay": ("replay can0.log --node 5=device.eds --all-differences --format json",),
+    "discover": ("discover can0.log --format json",),
     "completion": ("completion json",),
 }
 # Without a device in LSS configuration state they write no JSON; lss_test.py has such devices.

@@ -94,6 +94,8 @@ ROWS = (
     Row("decode", ("bus.log", "--node", "5=device.eds"), FAILED, warns=True),
     Row("decode", ("bus.log", "--node", "5=device.eds", "--format", "csv"), FAILED, warns=True),
     Row("audit", ("bus.log", "--node", "5=device.eds"), FAILED, warns=True),
+    Row("replay", ("bus.log", "--node", "5=device.eds"), FAILED, warns=True),
+    Row("discover", ("bus.log", "-o", "found.json"), FAILED, files=("found.json",), warns=True),
     Row("plot", ("bus.log", "1017h", "--node", "5=device.eds"), FAILED, warns=True),
 )
 ENDLESS = {"bus", "node"}  # until SIGINT

@@ -38,7 +38,9 @@ def schema_of(members: list[dict]) -> dict:
               "sync": object_of(members, "sync", "SYNC"),
               "assume": object_of(members, "assume", "intervals of frames whose rate nothing limits"),
               "nodes": nodes,
-              "signals": {"description": "signals, which edsc assigns to PDOs", "type": "array", "items": signal}}
+              "signals": {"description": "signals, which edsc assigns to PDOs", "type": "array", "items": signal},
+              "guessed": {"description": "what edsc discover guesses about the bus, for people; the other commands ignore it",
+                          "type": "object"}}
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "urn:edsc:schema:network",
             "title": "edsc network file: the nodes of a CANopen network and their signals", "type": "object",
             "additionalProperties": False, "required": ["bit_rate", "nodes"],
