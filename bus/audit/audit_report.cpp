@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "audit/cycle_report.hpp"
 #include "backend/render.hpp"
@@ -16,6 +21,50 @@ namespace edsc::audit {
 namespace {
 
 using json = nlohmann::ordered_json;
+
+/// The findings in their order, each with the one from which it follows.
+struct Grouped {
+  explicit Grouped(const Report& report)
+      : findings{report.findings->in_order()}, causes{report.incidents->causes_of(findings)} {}
+
+  [[nodiscard]] std::size_t count_causes(Severity severity) const {
+    std::size_t count = 0;
+    for (std::size_t at = 0; at < findings.size(); ++at) {
+      if (!causes[at] && findings[at]->subject.rule.row().severity == severity) ++count;
+    }
+    return count;
+  }
+  [[nodiscard]] std::size_t count_following() const {
+    return static_cast<std::size_t>(std::ranges::count_if(causes, [](const auto& cause) { return cause.has_value(); }));
+  }
+  /// The places of the findings that follow from this one.
+  [[nodiscard]] std::vector<std::size_t> following(std::size_t cause) const {
+    std::vector<std::size_t> places;
+    for (std::size_t at = 0; at < causes.size(); ++at) {
+      if (causes[at] == cause) places.push_back(at);
+    }
+    return places;
+  }
+
+  std::vector<const Finding*> findings;
+  std::vector<std::optional<std::size_t>> causes;
+};
+
+/// `3 findings follow from this: heartbeat-late (2), sdo-timeout`; empty without one.
+std::string following_text(const Grouped& grouped, std::size_t cause) {
+  const std::vector<std::size_t> places = grouped.following(cause);
+  if (places.empty()) return {};
+  std::map<std::string_view, std::size_t> rules;
+  for (const std::size_t at : places) ++rules[grouped.findings[at]->subject.rule.text()];
+  std::string text = places.size() == 1 ? "1 finding follows" : fmt::format("{} findings follow", places.size());
+  text += " from this: ";
+  bool is_first = true;
+  for (const auto& [rule, count] : rules) {
+    text += fmt::format("{}{}", std::exchange(is_first, false) ? "" : ", ", rule);
+    if (count > 1) text += fmt::format(" ({})", count);
+  }
+  return text;
+}
 
 /// `1.234567 s`
 std::string time_text(const Moment& moment) {
@@ -82,11 +131,15 @@ std::string totals_text(const Report& report) {
 
 std::string verdict_text(const Report& report) {
   const Findings& findings = *report.findings;
-  const std::size_t listed = findings.in_order().size();
-  if (listed == 0) return "no findings";
-  std::string text = fmt::format("{}, {}, {}", counted(findings.count(Severity::error), "error"),
-                                 counted(findings.count(Severity::warning), "warning"),
-                                 counted(findings.count(Severity::note), "note"));
+  const Grouped grouped{report};
+  if (grouped.findings.empty()) return "no findings";
+  std::string text = fmt::format("{}, {}, {}", counted(grouped.count_causes(Severity::error), "error"),
+                                 counted(grouped.count_causes(Severity::warning), "warning"),
+                                 counted(grouped.count_causes(Severity::note), "note"));
+  if (const std::size_t following = grouped.count_following(); following > 0) {
+    text += fmt::format("; {} from these",
+                        following == 1 ? "1 finding follows" : fmt::format("{} findings follow", following));
+  }
   if (findings.not_listed() > 0) text += fmt::format(", {} not listed", counted(findings.not_listed(), "occurrence"));
   return text;
 }
@@ -146,17 +199,32 @@ bool Report::is_clean() const {
   return findings->count(Severity::error) == 0 && findings->count(Severity::warning) == 0;
 }
 
+namespace {
+
+std::string finding_text(const Finding& finding, const Report& report, bool color) {
+  const Rule& rule = finding.subject.rule.row();
+  const std::string_view begin = color ? color_of(rule.severity) : std::string_view{};
+  std::string text =
+      fmt::format("{}:{}: {}{}:{} {}: {} [{}]\n    expected {}; seen: {}", printable(report.log), finding.first.line,
+                  begin, to_string(rule.severity), color ? "\033[0m" : "", printable(subject_text(finding, report)),
+                  rule.title, rule.id, printable(finding.expected), printable(finding.seen));
+  if (const std::string occurrence = occurrence_text(finding); !occurrence.empty()) text += "; " + occurrence;
+  return text + '\n';
+}
+
+}  // namespace
+
 std::string text_report(const Report& report, bool color) {
   std::string text;
-  for (const Finding* const finding : report.findings->in_order()) {
-    const Rule& rule = finding->subject.rule.row();
-    const std::string_view begin = color ? color_of(rule.severity) : std::string_view{};
-    text +=
-        fmt::format("{}:{}: {}{}:{} {}: {} [{}]\n    expected {}; seen: {}", printable(report.log), finding->first.line,
-                    begin, to_string(rule.severity), color ? "\033[0m" : "", printable(subject_text(*finding, report)),
-                    rule.title, rule.id, printable(finding->expected), printable(finding->seen));
-    if (const std::string occurrence = occurrence_text(*finding); !occurrence.empty()) text += "; " + occurrence;
-    text += '\n';
+  const Grouped grouped{report};
+  for (std::size_t at = 0; at < grouped.findings.size(); ++at) {
+    if (grouped.causes[at]) continue;
+    text += finding_text(*grouped.findings[at], report, color);
+    const std::string following = following_text(grouped, at);
+    if (following.empty()) continue;
+    text += fmt::format("    {}{}\n", following, report.shows_all ? "" : "; --all-findings lists them");
+    if (!report.shows_all) continue;
+    for (const std::size_t one : grouped.following(at)) text += finding_text(*grouped.findings[one], report, color);
   }
   for (const std::string& provoked : provoked_texts(*report.findings)) {
     text += fmt::format("{}: provoked {}\n", printable(report.log), provoked);
@@ -168,7 +236,11 @@ std::string text_report(const Report& report, bool color) {
 
 std::string json_report(const Report& report) {
   json findings = json::array();
-  for (const Finding* const finding : report.findings->in_order()) findings.push_back(finding_object(*finding, report));
+  const Grouped grouped{report};
+  for (std::size_t at = 0; at < grouped.findings.size(); ++at) {
+    findings.push_back(finding_object(*grouped.findings[at], report));
+    findings.back()["follows_from"] = grouped.causes[at] ? json(*grouped.causes[at]) : json(nullptr);
+  }
   json provoked = json::array();
   for (const Provoked& one : report.findings->provoked()) {
     provoked.push_back({{"case", one.by->id.empty() ? json(nullptr) : json(printable(one.by->id))},
@@ -201,8 +273,12 @@ std::string json_report(const Report& report) {
 
 std::string html_report(const Report& report) {
   json findings = json::array();
-  for (const Finding* const finding : report.findings->in_order()) {
+  const Grouped grouped{report};
+  for (std::size_t at = 0; at < grouped.findings.size(); ++at) {
+    if (grouped.causes[at] && !report.shows_all) continue;
+    const Finding* const finding = grouped.findings[at];
     const Rule& rule = finding->subject.rule.row();
+    const std::string following = following_text(grouped, at);
     findings.push_back({{"severity", to_string(rule.severity)},
                         {"subject", subject_text(*finding, report)},
                         {"meaning", rule.title},
@@ -211,6 +287,9 @@ std::string html_report(const Report& report) {
                         {"source", rule.source},
                         {"expected", finding->expected},
                         {"seen", finding->seen},
+                        {"follows", grouped.causes[at].has_value()},
+                        {"has_following", !following.empty()},
+                        {"following", following},
                         {"count", finding->count},
                         {"line", finding->first.line},
                         {"time", time_text(finding->first)}});

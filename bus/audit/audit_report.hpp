@@ -16,8 +16,10 @@ struct Report {
   const Decoder* decoder = nullptr;
   const NodeLabels* labels = nullptr;
   const Findings* findings = nullptr;
+  const Incidents* incidents = nullptr;
   const CycleTimes* cycle_times = nullptr;
   bool shows_cycles = false;  ///< in text
+  bool shows_all = false;     ///< in text and HTML: also the findings that follow from others
 
   /// Whether no finding is an error or a warning.
   [[nodiscard]] bool is_clean() const;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "audit/findings.hpp"
+#include "audit/incidents.hpp"
 #include "audit/node_settings.hpp"
 #include "decode/decoder.hpp"
 #include "decode/message.hpp"
@@ -81,6 +82,7 @@ struct AuditState {
 
   Limits limits;
   Findings findings;
+  Incidents incidents;
   std::array<NodeState, node_ids> nodes;
   std::vector<std::uint8_t> known;  ///< the node-IDs with an EDS
   std::int64_t times_since = 0;     ///< since when the times of the log are in order

@@ -15,6 +15,10 @@ Auditor::Auditor(const Decoder& decoder, const Limits& limits)
     node.settings = settings_of(*node.model);
     audit_.known.push_back(static_cast<std::uint8_t>(id));
   }
+  if (!audit_.known.empty()) return;
+  // Without an EDS, nobody knows which CAN-IDs and nodes are right.
+  silence(AuditRule{"can-id-unknown"});
+  silence(AuditRule{"node-unknown"});
 }
 
 Moment Auditor::moment_of(const LogLine& line) {
@@ -80,6 +84,7 @@ void Auditor::see(const LogLine& line, const Message& message) {
   ++frames_;
   check_interface(line);
   const SeenMessage seen{line.frame, message, now_};
+  incident_.see(seen, audit_);
   bus_.see(seen, audit_);
   heartbeat_.see(seen, audit_);
   guarding_.see(seen, audit_);
@@ -96,6 +101,7 @@ void Auditor::see(const LogLine& line, const Message& message) {
 }
 
 void Auditor::finish() {
+  incident_.finish(now_, audit_);
   nmt_.finish(now_, audit_);
   heartbeat_.finish(now_, audit_);
   guarding_.finish(now_, audit_);

@@ -12,6 +12,7 @@
 #include "audit/checks/emergency_check.hpp"
 #include "audit/checks/guarding_check.hpp"
 #include "audit/checks/heartbeat_check.hpp"
+#include "audit/checks/incident_check.hpp"
 #include "audit/checks/lss_check.hpp"
 #include "audit/checks/nmt_check.hpp"
 #include "audit/checks/pdo_check.hpp"
@@ -54,6 +55,7 @@ class Auditor {
   void finish();
 
   [[nodiscard]] const Findings& findings() const { return audit_.findings; }
+  [[nodiscard]] const Incidents& incidents() const { return audit_.incidents; }
   [[nodiscard]] const CycleTimes& cycle_times() const { return cycle_times_; }
   /// After `finish()`.
   [[nodiscard]] Totals totals() const;
@@ -66,6 +68,7 @@ class Auditor {
   void read_settings(const Message& message);
 
   AuditState audit_;
+  IncidentCheck incident_;
   NmtCheck nmt_;
   HeartbeatCheck heartbeat_;
   GuardingCheck guarding_;

@@ -15,6 +15,7 @@ Finding* Findings::count(const Subject& subject, const Moment& moment, std::int6
   Finding& finding =
       found != findings_.end() ? found->second : findings_.emplace(subject, Finding{subject}).first->second;
   const bool is_first = finding.count++ == 0;
+  if (finding.occurrences.size() < Finding::max_occurrences) finding.occurrences.push_back({moment.us, excess});
   if (!is_first && excess <= finding.excess) return nullptr;
   if (is_first) finding.first = moment;
   finding.worst = moment;

@@ -34,12 +34,22 @@ struct Subject {
   friend auto operator<=>(const Subject&, const Subject&) = default;
 };
 
+/// When a finding occurred.
+struct Occurrence {
+  std::int64_t us = 0;
+  std::int64_t excess = 0;
+};
+
 struct Finding {
+  /// Maximum number of occurrences that are known one by one.
+  static constexpr std::size_t max_occurrences = 512;
+
   Subject subject;
   Moment first = {}, worst = {};
   std::size_t count = 0;
   std::int64_t excess = 0;
   std::string expected = {}, seen = {};  ///< of the worst occurrence
+  std::vector<Occurrence> occurrences = {};
 };
 
 class Findings {

@@ -21,6 +21,7 @@ namespace {
 
 constexpr const char* examples = R"(Examples:
   edsc audit can0.log --node 5=drive.eds --node 6=axis2.dcf       exit code 1 if there are errors or warnings
+  edsc audit can0.log                                             without an EDS: SDO, NMT, LSS, lost nodes, gaps
   edsc audit trip.asc --node axis1.dcf --bit-rate 500             also the load of the bus
   edsc audit can0.log --node axis1.dcf --cycles                   also cycle times and jitter
   edsc audit capture.pcapng --node axis1.dcf --format html -o audit.html
@@ -39,6 +40,7 @@ struct Settings : LogSettings {
   std::string format = "text";
   std::string output;
   bool cycles = false;
+  bool all_findings = false;
   bool list_rules = false;
 
   void resolve() {
@@ -82,9 +84,6 @@ std::string report_text(const audit::Report& report, const Settings& settings) {
 int audit_log(const Settings& given) {
   if (given.list_rules) return list_rules(given);
   Settings settings = given;
-  if (!settings.describe_nodes()) {
-    fail("--node ID=FILE or --network FILE is missing; the EDS states how the node must behave");
-  }
   settings.limits.sdo_timeout_us = std::int64_t{settings.timeout_ms} * 1000;
   settings.limits.bit_rate = settings.bit_rate_kbit * 1000;
   const GivenNodes nodes = load_given_nodes(settings, settings.color);
@@ -119,8 +118,9 @@ int audit_log(const Settings& given) {
     fail_if_unreadable();
     fail(settings.log_name() + ": the log has no frames", exit_input_has_errors);
   }
-  const audit::Report report{settings.log_name(), auditor.totals(),    settings.limits,        &decoder.decoder(),
-                             &nodes.labels,       &auditor.findings(), &auditor.cycle_times(), settings.cycles};
+  const audit::Report report{settings.log_name(), auditor.totals(),     settings.limits,      &decoder.decoder(),
+                             &nodes.labels,       &auditor.findings(),  &auditor.incidents(), &auditor.cycle_times(),
+                             settings.cycles,     settings.all_findings};
   write_output(settings.output, report_text(report, settings),
                settings.log == "-" ? std::vector<std::string>{} : std::vector{settings.log});
   fail_if_unreadable();
@@ -142,6 +142,7 @@ void add_audit_options(Command command, int& exit_code) {
   add_choice(command, "--format", settings.format, {"text", "json", "html"});
   command.add_option("--output", settings.output, "default: standard output");
   command.add_flag("--cycles", settings.cycles, "JSON and HTML always have them");
+  command.add_flag("--all-findings", settings.all_findings, "JSON always has them");
   command.add_flag("--list-rules", settings.list_rules);
 }
 

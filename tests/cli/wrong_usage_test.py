@@ -43,7 +43,7 @@ BY_HAND = (
     "conform {bus} 5", "conform {bus} axis1", "conform --level all", "conform {bus} 5 no_such.eds",
     "conform {bus} 5 device.eds --deviations no_such.json", "accept {bus} 5 folder", "decode no_such.log", "decode folder",
     "decode bus.log --node axis1", "decode bus.log --node 5", "decode bus.log --filter nod=5", "decode bus.log --network no_such.json",
-    "audit bus.log", "audit bus.log --node 5=device.eds --master 0", "plot bus.log", "plot bus.log 1017h", "check no_such.eds", "check",
+    "audit bus.log --node 5=device.eds --master 0", "plot bus.log", "plot bus.log 1017h", "check no_such.eds", "check",
     "check empty_folder", "check device.eds --node-id 0", "check device.eds --options no_such.json", "dump folder", "dump no_such.eds",
     "format device.eds other.eds -o x.eds", "format device.eds --check --in-place", "format device.eds --dcf", "generate device.eds",
     "generate device.eds -o file.txt", "generate device.eds -o out --templates no_such", "generate device.eds -o out --name 1x",

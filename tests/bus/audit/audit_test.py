@@ -29,6 +29,23 @@ def silent_supply(log: list[Frame]) -> list[Frame]:
     return without(log, 0x706, 1550, 2100)
 
 
+def lost(log: list[Frame], node: int, until_ms: float = END_MS) -> list[Frame]:
+    """Without the frames that the node sends, from 1200 ms on."""
+    sent = {function + node for function in (0x080, 0x180, 0x280, 0x380, 0x580, 0x700)}
+    return [one for one in log if one.can_id not in sent or one.remote or not 1200 < one.ms < until_ms]
+
+
+def given_up(ms: float, index: int) -> list[Frame]:
+    """A client that aborts a read of node 5 after 20 ms; the response follows after 30 ms."""
+    entry = index.to_bytes(2, "little").hex() + "00"
+    return [Frame(ms, 0x605, data(f"40{entry}00000000")), Frame(ms + 20, 0x605, data(f"80{entry}00000405")),
+            Frame(ms + 30, 0x585, data(f"43{entry}00000000"))]
+
+
+# Others follow from them.
+INCIDENTS = {"node-lost", "sdo-gives-up", "log-gap"}
+
+
 BROKEN = {
     "pdo-event-timer": Broken(lambda log: without(log, 0x185, 1200), node_id=5),
     "pdo-inhibit-time": Broken(add(Frame(1207, 0x185, bytes(2))), node_id=5),
@@ -79,6 +96,9 @@ BROKEN = {
     "can-id-senders": Broken(supply=supply(i1800s01="0x185", i1800s05="0")),
     "node-unknown": Broken(add(Frame(1200, 0x709, b"\x05")), node_id=9),
     "node-silent": Broken(arguments=("--node", "7=axis.eds"), node_id=7),
+    "node-lost": Broken(lambda log: lost(log, 5), node_id=5),
+    "sdo-gives-up": Broken(add(*given_up(1200, 0x1000)), node_id=5),
+    "log-gap": Broken(lambda log: [one for one in log if not 1200 < one.ms < 1900]),
     "log-time": Broken(lambda log: [replace(one, ms=one.ms - 86_400_000) if one.ms > 1299 else one for one in log], sort=False),
     "log-interface": Broken(line="(1700000002.950000) can1 000#0107\n"),
 }
@@ -94,9 +114,10 @@ class Rules(Audits):
         for rule, case in BROKEN.items():
             with self.subTest(rule):
                 report = self.report(case)
-                self.assertEqual({one["rule"] for one in report["findings"]}, {rule}, json.dumps(report["findings"], indent=1))
+                findings = [one for one in report["findings"] if rule not in INCIDENTS or one["follows_from"] is None]
+                self.assertEqual({one["rule"] for one in findings}, {rule}, json.dumps(report["findings"], indent=1))
                 if case.node_id is not None:
-                    self.assertEqual({one["node_id"] for one in report["findings"]}, {case.node_id})
+                    self.assertEqual({one["node_id"] for one in findings}, {case.node_id})
 
     def test_each_rule_has_a_broken_log(self) -> None:
         rules = json.loads(self.run_edsc("--list-rules", "--format", "json").stdout)["rules"]
@@ -140,7 +161,7 @@ class Options(Audits):
         self.assertEqual(self.audit(BROKEN["sdo-abort"]).returncode, FINE)  # a note
         self.assertEqual(self.audit(BROKEN["nmt-reset"]).returncode, INPUT_HAS_ERRORS)
         self.assertEqual(self.audit(Broken(line="no frame\n")).returncode, INPUT_HAS_ERRORS)
-        self.assertEqual(self.run_edsc(log="").returncode, WRONG_USAGE)
+        self.assertEqual(self.run_edsc(log="").returncode, INPUT_HAS_ERRORS)
         self.assertEqual(self.run_edsc("missing.log", "--node", "5=axis.eds").returncode, WRONG_USAGE)
 
 
@@ -228,6 +249,61 @@ class Behaviour(Audits):
     def test_a_scan_of_absent_nodes_is_clean(self) -> None:
         requests = [Frame(1100 + node, 0x600 + node, data("4000100000000000")) for node in range(20, 100)]
         self.assertEqual(self.report(Broken(add(*requests)))["findings"], [])
+
+
+class Incidents(Audits):
+    """One incident is one finding; the others follow from it."""
+
+    def grouped(self, case: Broken) -> tuple[list[str], list[str]]:
+        """The rules of the findings that do not follow from others, and of those that do."""
+        findings = self.report(case)["findings"]
+        for one in findings:
+            if one["follows_from"] is not None:
+                self.assertIsNone(findings[one["follows_from"]]["follows_from"])
+        return ([one["rule"] for one in findings if one["follows_from"] is None],
+                [one["rule"] for one in findings if one["follows_from"] is not None])
+
+    def test_a_client_that_gives_up(self) -> None:
+        """29 objects, each with an abort; the late responses are one finding."""
+        frames = [frame for at in range(29) for frame in given_up(1200 + 40 * at, 0x2100 + at)]
+        causes, following = self.grouped(Broken(add(*frames)))
+        self.assertEqual(causes, ["sdo-gives-up"])
+        self.assertEqual((following.count("sdo-abort"), following.count("sdo-unrequested")), (29, 1))
+
+    def test_a_gap_in_the_recording(self) -> None:
+        causes, following = self.grouped(BROKEN["log-gap"])
+        self.assertEqual(causes, ["log-gap"])
+        self.assertGreaterEqual(following.count("heartbeat-late"), 2)  # of both nodes
+        self.assertIn("pdo-event-timer", following)
+
+    def test_a_lost_node_that_returns(self) -> None:
+        returned = Broken(lambda log: [*lost(log, 5, 1900), Frame(1895, 0x705, b"\0")])
+        causes, following = self.grouped(returned)
+        self.assertEqual(causes[0], "node-lost")
+        self.assertNotIn("heartbeat-late", causes)
+        self.assertIn("nmt-reset", following)
+
+    def test_what_does_not_belong_to_an_incident_is_listed(self) -> None:
+        causes, _ = self.grouped(Broken(lambda log: [one for one in [*log, Frame(700, 0x705, b"\0")] if not 1200 < one.ms < 1900]))
+        self.assertIn("nmt-reset", causes)
+        self.assertIn("log-gap", causes)
+
+    def test_the_text_lists_causes_and_all_findings_on_demand(self) -> None:
+        text = self.audit(BROKEN["sdo-gives-up"]).stdout
+        self.assertIn("    2 findings follow from this: sdo-abort, sdo-unrequested; --all-findings lists them\n", text)
+        self.assertNotIn("[sdo-unrequested]", text)
+        self.assertTrue(text.endswith("0 errors, 1 warning, 0 notes; 2 findings follow from these\n"), text)
+        self.assertIn("[sdo-unrequested]", self.audit(BROKEN["sdo-gives-up"], "--all-findings").stdout)
+
+    def test_without_an_eds(self) -> None:
+        """SDO, NMT, heartbeats and LSS are checked; nothing is unknown."""
+        def findings(log: list[Frame]) -> set[tuple[str, int | None]]:
+            report = json.loads(self.run_edsc("--format", "json", log=log_of(in_order(log))).stdout)
+            return {(one["rule"], one["node_id"]) for one in report["findings"] if one["follows_from"] is None}
+        self.assertEqual(findings(clean()), set())
+        for rule in ("sdo-toggle", "sdo-gives-up", "nmt-reset", "nmt-state", "nmt-command", "node-lost", "lss-command", "log-gap"):
+            with self.subTest(rule):
+                self.assertIn(rule, {found for found, _ in findings(BROKEN[rule].change(clean()))})
 
 
 class Page(HTMLParser):

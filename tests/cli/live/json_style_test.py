@@ -69,6 +69,16 @@ def writes_json(command: dict) -> bool:
     return "json" in words or any(option["names"] == ["--json"] for option in command["options"])
 
 
+def documents_of(text: str) -> list[Any]:
+    """One document, or one on each line."""
+    documents, rest = [], text.strip()
+    while rest:
+        document, end = json.JSONDecoder().raw_decode(rest)
+        documents.append(document)
+        rest = rest[end:].lstrip()
+    return documents
+
+
 def members(value: Any, path: str = "") -> Iterator[tuple[str, str, Any]]:
     """Each member: its place, its name and its value."""
     if isinstance(value, list):
@@ -132,8 +142,7 @@ class JsonStyle(LiveTest):
             for words in rows:
                 with self.subTest(words=words):
                     output = self.output_of(words)
-                    texts = output.splitlines() if command == "decode" else [output or "null"]
-                    documents = [json.loads(text) for text in texts]
+                    documents = documents_of(output or "null")
                     if command in WITHOUT_DEVICE and documents == [None]:
                         continue
                     self.assertNotEqual(documents, [])
