@@ -43,6 +43,8 @@ ROWS = (
         "`edsc conform` reports the gaps of its slave, and nothing else", "conform_foreign", ()),
     Row("canmatrix", "python3-canmatrix", "it decodes frames by the DBC files of `edsc generate`; each value is compared", "dbc_decode",
         ((r"(\d+) signals,", "signals compared"), (r"signals, (\d+) problems", "different"))),
+    Row("canmatrix", "python3-canmatrix", "`edsc network generate` takes names of signals from its DBC files, and it reads them back",
+        "signal_names", ()),
     Row("python-can", "python3-can", "`edsc decode` reads its logs: ASC, BLF, TRC 1.0 and 2.1", "decode_formats", ()),
     Row("can-utils", "can-utils", "`edsc decode` reads logs of candump, and ASC files of log2asc", "decode_formats", ()),
     Row("scapy", "python3-scapy", "`edsc decode` reads its captures: pcap and pcapng", "decode_formats", ()),
@@ -59,6 +61,7 @@ runs of these tests. No stack for devices in C or C++, such as CANopenNode, and 
 | program | version | what was tried | test | result |
 |---|---|---|---|---|
 """
+
 
 
 def version_of(source: str) -> str:

@@ -22,6 +22,7 @@ void add_input(std::vector<std::string>& inputs, const std::string& path) {
 
 std::vector<std::string> inputs_of(const Network& network) {
   std::vector<std::string> inputs{network.source->name()};
+  if (network.dbc_source) add_input(inputs, network.dbc_source->name());
   for (const NetworkNode& node : network.nodes) {
     if (!node.has_file()) continue;
     for (const std::string& name : input_files(*node.loaded)) add_input(inputs, name);
@@ -33,7 +34,7 @@ Dbc dbc_of(const Network& network) {
   std::vector<DbcNode> nodes;
   for (const NetworkNode& node : network.nodes) {
     const std::string name = to_snake_case(node.name);
-    nodes.push_back({name.empty() ? "device" : name, &node.device(), &node.named().identifiers()});
+    nodes.push_back({name.empty() ? "device" : name, &node.device(), &node.named().identifiers(), &node.signal_names});
   }
   return dbc_of(nodes);
 }
