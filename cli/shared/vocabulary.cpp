@@ -121,7 +121,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--strict",         0,   "",          flag,       "warnings count as errors; notes do not"},
     {"--sub-indices",    0,   "WORD",      text,       "how the file writes sub-indices in section names"},
     {"--summary",        0,   "",          flag,       "print a summary at the end: frames by service and node, aborts, EMCY messages and times"},
-    {"--target",         0,   "LANGUAGE",  word,       "language of the generated files"},
+    {"--target",         0,   "TARGET",    word,       "language or program for which the files are generated"},
     {"--templates",      0,   "DIR",       folder,     "folder with templates that replace the built-in ones"},
     {"--timeout",        0,   "DURATION",  duration,   "time that a device has to respond"},
     {"--times",          0,   "",          flag,       "print period, worst-case response time and deadline of each message"},

@@ -19,6 +19,7 @@
 #include "network/cob_id_use.hpp"
 #include "network/communication_objects.hpp"
 #include "network/configured_pdo.hpp"
+#include "network/dbc_names.hpp"
 #include "network/node_settings.hpp"
 #include "network/resolve_signals.hpp"
 #include "text/counted.hpp"
@@ -132,6 +133,7 @@ class SignalPlanner {
       diagnostics_.error("network-signal", first.description->position, "all CAN-IDs for PDOs are in use");
       return;
     }
+    add_meanings(group, *sender, receivers, *cob_id);
     sender->cob_id = *cob_id | (sender->cob_id & canopen::CobId::no_rtr_bit);
     set_timing(*first.description, *sender);
     set_inhibit_time(*first.description, *first.from.node, *sender);
@@ -139,6 +141,40 @@ class SignalPlanner {
     for (PlannedPdo& receiver : receivers) {
       receiver.cob_id = *cob_id;
       plan_.pdos.push_back(std::move(receiver));
+    }
+  }
+
+  /// The name and unit of each signal, for all nodes that send or receive it.
+  void add_meanings(const SignalGroup& group, const PlannedPdo& sender, const std::vector<PlannedPdo>& receivers,
+                    std::uint32_t cob_id) {
+    unsigned offset = 0;
+    for (std::size_t i = 0; i < group.signals.size(); ++i) {
+      const Signal& signal = *group.signals[i];
+      const unsigned bits = signal.from.entry->type->bits;
+      const WrittenText& stated = signal.description->name;
+      std::string name = stated ? stated->value : dbc_signal_name(network_.dbc, cob_id, offset, bits);
+      if (!stated && name == usual_name(signal)) name.clear();
+      offset += bits;
+      if (name.empty() && !signal.quantity) continue;
+      add_meaning(sender, i, name, signal);
+      for (const PlannedPdo& receiver : receivers) add_meaning(receiver, i, name, signal);
+    }
+  }
+
+  /// The name that the DBC file of the network gives a signal without a name: `speed`; of a master without a file
+  /// `axis1_commands_controlword`.
+  static std::string usual_name(const Signal& signal) {
+    const std::string identifier = signal.from.owner->named().identifiers().full(*signal.from.entry);
+    if (signal.from.node->has_file()) return identifier;
+    return fmt::format("{}_{}", to_snake_case(commands_name(signal.from.owner->name)), identifier);
+  }
+
+  void add_meaning(const PlannedPdo& pdo, std::size_t position, const std::string& name, const Signal& signal) {
+    const MappingValue& value = pdo.mapping[position];
+    plan_.meanings.push_back({pdo.node, {value.index, value.sub_index}, name, signal.quantity});
+    if (name.empty() || network_.find(pdo.node)->has_file()) return;
+    for (MasterEntry& one : plan_.master_entries) {
+      if (one.index == value.index && one.sub_index == value.sub_index) one.name = name;
     }
   }
 
@@ -393,6 +429,8 @@ void apply(NetworkNode& node, const PlannedPdo& pdo, Diagnostics& diagnostics) {
 
 }  // namespace
 
+std::string commands_name(const std::string& node) { return fmt::format("{} commands", node); }
+
 SignalPlan plan_signals(const Network& network, Diagnostics& diagnostics) {
   SignalPlan plan = SignalPlanner{network, diagnostics}.plan(resolve_signals(network, diagnostics));
   set_receiver_timing(plan);
@@ -402,6 +440,11 @@ SignalPlan plan_signals(const Network& network, Diagnostics& diagnostics) {
 void apply_signals(NetworkNode& node, const SignalPlan& plan, Diagnostics& diagnostics) {
   for (const PlannedPdo& pdo : plan.pdos) {
     if (pdo.node == node.name) apply(node, pdo, diagnostics);
+  }
+  for (const SignalMeaning& one : plan.meanings) {
+    if (one.node != node.name) continue;
+    if (!one.name.empty()) node.signal_names.emplace(one.entry, one.name);
+    if (one.quantity) node.signal_quantities.emplace(one.entry, *one.quantity);
   }
 }
 

@@ -20,6 +20,9 @@ struct MasterEntry {
   bool is_sent = false;
 };
 
+/// The object of a master without a file with the values that it sends to a node: `axis1 commands`.
+[[nodiscard]] std::string commands_name(const std::string& node);
+
 /// A PDO of a node, as the signals need it.
 struct PlannedPdo {
   std::string node;
@@ -34,9 +37,18 @@ struct PlannedPdo {
   bool has_stated_can_id = false;  ///< by `set` or a DCF
 };
 
+/// The name and unit of a value that a node sends or receives.
+struct SignalMeaning {
+  std::string node;
+  EntryKey entry;
+  std::string name;  ///< empty: that of the object
+  std::optional<Quantity> quantity;
+};
+
 struct SignalPlan {
   std::vector<MasterEntry> master_entries;
   std::vector<PlannedPdo> pdos;
+  std::vector<SignalMeaning> meanings;
 };
 
 /// Packs the signals of one sender with the same timing and the same receivers into PDOs, in the order of the file. A
@@ -44,7 +56,7 @@ struct SignalPlan {
 /// What cannot be assigned is reported.
 [[nodiscard]] SignalPlan plan_signals(const Network& network, Diagnostics& diagnostics);
 
-/// Sets the parameters of the planned PDOs of a node.
+/// Sets the parameters of the planned PDOs of a node, and the names and units of their values.
 void apply_signals(NetworkNode& node, const SignalPlan& plan, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -10,9 +10,11 @@
 
 #include "diagnostics/quote.hpp"
 #include "network/assign_signals.hpp"
+#include "network/dbc_names.hpp"
 #include "network/master_sheet.hpp"
 #include "network/network.hpp"
 #include "network/node_settings.hpp"
+#include "network/unused_pdos.hpp"
 #include "system/path.hpp"
 
 namespace edsc {
@@ -32,6 +34,9 @@ class NetworkLoader {
     for (NetworkNode& node : network_.nodes) {
       if (node.has_file()) apply_settings(node);
     }
+    if (const WrittenText& dbc = network_.description.dbc) {
+      if (!load_dbc(network_, beside_network_file(dbc->value), diagnostics_)) loaded_.unreadable = true;
+    }
     const SignalPlan plan = plan_signals(network_, diagnostics_);
     for (NetworkNode& node : network_.nodes) {
       if (!node.has_file()) add_master_sheet(node, network_, plan);
@@ -41,6 +46,8 @@ class NetworkLoader {
       apply_signals(node, plan, diagnostics_);
       configure(node, *network_.source, diagnostics_);
     }
+    disable_unused_pdos(network_, diagnostics_);
+    apply_dbc_names(network_, diagnostics_);
   }
 
  private:

@@ -264,7 +264,7 @@ class MasterSheet {
         record.push_back({one->sub_index, one->name, one->original->type->type, one->is_sent ? "rwr" : "rww",
                           initial_value(*one), true});
       }
-      sheet_.add_record(first->index, first->is_sent ? fmt::format("{} commands", first->node) : first->node, record);
+      sheet_.add_record(first->index, first->is_sent ? commands_name(first->node) : first->node, record);
       first = last;
     }
   }

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "backend/dbc/read_dbc.hpp"
 #include "device/device.hpp"
 #include "device/value_overlay.hpp"
 #include "load/load_device.hpp"
@@ -21,9 +23,11 @@ struct NetworkNode {
   std::uint8_t node_id = 0;
   bool is_master = false;
   const NodeDescription* description = nullptr;
-  const LoadedDevice* loaded = nullptr;      ///< of a master without a file: its generated EDS
-  ValueOverlay settings;                     ///< in the order in which the network file implies and states them
-  std::unique_ptr<const Device> configured;  ///< with the settings; null without settings
+  const LoadedDevice* loaded = nullptr;            ///< of a master without a file: its generated EDS
+  ValueOverlay settings;                           ///< in the order in which the network file implies and states them
+  std::map<EntryKey, std::string> signal_names;    ///< of values in PDOs that differ from the names of their objects
+  std::map<EntryKey, Quantity> signal_quantities;  ///< units that signals state
+  std::unique_ptr<const Device> configured;        ///< with the settings and these units; null without both
 
   /// The device as it will be configured: the settings are its default values. A master without a file has no objects
   /// until it has its generated EDS.
@@ -35,6 +39,8 @@ struct NetworkNode {
 
 struct Network {
   std::unique_ptr<SourceFile> source;
+  std::unique_ptr<SourceFile> dbc_source;  ///< null without a DBC file
+  std::vector<DbcFileMessage> dbc;
   NetworkDescription description;
   std::vector<std::unique_ptr<LoadedDevice>> files;  ///< of nodes, also those that could not be read
   std::vector<NetworkNode> nodes;                    ///< those whose device could be read, in the order of the file

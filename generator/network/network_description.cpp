@@ -270,7 +270,7 @@ std::optional<std::uint32_t> sdo_timeout_ms(const NetworkDescription& network, c
 NetworkDescription read_network_file(const SourceFile& source, Diagnostics& diagnostics) {
   const JsonFile file{source};
   file.report_faults("network-syntax", diagnostics);
-  if (!file.is_valid()) return {&source, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+  if (!file.is_valid()) return {&source, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   return NetworkReader{file, diagnostics}.read();
 }
 

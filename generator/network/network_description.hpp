@@ -64,6 +64,7 @@ struct SignalDescription {
   WrittenNumber every_sync;
   WrittenFlag event;
   WrittenNumber inhibit_time_us;
+  WrittenText name, unit;
 };
 
 struct NetworkDescription {
@@ -73,6 +74,8 @@ struct NetworkDescription {
   WrittenNumber max_load;
   WrittenNumber error_interval_ms;
   WrittenNumber sdo_timeout_ms;
+  WrittenText dbc;
+  WrittenFlag disable_unused_pdos;
   SyncDescription sync;
   AssumedIntervals assume;
   std::vector<NodeDescription> nodes;  ///< in the order of the file
@@ -112,6 +115,9 @@ inline constexpr MemberRow<NetworkDescription> network_members[] = {
      "shortest time between two errors on the bus in ms, for response times; without errors if missing", 1, 3'600'000},
     {"sdo_timeout_ms", &NetworkDescription::sdo_timeout_ms,
      "time in ms in which each node responds to an SDO request; 500 if missing", 1, 65535},
+    {"dbc", &NetworkDescription::dbc, "DBC file with names of signals, relative to the network file"},
+    {"disable_unused_pdos", &NetworkDescription::disable_unused_pdos,
+     "TPDOs that are as in the EDS and that no node receives are disabled: bit 31 of their COB-ID"},
 };
 
 inline constexpr MemberRow<SyncDescription> sync_members[] = {
@@ -161,6 +167,10 @@ inline constexpr MemberRow<SignalDescription> signal_members[] = {
     {"event", &SignalDescription::event, "sent when the value changes (transmission type 255)"},
     {"inhibit_time_us", &SignalDescription::inhibit_time_us,
      "shortest time between two PDOs in us, a multiple of 100 (inhibit time)", 100, 6'553'500},
+    {"name", &SignalDescription::name,
+     "name in snake_case, in C++, in the DBC file and in the EDS of a master without a file; that of the object if missing"},
+    {"unit", &SignalDescription::unit,
+     "unit of a raw value of 1: `rpm`, `0.1 degC`; that of the EDS or options file if missing"},
 };
 
 /// The time in ms in which a node responds to an SDO request: its own, or that of the network; empty if neither is

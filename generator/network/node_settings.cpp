@@ -190,6 +190,20 @@ const Entry* free_consumer(const NetworkNode& node, const Object& object, std::u
   return nullptr;
 }
 
+/// The units that signals state take the place of those of the EDS and the options file.
+void set_quantities(Device& device, const std::map<EntryKey, Quantity>& quantities) {
+  if (quantities.empty()) return;
+  for (Object& object : device.objects) {
+    for (Entry& entry : object.entries) {
+      const auto stated = quantities.find({entry.index, entry.sub_index});
+      if (stated == quantities.end()) continue;
+      auto meaning = std::make_shared<Meaning>(entry.meaning ? *entry.meaning : Meaning{});
+      meaning->quantity = stated->second;
+      entry.meaning = std::move(meaning);
+    }
+  }
+}
+
 }  // namespace
 
 void apply_sync(NetworkNode& node, const SyncDescription& sync, Diagnostics& diagnostics) {
@@ -249,10 +263,11 @@ void apply_master_timeout(NetworkNode& node, const Network& network, Diagnostics
 }
 
 void configure(NetworkNode& node, const SourceFile& network_file, Diagnostics& diagnostics) {
-  if (node.settings.empty()) return;
+  if (node.settings.empty() && node.signal_quantities.empty()) return;
   Diagnostics of_mapping;
-  node.configured = std::make_unique<const Device>(
-      with_values(*node.loaded->device, node.settings, node.loaded->options, of_mapping));
+  Device device = with_values(*node.loaded->device, node.settings, node.loaded->options, of_mapping);
+  set_quantities(device, node.signal_quantities);
+  node.configured = std::make_unique<const Device>(std::move(device));
   for (const Diagnostic& one : of_mapping.all()) {
     if (one.position.file != &network_file || one.severity != Severity::error) continue;
     diagnostics.error("network-pdo-mapping", one.position, fmt::format("node {}: {}", node.name, one.message));

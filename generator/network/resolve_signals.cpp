@@ -2,11 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <canopen/od/unit.hpp>
 #include <map>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 
+#include "backend/cpp/identifier.hpp"
+#include "device/meaning/physical.hpp"
+#include "device/meaning/rational.hpp"
 #include "diagnostics/quote.hpp"
 #include "lookup/find_entry.hpp"
 
@@ -25,6 +30,8 @@ class SignalResolver {
     if (from == nullptr) return std::nullopt;
     const bool resolved = from->has_file() ? resolve_from_device(*from, signal) : resolve_from_master(*from, signal);
     if (!resolved || !types_agree(signal)) return std::nullopt;
+    check_name(description);
+    if (description.unit) signal.quantity = quantity_of(*description.unit, *signal.from.entry);
     return signal;
   }
 
@@ -32,6 +39,46 @@ class SignalResolver {
   bool error(const Position& position, std::string message) {
     diagnostics_.error("network-signal", position, std::move(message));
     return false;
+  }
+
+  void check_name(const SignalDescription& description) {
+    if (!description.name) return;
+    const auto& [name, position] = *description.name;
+    if (!is_identifier(name)) {
+      error(position, fmt::format("{} is not a name in snake_case, such as \"motor_speed\"", quote(name)));
+      return;
+    }
+    const auto [first, is_new] = names_.emplace(name, position);
+    if (is_new) return;
+    diagnostics_.error("network-signal", position, fmt::format("two signals have the name {}", quote(name)),
+                       {{first->second, "the first one"}});
+  }
+
+  /// `rpm`, or with a scale `0.1 degC`.
+  std::optional<Quantity> quantity_of(const Written<std::string>& unit, const Entry& entry) {
+    const auto invalid = [&](std::string why) {
+      error(unit.position, std::move(why));
+      return std::nullopt;
+    };
+    using enum canopen::DataClass;
+    const canopen::DataClass kind = entry.type->kind;
+    const bool is_number = kind == unsigned_integer || kind == signed_integer || kind == real;
+    if (!is_number || (entry.meaning && (entry.meaning->has_fields() || entry.meaning->values))) {
+      return invalid(fmt::format("{} is not a number with a unit", named(entry)));
+    }
+    Quantity quantity;
+    std::string_view symbol = unit.value;
+    if (const auto parts = split_physical(unit.value)) {
+      const auto scale = parse_rational(parts->number);
+      if (!scale || *scale == Rational{0}) return invalid(fmt::format("{} is not a scale", quote(parts->number)));
+      quantity.scale = *scale;
+      symbol = parts->unit;
+    }
+    quantity.unit = canopen::find_unit(symbol);
+    if (quantity.unit == nullptr) return invalid(fmt::format("unknown unit {}", quote(symbol)));
+    quantity.symbol = std::string{quantity.unit->symbol};
+    quantity.position = unit.position;
+    return quantity;
   }
 
   const NetworkNode* find_node(std::string_view name, const Position& position) {
@@ -139,6 +186,7 @@ class SignalResolver {
   const Network& network_;
   Diagnostics& diagnostics_;
   std::map<const NetworkNode*, EntryFinder> entries_;
+  std::map<std::string, Position> names_;  ///< of signals
 };
 
 /// An entry that receives two signals has the value of the one that came last.

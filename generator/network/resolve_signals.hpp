@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "network/network.hpp"
@@ -20,10 +21,11 @@ struct Signal {
   SignalEnd from;
   std::vector<SignalEnd> to;
   const SignalDescription* description = nullptr;
+  std::optional<Quantity> quantity;  ///< that the signal states
 };
 
 /// Finds nodes and entries. A signal with an unknown name, an entry that cannot be mapped in its direction, or ends of
-/// different data types is reported and ignored.
+/// different data types is reported and ignored; an invalid name or unit is reported.
 [[nodiscard]] std::vector<Signal> resolve_signals(const Network& network, Diagnostics& diagnostics);
 
 }  // namespace edsc

@@ -43,6 +43,8 @@ ROWS = (
         "`edsc conform` reports the gaps of its slave, and nothing else", "conform_foreign", ()),
     Row("canmatrix", "python3-canmatrix", "it decodes frames by the DBC files of `edsc generate`; each value is compared", "dbc_decode",
         ((r"(\d+) signals,", "signals compared"), (r"signals, (\d+) problems", "different"))),
+    Row("canmatrix", "python3-canmatrix", "`edsc network generate` takes names of signals from its DBC files, and it reads them back",
+        "signal_names", ()),
     Row("python-can", "python3-can", "`edsc decode` reads its logs: ASC, BLF, TRC 1.0 and 2.1", "decode_formats", ()),
     Row("can-utils", "can-utils", "`edsc decode` reads logs of candump, and ASC files of log2asc", "decode_formats", ()),
     Row("scapy", "python3-scapy", "`edsc decode` reads its captures: pcap and pcapng", "decode_formats", ()),
@@ -58,6 +60,19 @@ runs of these tests. No stack for devices in C or C++, such as CANopenNode, and 
 
 | program | version | what was tried | test | result |
 |---|---|---|---|---|
+"""
+
+TAIL = """
+## Tried by hand
+
+These programs are not packages of Debian or npm, and CI does not run them:
+
+- Lely's CANopen library, commit 620d1858 of lely-core, with the files of `edsc network generate --target lely` for
+  `examples/networks/four_modules.json`. `dcfgen -r -S bus.yml` wrote the concise DCFs of edsc, byte for byte. A program with Lely's
+  AsyncMaster on `edsc bus` booted 4 of 4 nodes of `edsc node`, with the `controller.dcf` of edsc and with the `master.dcf` of dcfgen;
+  with the latter it received the values of their TPDOs. Its time-out for SDO was 3 s, as the computer was busy. Without `--target lely`
+  it booted none.
+- ros2_canopen was not run: the members `driver` and `package` of `bus.yml` are those of its documents.
 """
 
 
@@ -94,7 +109,7 @@ def write() -> int:
         results[row] = results[same] if same else result_of(row)
         print(f"{row.program}: {row.test}: {results[row]}", flush=True)
     lines = [f"| {row.program} | {version_of(row.source)} | {row.tried} | `{row.test}` | {result} |" for row, result in results.items()]
-    PAGE.write_text(HEAD + "\n".join(lines) + "\n", encoding="utf-8")
+    PAGE.write_text(HEAD + "\n".join(lines) + "\n" + TAIL, encoding="utf-8")
     return 0
 
 

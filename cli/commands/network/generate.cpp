@@ -25,6 +25,7 @@ namespace {
 struct Settings {
   std::string path;
   std::string output;
+  std::string target = "cpp";
   std::string depfile;
   std::string depfile_target;
   bool verbose = false;
@@ -38,11 +39,14 @@ int generate(const Settings& settings) {
   const auto loaded = load_network(settings.path, diagnostics);
   check_network(loaded->network, diagnostics);
   GeneratedNetwork generated;
-  if (diagnostics.errors() == 0) generated = generate_network(loaded->network, diagnostics);
+  if (diagnostics.errors() == 0) {
+    const MasterProgram program = settings.target == "lely" ? MasterProgram::lely : MasterProgram::edsc;
+    generated = generate_network(loaded->network, diagnostics, program);
+  }
   print_findings(diagnostics, settings.color);
   if (loaded->unreadable) return exit_wrong_usage;
   if (diagnostics.errors() > 0) return exit_input_has_errors;
-  for (const std::string& note : generated.notes) print_to_stderr("edsc: not in the DBC file: {}\n", note);
+  for (const std::string& note : generated.notes) print_to_stderr("edsc: {}\n", note);
   std::vector<OutputFile>& files = generated.files;
   std::ranges::move(network_drawings(loaded->network), std::back_inserter(files));
   std::vector<OutputFile> placed = files;
@@ -66,6 +70,9 @@ void add_network_generate_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, "", generate, exit_code);
   command.add_option("FILE", settings.path, "network file (JSON)").required();
   command.add_option("--output", settings.output, "folder").required();
+  add_choice(command, "--target", settings.target, {"cpp", "lely"},
+             "lely: also bus.yml for dcfgen and ros2_canopen, and a DCF of the master for Lely's loader")
+      .show_default();
   const Option depfile = command.add_option("--depfile", settings.depfile);
   command.add_option("--depfile-target", settings.depfile_target).needs(depfile);
   command.add_flag("--verbose", settings.verbose);

@@ -26,7 +26,8 @@ constexpr const char* examples = R"(Examples:
   edsc network check plant.json --times           with the worst-case response time of each message
   edsc network simulate plant.json --for 1h       load and response times seen beside those computed
   edsc network members                            every member of a network file with its meaning
-  edsc network generate plant.json -o build       DCFs, concise DCFs, C++ headers, DBC file, drawings)"
+  edsc network generate plant.json -o build       DCFs, concise DCFs, C++ headers, DBC file, drawings
+  edsc network generate plant.json -o build --target lely        with bus.yml for a master with Lely or ros2_canopen)"
 #ifndef EDSC_OFFLINE
                                  R"(
   edsc network scan socketcan:can0 --eds eds -o plant.json       the network file of the nodes on a bus

@@ -185,10 +185,18 @@ class DbcWriter {
     }
   }
 
+  [[nodiscard]] static std::string name_of(const DbcNode& node, const Entry& entry) {
+    if (node.signal_names != nullptr) {
+      const auto name = node.signal_names->find({entry.index, entry.sub_index});
+      if (name != node.signal_names->end()) return name->second;
+    }
+    return node.names->full(entry);
+  }
+
   void add_signal(std::uint32_t id, const NodePdo& message, const PdoEntry& mapped, const DbcSignal& signal,
                   SignalNames& names) {
     const Entry& entry = *mapped.object;
-    const std::string long_name = names.full.take(message.node->names->full(entry) + signal.name);
+    const std::string long_name = names.full.take(name_of(*message.node, entry) + signal.name);
     const std::string name = names.shortened.take(long_name);
     const unsigned start = mapped.offset + signal.first_bit;
     sections_.messages += fmt::format(" SG_ {} : {}|{}@1{} ({},{}) [{}|{}] {} {}\n", name, start, signal.bits,
@@ -257,7 +265,7 @@ BA_DEF_DEF_ "SystemSignalLongSymbol" "";
 }  // namespace
 
 Dbc dbc_of(const Device& device, const Identifiers& names) {
-  return dbc_of(std::vector<DbcNode>{{names.device(), &device, &names}});
+  return dbc_of(std::vector<DbcNode>{{names.device(), &device, &names, nullptr}});
 }
 
 Dbc dbc_of(const std::vector<DbcNode>& nodes) { return DbcWriter{nodes}.write(); }

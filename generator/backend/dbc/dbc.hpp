@@ -1,6 +1,7 @@
 /// The PDOs of a device as a DBC file, the format in which CAN tools describe messages and signals.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct DbcNode {
   std::string name;  ///< an identifier
   const Device* device = nullptr;
   const Identifiers* names = nullptr;
+  const std::map<EntryKey, std::string>* signal_names = nullptr;  ///< in place of those of `names`; may be null
 };
 
 /// Returns a message for each default PDO that is enabled. `device` has a node-ID and the identifiers of its objects.

@@ -80,6 +80,7 @@ class NodeDcfMaker {
     for (DocumentSection& section : document.sections) complete(section);
     NodeDcf dcf;
     dcf.text = to_text(document);
+    dcf.document = std::move(document);
     const ReadSheet read{node_file(node_, "dcf"), dcf.text, node_.node_id};
     check_values(read);
     Diagnostics ignored;

@@ -4,12 +4,14 @@
 #include <string>
 #include <string_view>
 
+#include "format/document.hpp"
 #include "network/network.hpp"
 
 namespace edsc {
 
 struct NodeDcf {
   std::string text;
+  Document document;    ///< of the text
   std::string concise;  ///< bytes for 1F22h of the master (CiA 302-3)
 };
 

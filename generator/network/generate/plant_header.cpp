@@ -149,7 +149,7 @@ class PlantHeader {
       if (at == of_device.end() || !has_struct(use)) continue;
       ordered_json row = *at;
       row["can_id"] = can_id_text(use.can_id, use.extended);
-      row["members"] = with_separators(members(node.named(), *use.pdo), ", ");
+      row["members"] = with_separators(members(node, *use.pdo), ", ");
       rows.push_back(std::move(row));
     }
     return rows;
@@ -159,12 +159,12 @@ class PlantHeader {
     return !is_left_out(*use.pdo) && !use.pdo->multiplexed && use.pdo->mapping != nullptr && !use.pdo->entries.empty();
   }
 
-  [[nodiscard]] static ordered_json members(const NamedDevice& named, const Pdo& pdo) {
+  [[nodiscard]] static ordered_json members(const NetworkNode& node, const Pdo& pdo) {
     ordered_json rows = ordered_json::array();
     IdentifierScope names;
     for (std::size_t i = 0; i < pdo.entries.size(); ++i) {
       if (pdo.entries[i].object == nullptr) continue;
-      rows.push_back({{"name", names.take(signal_identifier(named, pdo.entries[i]), "again")}, {"position", i}});
+      rows.push_back({{"name", names.take(signal_identifier(node, pdo.entries[i]), "again")}, {"position", i}});
     }
     return rows;
   }
@@ -228,7 +228,7 @@ class PlantHeader {
         const PdoEntry& entry =
             is_received ? link.sender->pdo->entries[value.sent] : link.receiver->pdo->entries[value.taken];
         if (!known.emplace(is_received, entry.object).second) continue;
-        const std::string name = names.take(signal_identifier(node.named(), entry), is_sent ? "command" : "signal");
+        const std::string name = names.take(signal_identifier(node, entry), is_sent ? "command" : "signal");
         (is_received ? signals.received : signals.sent).push_back(signal_row(node, link, value, entry, name));
       }
     }

@@ -40,8 +40,10 @@ std::vector<LinkedValue> linked_values(const PdoLink& link) {
   return values;
 }
 
-std::string signal_identifier(const NamedDevice& named, const PdoEntry& entry) {
-  return without_reserved_word(named.identifiers().full(*entry.object));
+std::string signal_identifier(const NetworkNode& node, const PdoEntry& entry) {
+  const auto name = node.signal_names.find({entry.object->index, entry.object->sub_index});
+  if (name != node.signal_names.end()) return name->second;
+  return without_reserved_word(node.named().identifiers().full(*entry.object));
 }
 
 }  // namespace edsc

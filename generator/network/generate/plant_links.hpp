@@ -29,7 +29,8 @@ struct LinkedValue {
 /// The values of a link without dummies.
 [[nodiscard]] std::vector<LinkedValue> linked_values(const PdoLink& link);
 
-/// The identifier of an entry in its device: `position`, `write_output_8_bit_1`, `identity_object_vendor_id`.
-[[nodiscard]] std::string signal_identifier(const NamedDevice& named, const PdoEntry& entry);
+/// The name of its signal, or the identifier of an entry in its device: `position`, `write_output_8_bit_1`,
+/// `identity_object_vendor_id`.
+[[nodiscard]] std::string signal_identifier(const NetworkNode& node, const PdoEntry& entry);
 
 }  // namespace edsc

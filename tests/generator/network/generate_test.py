@@ -172,6 +172,20 @@ class Generate(unittest.TestCase):
         self.assertEqual({key: values[key] for key in ("6060", "6081", "6083", "6084", "1016:1")},
                          {"6060": 3, "6081": 1250, "6083": 2000, "6084": 300, "1016:1": 127 << 16 | 250})
 
+    def test_unused_pdos_are_disabled_on_request(self) -> None:
+        """TPDO 2 of all nodes sends on 280h + node-ID; c receives that of a. A signal uses TPDO 1 of a, `set` states TPDO 2 of c."""
+        text = (self.folder / "node.eds").read_text()
+        (self.folder / "node.eds").write_text(re.sub(r"(\[1801sub1\][^\[]*DefaultValue=)\S*", r"\g<1>$NODEID+0x40000280", text))
+        plant = json.loads(TINY)
+        plant["nodes"]["c"] = {"node_id": 3, "eds": "node.eds", "set": {"1401h:01": "0x281", "1801h:01": "0x40000290"}}
+        used = {"a": None, "b": None, "c": 0x40000290}
+        for members, expected in (({}, used), ({"disable_unused_pdos": False}, used),
+                                  ({"disable_unused_pdos": True}, used | {"b": 0xC0000282})):
+            self.generate(json.dumps({**plant, **members}))
+            found = {name: parameter_values(self.out / f"{name}.dcf") for name in "abc"}
+            self.assertEqual({name: values.get("1801:1") for name, values in found.items()}, expected)
+            self.assertEqual(found["a"]["1800:1"], 0x40000181)
+
     def test_a_dcf_commissions_its_node(self) -> None:
         self.generate()
         for name, node_id, manager in (("a", 1, 0), ("b", 2, 0), ("master", 127, 1)):

@@ -210,6 +210,25 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
            ("every_10_ms", {"every_ms": 10}, 10, "error"), ("every_10_ms", {"every_ms": 10}, 11, ""),
            ("of_3_cycles_of_10_ms", {"every_sync": 3}, 30, "error"), ("of_3_cycles_of_10_ms", {"every_sync": 3}, 31, ""),
            ("at_events", {"event": True}, 1000, "warning"), ("every_10_ms", {"every_ms": 10}, 0, ""))},
+    "name_of_a_signal": (network(signal(*SPEED, every_ms=10, name="motor_speed")), []),
+    "name_of_a_signal_in_camel_case": (network(signal(*SPEED, every_ms=10, name="MotorSpeed")), [("error", "network-signal")]),
+    "two_signals_with_one_name": (
+        network(signal(*SPEED, every_ms=10, name="speed"), signal("c", "2000h", "m", every_ms=10, name="speed")),
+        [("error", "network-signal")]),
+    "unit_of_a_signal": (network(signal("v", "2000h", "tenths.2002h", every_ms=10, unit="0.01 V"), **IN_UNITS), []),
+    "unit_of_a_signal_that_is_unknown": (network(signal(*SPEED, every_ms=10, unit="0.1 knots")), [("error", "network-signal")]),
+    "unit_of_a_signal_with_a_scale_of_0": (network(signal(*SPEED, every_ms=10, unit="0 V")), [("error", "network-signal")]),
+    "dbc_file": ({**network(signal(*SPEED)), "dbc": "speed.dbc"}, []),
+    "dbc_file_with_another_can_id": ({**network(signal(*SPEED)), "dbc": "other.dbc"}, [("warning", "network-signal")]),
+    "dbc_file_without_messages": ({**network(signal(*SPEED)), "dbc": "node.eds"}, [("error", "network-file")]),
+    "dbc_file_that_does_not_exist": ({**network(signal(*SPEED)), "dbc": "missing.dbc"}, [("error", "network-file")]),
+    "unused_pdo_that_is_disabled": (
+        {**without_sync(network(a={**NODE_A, "eds": "synchronous.eds"})), "disable_unused_pdos": True}, []),
+    "pdo_by_set_is_not_disabled": (
+        {**without_sync(network(a={**NODE_A, "set": {"1800h:01": "0x40000181", "1800h:02": 1}})), "disable_unused_pdos": True},
+        [("error", "network-sync")]),
+    "pdo_of_a_signal_is_not_disabled": (
+        {**without_sync(network(signal(*SPEED, every_sync=1))), "disable_unused_pdos": True}, [("error", "network-sync")]),
     "reserved_transmission_type": (network(signal(*SPEED), a={**NODE_A, "set": {"1801h:02": 241}}),
                                    [("error", "network-value")]),
     "reserved_transmission_type_of_an_rpdo": (network(signal(*SPEED), a={**NODE_A, "set": {"1401h:02": 252}}),
@@ -291,6 +310,9 @@ MESSAGES = {  # name of a network: what its first finding says
     "synchronous_pdo_that_the_network_does_not_use":
         'a TPDO 1 is synchronous, but no node produces SYNC; state a "producer" in "sync", or disable the PDO by '
         '"set": {"1800h:01": "0xC0000181"}',
+    "name_of_a_signal_in_camel_case": '"MotorSpeed" is not a name in snake_case',
+    "unit_of_a_signal_that_is_unknown": 'unknown unit "knots"',
+    "dbc_file_with_another_can_id": "message drive has 182h, the CAN-ID of no PDO of the network",
     "time_for_the_master_without_a_free_entry": "node a does not have a free entry in 1016h",
 }
 
@@ -357,6 +379,8 @@ def main() -> int:
         (folder / "synchronous.eds").write_text(sheet_with("1800sub2", "1", sheet_with("1800sub1", "$NODEID+0x40000180")))
         (folder / "slow.eds").write_text(sheet_with("1800sub3", "200"))
         (folder / "wide.eds").write_text(wide_sheet())
+        for name, can_id in (("speed", 0x181), ("other", 0x182)):
+            (folder / f"{name}.dbc").write_text(f"BO_ {can_id} drive: 2 Vector__XXX\n SG_ motor_speed : 0|16@1+ (1,0) [0|0] \"rpm\" m\n")
         (folder / "short.eds").write_text(re.sub(r"(\[1017\][^\[]*DataType=0x0006\n)", r"\g<1>HighLimit=255\n", sheet_with("1017", "0")))
         (folder / "coarse.eds").write_text(sheet_with("1017", "0").replace("Granularity=8", "Granularity=64"))
         (folder / "rate_100.eds").write_text(sheet_with("1017", "0").replace("BaudRate_125=1", "BaudRate_100=1"))
