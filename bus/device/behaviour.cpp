@@ -80,6 +80,11 @@ void Behaviour::start(Generator generator) {
   generators_.insert_or_assign(key_of_entry(*generator.entry), RunningGenerator{generator, now_us_});
 }
 
+void Behaviour::follow(const ValueCopy& copy) {
+  copies_.push_back({copy, std::nullopt});
+  has_event_ = true;
+}
+
 CommandAnswer Behaviour::stop(const Entry& entry) {
   const std::size_t copies = std::erase_if(copies_, [&](const RunningCopy& copy) { return copy.copy.to == &entry; });
   if (generators_.erase(key_of_entry(entry)) + copies > 0) return {};

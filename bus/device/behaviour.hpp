@@ -115,6 +115,8 @@ class Behaviour {
   // For commands. The text is what is wrong.
   [[nodiscard]] CommandAnswer set(const Entry& entry, std::span<const std::uint8_t> bytes);
   void start(Generator generator);
+  /// Begins a copy, with the present value.
+  void follow(const ValueCopy& copy);
   /// Ends the generator and the copies to an entry.
   [[nodiscard]] CommandAnswer stop(const Entry& entry);
   /// Executes the actions of a rule.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "device/entry_text.hpp"
+#include "device/io_loop.hpp"
 #include "text/printable.hpp"
 #include "text/suggestion.hpp"
 #include "values/nmt_text.hpp"
@@ -85,6 +86,7 @@ constexpr Runner runner_table[] = {
     {{"power-cycle", "",                            "switch off and on",                                  true},  run_power_cycle},
     {{"can",         "off|active",                  "disconnect from the bus, connect again",             true},  run_can},
     {{"fault",       "NAME [ARGUMENTS] [for TIME]", "a fault; fault clear ends all faults",               true},  nullptr},
+    {{"loop",        "on|off",                      "wire the outputs of an I/O module (CiA 401) to its inputs", true}, nullptr},
     {{"fire",        "WORD",                        "execute the actions of a rule",                      true},  run_fire},
     {{"script",      "FILE",                        "add a behaviour script",                             false}, nullptr},
     {{"state",       "",                            "print the NMT state and the faults",                 false}, run_state},
@@ -117,6 +119,23 @@ ParsedCommand parse_fault(std::span<const std::string> words, EntryFinder& names
   command.problem = read_fault(words, names, fault);
   command.action = [fault](Behaviour& behaviour) {
     behaviour.target().start_fault(fault);
+    return CommandAnswer{};
+  };
+  return command;
+}
+
+ParsedCommand parse_loop(std::span<const std::string> words, EntryFinder& names) {
+  ParsedCommand command;
+  CommandArguments arguments;
+  command.problem = read_arguments("on|off", words, names, arguments);
+  const std::vector<ValueCopy> copies = io_loop(names);
+  if (command.problem.empty() && copies.empty())
+    command.problem = "the device does not have an output and an input of CiA 401 with the same number";
+  command.action = [copies, is_on = arguments.word == "on"](Behaviour& behaviour) {
+    for (const ValueCopy& copy : copies) {
+      static_cast<void>(behaviour.stop(*copy.to));
+      if (is_on) behaviour.follow(copy);
+    }
     return CommandAnswer{};
   };
   return command;
@@ -183,6 +202,7 @@ ParsedCommand parse_command(std::string_view line, EntryFinder& names) {
   if (find_generator(words[0]) != nullptr) return parse_generator(words, names);
   const std::span<const std::string> rest = std::span{words}.subspan(1);
   if (words[0] == "fault") return parse_fault(rest, names);
+  if (words[0] == "loop") return parse_loop(rest, names);
   const auto* const runner =
       std::ranges::find_if(runner_table, [&](const Runner& one) { return one.row.name == words[0]; });
   if (runner == std::end(runner_table)) {

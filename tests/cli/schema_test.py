@@ -90,6 +90,21 @@ class Deviations(unittest.TestCase):
                 validator("deviations").validate({"deviations": [wrong]})
 
 
+class Behaviours(unittest.TestCase):
+    def test_that_are_wrong_do_not(self) -> None:
+        event = {"time": "1s"}
+        for wrong in ({"rule": []}, {"generate": {"6064h": "rmap 0 1 5s"}}, {"copy": [{"from": "6064h"}]},
+                      {"rules": [{"on": event}]}, {"rules": [{"on": {**event, "read": "6064h"}, "do": []}]},
+                      {"rules": [{"on": event, "do": ["get 6064h"]}]}, {"rules": [{"on": event, "do": [], "after": "soon"}]}):
+            with self.assertRaises(jsonschema.ValidationError):
+                validator("behaviour").validate(wrong)
+
+    def test_of_the_document_is_right(self) -> None:
+        validator("behaviour").validate({"set": {"6041h": 592}, "generate": {"6064h": "ramp 0 1000 5s"},
+                                         "copy": [{"from": "60FFh", "to": "606Ch", "after": "200 ms"}],
+                                         "rules": [{"name": "x", "on": {"sync": 3}, "refuse": "0609 0031h", "once": True}]})
+
+
 class Dump(CommandLine):
     def check(self, paths: Iterable[Path], *options: str) -> int:
         device = validator("device")

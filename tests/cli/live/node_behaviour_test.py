@@ -9,6 +9,7 @@ each new value and at least each 100 ms.
 
 from __future__ import annotations
 
+import configparser
 import json
 import re
 import signal
@@ -70,9 +71,9 @@ class Behaviour(NodeOnBus):
         self.assertEqual(len(found), count, found)
         return found
 
-    def expect_upload(self, index: int, data: bytes) -> None:
+    def expect_upload(self, index: int, data: bytes, sub_index: int = 0) -> None:
         end = time.monotonic() + PATIENCE
-        while (found := self.sdo.upload(index, 0)) != data and time.monotonic() < end:
+        while (found := self.sdo.upload(index, sub_index)) != data and time.monotonic() < end:
             time.sleep(0.02)
         self.assertEqual(found, data)
 
@@ -160,6 +161,30 @@ class Commands(Behaviour):
         self.assertEqual(self.command("set 6064h 7"), "error: the node-ID is missing, as in 5: state")
         for node_id in (5, 6):
             self.assertEqual(SdoClient(self.wire, node_id, PATIENCE).upload(POSITION, 0), i32(node_id))
+
+    def test_outputs_are_wired_to_inputs(self) -> None:
+        """The outputs of can-2057c, and inputs that are made of them."""
+        eds = configparser.ConfigParser(interpolation=None, strict=False)
+        eds.optionxform = str
+        eds.read(device("can-2057c"), encoding="latin-1")
+        for name in [name for name in eds.sections() if name.startswith("6200")]:
+            eds[name.replace("6200", "6000")] = dict(eds[name])
+        count = int(eds["OptionalObjects"]["SupportedObjects"], 0) + 1
+        eds["OptionalObjects"].update({"SupportedObjects": str(count), str(count): "0x6000"})
+        with (self.folder / "io.eds").open("w", encoding="latin-1") as file:
+            eds.write(file, space_around_delimiters=False)
+        self.process, _ = self.node("io.eds", "--node-id", NODE, "--keep-going", "--quiet", ready=0)
+        self.expect_frame(BOOT_UP, b"\0")
+        self.sdo = SdoClient(self.wire, NODE, PATIENCE)
+        self.sdo.download(0x6200, 1, b"\x5a")
+        self.assertEqual(self.sdo.upload(0x6000, 1), b"\0")
+        self.obeys("loop on")
+        for value in (b"\x5a", b"\xa5"):
+            self.sdo.download(0x6200, 1, value)
+            self.expect_upload(0x6000, value, 1)
+        self.obeys("loop off")
+        self.sdo.download(0x6200, 1, b"\x11")
+        self.assertEqual(self.sdo.upload(0x6000, 1), b"\xa5")
 
     def test_the_end_of_standard_input_does_not_end_the_node(self) -> None:
         self.begin()
