@@ -170,7 +170,7 @@ inline constexpr MemberRow<SignalDescription> signal_members[] = {
     {"name", &SignalDescription::name,
      "name in snake_case, in C++, in the DBC file and in the EDS of a master without a file; that of the object if missing"},
     {"unit", &SignalDescription::unit,
-     "unit of a raw value of 1: `rpm`, `0.1 degC`; that of the EDS or options file if missing"},
+     "unit of a raw value of 1: `rpm`, `0.1 degC`; for objects whose EDS and options file do not state one"},
 };
 
 /// The time in ms in which a node responds to an SDO request: its own, or that of the network; empty if neither is

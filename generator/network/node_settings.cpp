@@ -190,7 +190,7 @@ const Entry* free_consumer(const NetworkNode& node, const Object& object, std::u
   return nullptr;
 }
 
-/// The units that signals state take the place of those of the EDS and the options file.
+/// The units that signals state, of entries whose EDS and options file do not state one.
 void set_quantities(Device& device, const std::map<EntryKey, Quantity>& quantities) {
   if (quantities.empty()) return;
   for (Object& object : device.objects) {

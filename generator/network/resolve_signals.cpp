@@ -10,8 +10,10 @@
 #include <utility>
 
 #include "backend/cpp/identifier.hpp"
+#include "device/entry_text.hpp"
 #include "device/meaning/physical.hpp"
 #include "device/meaning/rational.hpp"
+#include "device/meaning/raw_unit.hpp"
 #include "diagnostics/quote.hpp"
 #include "lookup/find_entry.hpp"
 
@@ -31,7 +33,11 @@ class SignalResolver {
     const bool resolved = from->has_file() ? resolve_from_device(*from, signal) : resolve_from_master(*from, signal);
     if (!resolved || !types_agree(signal)) return std::nullopt;
     check_name(description);
-    if (description.unit) signal.quantity = quantity_of(*description.unit, *signal.from.entry);
+    if (description.unit) {
+      signal.quantity = quantity_of(*description.unit, *signal.from.entry);
+      check_unit(signal, signal.from);
+      for (const SignalEnd& end : signal.to) check_unit(signal, end);
+    }
     return signal;
   }
 
@@ -79,6 +85,15 @@ class SignalResolver {
     quantity.symbol = std::string{quantity.unit->symbol};
     quantity.position = unit.position;
     return quantity;
+  }
+
+  /// The types of C++ have the units of the EDS and the options file, which a signal therefore completes only.
+  void check_unit(const Signal& signal, const SignalEnd& end) {
+    const Quantity* const stated = end.node->has_file() ? quantity_with_unit(*end.entry) : nullptr;
+    if (!signal.quantity || stated == nullptr || has_same_raw_numbers(*signal.quantity, *stated)) return;
+    const auto& [unit, position] = *signal.description->unit;
+    error(position, fmt::format("unit {}, but {} of node {} is in {}", quote(unit), named(*end.entry), end.node->name,
+                                raw_unit_text(*stated)));
   }
 
   const NetworkNode* find_node(std::string_view name, const Position& position) {

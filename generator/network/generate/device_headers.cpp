@@ -8,6 +8,7 @@
 
 #include "backend/cpp/headers.hpp"
 #include "backend/cpp/identifier.hpp"
+#include "device/value_overlay.hpp"
 #include "system/path.hpp"
 
 namespace edsc {
@@ -28,12 +29,18 @@ class HeaderWriter {
   }
 
  private:
-  /// The device with the values of the network. The PDOs of a master without a file cannot be mapped otherwise.
+  /// The device with the values of the network, but without the units of its signals: the other nodes do not have them
+  /// either. The PDOs of a master without a file cannot be mapped otherwise.
   std::string add_master(const NetworkNode& node) {
     const std::string name = namespaces_.take(to_namespace(node.name), "device");
     Options options = node.loaded->options;
     if (!node.has_file()) options.static_mapping.all = true;
-    add(node.device(), options, name);
+    if (node.signal_quantities.empty()) {
+      add(node.device(), options, name);
+    } else {
+      Diagnostics of_mapping;  // reported when the network was read
+      add(with_values(*node.loaded->device, node.settings, node.loaded->options, of_mapping), options, name);
+    }
     return name;
   }
 

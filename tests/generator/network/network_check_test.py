@@ -215,7 +215,12 @@ NETWORKS = {  # name: (network, errors and warnings as severity and rule)
     "two_signals_with_one_name": (
         network(signal(*SPEED, every_ms=10, name="speed"), signal("c", "2000h", "m", every_ms=10, name="speed")),
         [("error", "network-signal")]),
-    "unit_of_a_signal": (network(signal("v", "2000h", "tenths.2002h", every_ms=10, unit="0.01 V"), **IN_UNITS), []),
+    "unit_of_a_signal_as_in_the_sheets": (network(signal("v", "2000h", "plain.2002h", "m", every_ms=10, unit="mV"), **IN_UNITS), []),
+    "unit_of_a_signal_that_differs_from_the_sender": (
+        network(signal("v", "2000h", "plain.2002h", every_ms=10, unit="0.01 V"), **IN_UNITS), [("error", "network-signal")]),
+    "unit_of_a_signal_that_differs_from_a_receiver": (
+        network(signal("v", "2000h", "plain.2002h", "tenths.2002h", every_ms=10, unit="mV"), **IN_UNITS),
+        [("error", "network-signal")]),
     "unit_of_a_signal_that_is_unknown": (network(signal(*SPEED, every_ms=10, unit="0.1 knots")), [("error", "network-signal")]),
     "unit_of_a_signal_with_a_scale_of_0": (network(signal(*SPEED, every_ms=10, unit="0 V")), [("error", "network-signal")]),
     "dbc_file": ({**network(signal(*SPEED)), "dbc": "speed.dbc"}, []),
@@ -312,6 +317,7 @@ MESSAGES = {  # name of a network: what its first finding says
         '"set": {"1800h:01": "0xC0000181"}',
     "name_of_a_signal_in_camel_case": '"MotorSpeed" is not a name in snake_case',
     "unit_of_a_signal_that_is_unknown": 'unknown unit "knots"',
+    "unit_of_a_signal_that_differs_from_the_sender": 'unit "0.01 V", but 2000h:00 "Speed" of node v is in 0.001 V',
     "dbc_file_with_another_can_id": "message drive has 182h, the CAN-ID of no PDO of the network",
     "time_for_the_master_without_a_free_entry": "node a does not have a free entry in 1016h",
 }

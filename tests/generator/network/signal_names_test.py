@@ -69,7 +69,7 @@ class SignalNames(unittest.TestCase):
     def compile(self, statement: str) -> None:
         result = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-I",
                                  SOURCE_DIR / "runtime/include", "-I", self.out, "-x", "c++", "-"],
-                                input=f"#include <canopen/plant/plant.hpp>\n#include <plant.hpp>\n{statement}\n", capture_output=True,
+                                input=f"#include <canopen/master.hpp>\n#include <canopen/plant/plant.hpp>\n#include <plant.hpp>\n{statement}\n", capture_output=True,
                                 text=True)
         self.assertEqual(result.returncode, 0, result.stderr)
 
@@ -85,10 +85,17 @@ class SignalNames(unittest.TestCase):
                          {LONG_NAME, "motor_speed", "goal"})
 
     def test_the_unit_of_a_signal(self) -> None:
-        self.generate(plant({**SENT[0], "unit": "0.01 mm"}, SENT[1]))
+        text = (self.folder / "node.eds").read_text(encoding="utf-8")
+        for section in ("2001", "2003"):
+            text = re.sub(rf"(\[{section}\][^\[]*)Unit=\w+\n", r"\1", text)
+        (self.folder / "node.eds").write_text(text, encoding="utf-8")
+        (self.folder / "node.options.json").write_text('{"typed_values": true}')
+        self.generate(plant({**SENT[0], "unit": "0.01 mm"}, SENT[1], {**SENT[2], "unit": "0.01 mm"}))
         position = self.signals()[0x181, 0]
         self.assertEqual((float(position.factor), float(position.offset), position.unit), (0.01, 0, "mm"))
         self.assertEqual(self.signals()[0x181, 32].unit, "rpm")  # of node.eds
+        self.assertEqual((float(self.signals()[0x201, 0].factor), self.signals()[0x201, 0].unit), (0.01, "mm"))
+        self.compile("void use(canopen::Plant<plant::Network, canopen::HostBus>& it) { static_cast<void>(it.a.target_position(5)); }")
         self.assertIn('Position" INTEGER32 in 0.01 mm', (self.out / "plant.hpp").read_text(encoding="utf-8"))
 
     def import_names(self, change: object, network: dict) -> str:
