@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "audit/cycle_report.hpp"
+#include "audit/network_times_report.hpp"
 #include "backend/render.hpp"
 #include "backend/template_parts.hpp"
 #include "device/device.hpp"
@@ -64,6 +65,11 @@ std::string following_text(const Grouped& grouped, std::size_t cause) {
     if (count > 1) text += fmt::format(" ({})", count);
   }
   return text;
+}
+
+/// The network has a bit rate, and the log times.
+bool has_network_times(const Report& report) {
+  return report.network_times != nullptr && report.totals.has_times && !report.network_times->messages().empty();
 }
 
 /// `1.234567 s`
@@ -231,6 +237,8 @@ std::string text_report(const Report& report, bool color) {
   }
   text += fmt::format("{}: {}: {}\n", printable(report.log), totals_text(report), verdict_text(report));
   if (report.shows_cycles && report.totals.has_times) text += '\n' + cycles_text(*report.cycle_times, *report.labels);
+  if (report.shows_times && has_network_times(report))
+    text += '\n' + network_text(*report.network_times, report.totals);
   return text;
 }
 
@@ -253,21 +261,23 @@ std::string json_report(const Report& report) {
   const auto percent = [&](std::uint64_t tenths) {
     return has_load ? json(static_cast<double>(tenths) / 10) : json(nullptr);
   };
-  const json document = {{"schema", 2},
-                         {"log", printable(report.log)},
-                         {"clean", report.is_clean()},
-                         {"frames", totals.frames},
-                         {"nodes", totals.nodes},
-                         {"duration_us", totals.has_times ? json(totals.duration_us) : json(nullptr)},
-                         {"mean_load_percent", percent(totals.mean_load)},
-                         {"max_load_percent", percent(totals.max_load)},
-                         {"errors", report.findings->count(Severity::error)},
-                         {"warnings", report.findings->count(Severity::warning)},
-                         {"notes", report.findings->count(Severity::note)},
-                         {"not_listed", report.findings->not_listed()},
-                         {"findings", std::move(findings)},
-                         {"provoked", std::move(provoked)},
-                         {"cycles", cycles_json(*report.cycle_times, *report.labels)}};
+  const json document = {
+      {"schema", 2},
+      {"log", printable(report.log)},
+      {"clean", report.is_clean()},
+      {"frames", totals.frames},
+      {"nodes", totals.nodes},
+      {"duration_us", totals.has_times ? json(totals.duration_us) : json(nullptr)},
+      {"mean_load_percent", percent(totals.mean_load)},
+      {"max_load_percent", percent(totals.max_load)},
+      {"errors", report.findings->count(Severity::error)},
+      {"warnings", report.findings->count(Severity::warning)},
+      {"notes", report.findings->count(Severity::note)},
+      {"not_listed", report.findings->not_listed()},
+      {"findings", std::move(findings)},
+      {"provoked", std::move(provoked)},
+      {"cycles", cycles_json(*report.cycle_times, *report.labels)},
+      {"network", has_network_times(report) ? network_json(*report.network_times, totals) : json(nullptr)}};
   return json_text(document) + '\n';
 }
 
@@ -305,7 +315,9 @@ std::string html_report(const Report& report) {
                {"has_provoked", !provoked.empty()},
                {"provoked", provoked},
                {"has_cycles", !report.cycle_times->cycles().empty()},
-               {"cycles", cycles_rows(*report.cycle_times, *report.labels)}};
+               {"cycles", cycles_rows(*report.cycle_times, *report.labels)},
+               {"has_network", has_network_times(report)}};
+  if (has_network_times(report)) view["network"] = network_view(*report.network_times, report.totals);
   return render_html(with_parts("audit.html"), view);
 }
 

@@ -18,8 +18,10 @@ struct Report {
   const Findings* findings = nullptr;
   const Incidents* incidents = nullptr;
   const CycleTimes* cycle_times = nullptr;
-  bool shows_cycles = false;  ///< in text
-  bool shows_all = false;     ///< in text and HTML: also the findings that follow from others
+  const NetworkTimes* network_times = nullptr;  ///< null without a network file
+  bool shows_cycles = false;                    ///< in text
+  bool shows_times = false;                     ///< in text: those of the network
+  bool shows_all = false;                       ///< in text and HTML: also the findings that follow from others
 
   /// Whether no finding is an error or a warning.
   [[nodiscard]] bool is_clean() const;

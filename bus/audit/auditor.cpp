@@ -95,6 +95,7 @@ void Auditor::see(const LogLine& line, const Message& message) {
   sdo_.see(seen, audit_);
   lss_.see(seen, audit_);
   cycle_times_.see(seen, audit_);
+  if (network_times_) network_times_->see(seen);
   NodeState& node = audit_.sender(message);
   if (!node.first_seen && is_from_node(message) && !line.frame.remote) node.first_seen = now_;
   read_settings(message);

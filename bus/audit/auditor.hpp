@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "audit/checks/sdo_check.hpp"
 #include "audit/checks/sync_check.hpp"
 #include "audit/cycle_times.hpp"
+#include "audit/network_times.hpp"
 #include "decode/decoder.hpp"
 #include "decode/log/log_line.hpp"
 #include "decode/log/ordered_time.hpp"
@@ -48,6 +50,9 @@ class Auditor {
   /// The run of `edsc conform` that wrote the log.
   void expect(Provocations provocations) { audit_.findings.expect(std::move(provocations)); }
 
+  /// Measures the messages of the network, which must outlive the auditor.
+  void measure(const Network& network) { network_times_.emplace(network); }
+
   /// Checks a frame whose message the decoder has just returned.
   void see(const LogLine& line, const Message& message);
 
@@ -57,6 +62,8 @@ class Auditor {
   [[nodiscard]] const Findings& findings() const { return audit_.findings; }
   [[nodiscard]] const Incidents& incidents() const { return audit_.incidents; }
   [[nodiscard]] const CycleTimes& cycle_times() const { return cycle_times_; }
+  /// Null without a network.
+  [[nodiscard]] const NetworkTimes* network_times() const { return network_times_ ? &*network_times_ : nullptr; }
   /// After `finish()`.
   [[nodiscard]] Totals totals() const;
 
@@ -79,6 +86,7 @@ class Auditor {
   LssCheck lss_;
   BusCheck bus_;
   CycleTimes cycle_times_;
+  std::optional<NetworkTimes> network_times_;
   std::uint64_t frames_ = 0;
   OrderedTime times_;
   std::string interface_;  ///< of the first frame that has one

@@ -24,6 +24,7 @@ constexpr const char* examples = R"(Examples:
   edsc audit can0.log                                             without an EDS: SDO, NMT, LSS, lost nodes, gaps
   edsc audit trip.asc --node axis1.dcf --bit-rate 500             also the load of the bus
   edsc audit can0.log --node axis1.dcf --cycles                   also cycle times and jitter
+  edsc audit can0.log --network plant.json --times                measured times beside the computed bounds
   edsc audit capture.pcapng --node axis1.dcf --format html -o audit.html
   candump -L can0 | edsc audit --node axis1.dcf --silence can-id-unknown
   edsc audit frames.log --node 5=drive.eds --conform report.json  a log and a report of one conformance test
@@ -40,6 +41,7 @@ struct Settings : LogSettings {
   std::string format = "text";
   std::string output;
   bool cycles = false;
+  bool times = false;
   bool all_findings = false;
   bool list_rules = false;
 
@@ -81,16 +83,24 @@ std::string report_text(const audit::Report& report, const Settings& settings) {
   return text_report(report, settings.output.empty() && settings.color.on(stdout));
 }
 
+/// The bit rate of the command line, otherwise that of the network file; 0: not known.
+std::uint32_t bit_rate_of(const Settings& settings, const GivenNodes& nodes) {
+  if (settings.bit_rate_kbit != 0 || !nodes.network) return settings.bit_rate_kbit;
+  const WrittenNumber& of_network = nodes.network->network.description.bit_rate;
+  return of_network ? of_network->value : 0;
+}
+
 int audit_log(const Settings& given) {
   if (given.list_rules) return list_rules(given);
   Settings settings = given;
   settings.limits.sdo_timeout_us = std::int64_t{settings.timeout_ms} * 1000;
-  settings.limits.bit_rate = settings.bit_rate_kbit * 1000;
   const GivenNodes nodes = load_given_nodes(settings, settings.color);
+  settings.limits.bit_rate = bit_rate_of(settings, nodes) * 1000;
   LogDecoder decoder{
       nodes.known_with_masters(), nodes.labels, {settings.log_name(), settings.interface, LogOutput::text, false, {}}};
   audit::Auditor auditor{decoder.decoder(), settings.limits};
   auditor.set_nmt_master(settings.nmt_master);
+  if (nodes.network) auditor.measure(nodes.network->network);
   if (!settings.conform.empty()) auditor.expect(read_provocations(settings.conform));
   for (const std::string& id : settings.silence) auditor.silence(*find_rule(audit::audit_rules, id));
 
@@ -118,9 +128,18 @@ int audit_log(const Settings& given) {
     fail_if_unreadable();
     fail(settings.log_name() + ": the log has no frames", exit_input_has_errors);
   }
-  const audit::Report report{settings.log_name(), auditor.totals(),     settings.limits,      &decoder.decoder(),
-                             &nodes.labels,       &auditor.findings(),  &auditor.incidents(), &auditor.cycle_times(),
-                             settings.cycles,     settings.all_findings};
+  const audit::Report report{.log = settings.log_name(),
+                             .totals = auditor.totals(),
+                             .limits = settings.limits,
+                             .decoder = &decoder.decoder(),
+                             .labels = &nodes.labels,
+                             .findings = &auditor.findings(),
+                             .incidents = &auditor.incidents(),
+                             .cycle_times = &auditor.cycle_times(),
+                             .network_times = auditor.network_times(),
+                             .shows_cycles = settings.cycles,
+                             .shows_times = settings.times,
+                             .shows_all = settings.all_findings};
   write_output(settings.output, report_text(report, settings),
                settings.log == "-" ? std::vector<std::string>{} : std::vector{settings.log});
   fail_if_unreadable();
@@ -135,13 +154,17 @@ void add_audit_options(Command command, int& exit_code) {
   command.add_option("--tolerance", settings.limits.tolerance).range(0, 1000).show_default();
   command.add_milliseconds("--timeout", settings.timeout_ms, 1, 3'600'000, "to an SDO request");
   command.add_option("--master", settings.written_master);
-  command.add_option("--bit-rate", settings.bit_rate_kbit, "to compute the bus load").range(1, 1000);
+  command
+      .add_option("--bit-rate", settings.bit_rate_kbit, "to compute the bus load (default: that of the network file)")
+      .range(1, 1000);
   command.add_option("--max-load", settings.limits.max_load).range(1, 100).show_default();
   take_rules(command.add_option("--silence", settings.silence).one_value_each(), audit::audit_rules, "--list-rules");
   command.add_option("--conform", settings.conform);
   add_choice(command, "--format", settings.format, {"text", "json", "html"});
   command.add_option("--output", settings.output, "default: standard output");
   command.add_flag("--cycles", settings.cycles, "JSON and HTML always have them");
+  command.add_flag("--times", settings.times,
+                   "of the network file, beside the measured times; JSON and HTML always have them");
   command.add_flag("--all-findings", settings.all_findings, "JSON always has them");
   command.add_flag("--list-rules", settings.list_rules);
 }

@@ -40,7 +40,7 @@ ROWS = {
     "accept": ("accept @ 5 device.eds --only 2.1 --quiet --timeout 60s", "accept @ axis1 --only 2.1 --quiet --timeout 60s"),
     "overlay from-bus": ("overlay from-bus @ 5 device.eds -o % --timeout 60s", "overlay from-bus @ axis1 -o % --timeout 60s"),
     "decode": ("decode can0.log --node 5=device.eds", "decode can0.log --node axis1"),
-    "audit": ("audit can0.log --node 5=device.eds --master 5", "audit can0.log --node axis1 --master axis1"),
+    "audit": ("audit can0.log --node 5=device.eds --master 5 --bit-rate 500", "audit can0.log --node axis1 --master axis1"),
     "replay": ("replay can0.log --node 5=device.eds", "replay can0.log --node axis1"),
     "plot": ("plot can0.log 1018h:01 --node 5=device.eds -o %", "plot can0.log 1018h:01 --node axis1 -o %"),
 }
