@@ -33,6 +33,7 @@ MORE = {
     "network scan": ("network scan @ --eds . --nodes 100 --for 1ms --timeout 10ms -o none.json", FAILED),
     "network verify": ("network verify @ absent.json --timeout 10ms", FAILED),
     "network apply": ("network apply @ absent.json --timeout 10ms", FAILED),
+    "network run": ("network run @ no_rate.json", FAILED),
     "scan": ("scan @ --nodes 100 --for 1ms --timeout 10ms", FAILED),
     "read": ("read @ 5 1018h:01 --type u32 --timeout 60s", FINE),
     "write": ("write @ 5 1017h 0 --type u16 --timeout 60s", FINE),
@@ -82,7 +83,7 @@ WAITING = {
 }
 # Ctrl-C is their regular end.
 ENDED_BY_USER = {"bus": "bus --listen 127.0.0.1:0", "monitor": "monitor @", "record": "record @ -o recorded.log",
-                 "node": "node @ device.eds --node-id 9"}
+                 "node": "node @ device.eds --node-id 9", "network run": "network run @ absent.json"}
 NOT_WAITING = {"lss state"}
 
 
@@ -153,11 +154,11 @@ class ExitCodes(standard_streams_test.PreparedFiles):
                 self.assertEqual(code, WRONG_USAGE, error)
                 self.assertIn("127.0.0.1:1", error)
                 checked += 1
-        self.assertEqual(checked, len(WAITING) + 3)
+        self.assertEqual(checked, len(WAITING) + len(ENDED_BY_USER) - 1)
 
     def test_of_an_interrupt(self) -> None:
         with_bus = {name for name, command in COMMANDS.items() if command["usage"].replace("[BUS]", "BUS").count("BUS")}
-        self.assertEqual(with_bus, set(WAITING) | {"monitor", "record", "node"} | NOT_WAITING)
+        self.assertEqual(with_bus, set(WAITING) | set(ENDED_BY_USER) - {"bus"} | NOT_WAITING)
         for name, text in (WAITING | ENDED_BY_USER).items():
             with self.subTest(command=name):
                 process = subprocess.Popen(self.words_of(text), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)

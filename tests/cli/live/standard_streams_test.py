@@ -94,7 +94,7 @@ ROWS = (
     Row("audit", ("bus.log", "--node", "5=device.eds"), FAILED, warns=True),
     Row("plot", ("bus.log", "1017h", "--node", "5=device.eds"), FAILED, warns=True),
 )
-ENDLESS = {"bus", "node"}  # until SIGINT
+ENDLESS = {"bus", "node", "network run"}  # until SIGINT
 
 
 class PreparedFiles(LiveTest):
