@@ -26,7 +26,7 @@ BehavingNode::BehavingNode(BehavingNodeSettings settings, canopen::SimulatedBus&
     : settings_{std::move(settings)},
       bus_{bus},
       memory_{memory},
-      faults_{{[this] { return unsigned{lost_node_id_.value_or(node_->node_id()).value()}; },
+      faults_{{[this] { return unsigned{node_->node_id().value()}; },
                [this](unsigned number) -> std::optional<std::uint32_t> {
                  const auto bytes = node_->get(static_cast<std::uint16_t>(first_tpdo + number - 1), 1);
                  if (!bytes) return std::nullopt;
@@ -94,7 +94,7 @@ std::optional<canopen::TimePoint> BehavingNode::next_deadline() const {
 }
 
 canopen::AbortCode BehavingNode::set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
-  if (faults_.has(FaultKind::stuck, index, sub_index)) return canopen::ok;
+  if (faults_.has(NodeFaultKind::stuck, index, sub_index)) return canopen::ok;
   return node_->set(index, sub_index, bytes);
 }
 
@@ -121,7 +121,7 @@ canopen::AbortCode BehavingNode::before_write(std::uint32_t key, std::span<std::
   const std::uint16_t index = index_of(key);
   const std::uint8_t sub_index = sub_index_of(key);
   const canopen::AbortCode code = behaviour_.before_write(index, sub_index, bytes);
-  if (code != canopen::ok || !faults_.has(FaultKind::stuck, index, sub_index)) return code;
+  if (code != canopen::ok || !faults_.has(NodeFaultKind::stuck, index, sub_index)) return code;
   // The present value replaces the written one.
   const auto present = node_->get(index, sub_index);
   return present ? node_->set(index, sub_index, *present) : code;
@@ -163,7 +163,7 @@ void BehavingNode::clear_faults() {
 }
 
 void BehavingNode::follow_lost_node_id() {
-  const bool is_lost = faults_.has(FaultKind::lost_node_id);
+  const bool is_lost = faults_.has(NodeFaultKind::lost_node_id);
   if (is_lost == lost_node_id_.has_value()) return;
   if (is_lost) {
     lost_node_id_ = node_->node_id();

@@ -168,7 +168,7 @@ std::string commands_help() {
   std::string text = "Commands:\n";
   for (const NodeCommandRow& row : command_rows()) append_help(text, row.name, row.arguments, row.help);
   text += "Faults:\n";
-  for (const NodeFaultRow& row : fault_rows()) append_help(text, row.name, row.arguments, row.help);
+  for (const NodeFaultRow& row : node_fault_rows()) append_help(text, row.name, row.arguments, row.help);
   return text;
 }
 

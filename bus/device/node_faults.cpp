@@ -16,20 +16,20 @@ namespace {
 
 // clang-format off
 constexpr NodeFaultRow fault_table[] = {
-    {FaultKind::silent,       "silent",       "",                        "sends nothing; still executes what it receives"},
-    {FaultKind::no_boot_up,   "no-boot-up",   "",                        "does not send its boot-up message"},
-    {FaultKind::no_heartbeat, "no-heartbeat", "",                        "does not send heartbeats or responses to node guarding"},
-    {FaultKind::no_sdo,       "no-sdo",       "[OBJECT]",                "does not respond to SDO requests, of this object or of all"},
-    {FaultKind::sdo_delay,    "sdo-delay",    "TIME",                    "sends SDO responses later by this time"},
-    {FaultKind::sdo_drop,     "sdo-drop",     "1/N",                     "does not send every Nth SDO response"},
-    {FaultKind::sdo_toggle,   "sdo-toggle",   "",                        "sends segments with the wrong toggle bit"},
-    {FaultKind::abort,        "abort",        "OBJECT CODE [read|write]", "aborts SDO transfers of this object with this code"},
-    {FaultKind::pdo_short,    "pdo-short",    "N BYTES",                 "sends TPDO N with this number of bytes at most"},
-    {FaultKind::no_pdo,       "no-pdo",       "N",                       "does not send TPDO N"},
-    {FaultKind::babbling,     "babbling",     "",                        "sends EMCY FF00h each millisecond"},
-    {FaultKind::stuck,        "stuck",        "OBJECT",                  "the value does not change any more"},
-    {FaultKind::twin,         "twin",         "",                        "another node has the same node-ID: each frame is sent twice"},
-    {FaultKind::lost_node_id, "lost-node-id", "",                        "restarts without node-ID, as an unconfigured LSS slave"},
+    {NodeFaultKind::silent,       "silent",       "",                        "sends nothing; still executes what it receives"},
+    {NodeFaultKind::no_boot_up,   "no-boot-up",   "",                        "does not send its boot-up message"},
+    {NodeFaultKind::no_heartbeat, "no-heartbeat", "",                        "does not send heartbeats or responses to node guarding"},
+    {NodeFaultKind::no_sdo,       "no-sdo",       "[OBJECT]",                "does not respond to SDO requests, of this object or of all"},
+    {NodeFaultKind::sdo_delay,    "sdo-delay",    "TIME",                    "sends SDO responses later by this time"},
+    {NodeFaultKind::sdo_drop,     "sdo-drop",     "1/N",                     "does not send every Nth SDO response"},
+    {NodeFaultKind::sdo_toggle,   "sdo-toggle",   "",                        "sends segments with the wrong toggle bit"},
+    {NodeFaultKind::abort,        "abort",        "OBJECT CODE [read|write]", "aborts SDO transfers of this object with this code"},
+    {NodeFaultKind::pdo_short,    "pdo-short",    "N BYTES",                 "sends TPDO N with this number of bytes at most"},
+    {NodeFaultKind::no_pdo,       "no-pdo",       "N",                       "does not send TPDO N"},
+    {NodeFaultKind::babbling,     "babbling",     "",                        "sends EMCY FF00h each millisecond"},
+    {NodeFaultKind::stuck,        "stuck",        "OBJECT",                  "the value does not change any more"},
+    {NodeFaultKind::twin,         "twin",         "",                        "another node has the same node-ID: each frame is sent twice"},
+    {NodeFaultKind::lost_node_id, "lost-node-id", "",                        "restarts without node-ID, as an unconfigured LSS slave"},
 };
 // clang-format on
 
@@ -66,7 +66,7 @@ bool names_entry(const NodeFault& fault, std::uint16_t index, std::uint8_t sub_i
 
 bool aborts(const NodeFault& fault, const Initiate& request) {
   const std::string& when = fault.arguments.word;
-  return fault.row->kind == FaultKind::abort && names_entry(fault, request.index, request.sub_index) &&
+  return fault.row->kind == NodeFaultKind::abort && names_entry(fault, request.index, request.sub_index) &&
          (when.empty() || (when == "read") == request.is_read);
 }
 
@@ -78,7 +78,7 @@ bool is_segment_response(const canopen::Frame& frame) {
 
 }  // namespace
 
-std::span<const NodeFaultRow> fault_rows() { return fault_table; }
+std::span<const NodeFaultRow> node_fault_rows() { return fault_table; }
 
 std::string read_fault(std::span<const std::string> words, EntryFinder& names, NodeFault& fault) {
   if (words.empty()) return "the name of a fault is missing";
@@ -107,7 +107,7 @@ void NodeFaults::start(NodeFault fault, std::uint64_t now_us) {
   });
   Active active{std::move(fault), std::nullopt, now_us};
   if (active.fault.span_us) active.end_us = now_us + *active.fault.span_us;
-  if (active.fault.row->kind == FaultKind::twin) {
+  if (active.fault.row->kind == NodeFaultKind::twin) {
     canopen::Frame boot_up{};
     boot_up.id = error_control_id + node_.node_id();
     boot_up.size = 1;
@@ -121,7 +121,7 @@ void NodeFaults::clear() { active_.clear(); }
 void NodeFaults::on_time(std::uint64_t now_us) {
   std::erase_if(active_, [&](const Active& active) { return active.end_us && *active.end_us <= now_us; });
   for (Active& active : active_) {
-    if (active.fault.row->kind != FaultKind::babbling || active.next_us > now_us) continue;
+    if (active.fault.row->kind != NodeFaultKind::babbling || active.next_us > now_us) continue;
     canopen::Frame frame{};
     frame.id = emcy_id + node_.node_id();
     frame.size = 8;
@@ -136,17 +136,17 @@ std::optional<std::uint64_t> NodeFaults::next_us() const {
   const auto consider = [&next](std::uint64_t time) { next = next ? std::min(*next, time) : time; };
   for (const Active& active : active_) {
     if (active.end_us) consider(*active.end_us);
-    if (active.fault.row->kind == FaultKind::babbling) consider(active.next_us);
+    if (active.fault.row->kind == NodeFaultKind::babbling) consider(active.next_us);
   }
   if (!queue_.empty()) consider(queue_.front().due_us);
   return next;
 }
 
-bool NodeFaults::has(FaultKind kind) const {
+bool NodeFaults::has(NodeFaultKind kind) const {
   return std::ranges::any_of(active_, [kind](const Active& active) { return active.fault.row->kind == kind; });
 }
 
-bool NodeFaults::has(FaultKind kind, std::uint16_t index, std::uint8_t sub_index) const {
+bool NodeFaults::has(NodeFaultKind kind, std::uint16_t index, std::uint8_t sub_index) const {
   return std::ranges::any_of(active_, [&](const Active& active) {
     return active.fault.row->kind == kind && names_entry(active.fault, index, sub_index);
   });
@@ -163,7 +163,7 @@ bool NodeFaults::receive(const canopen::Frame& frame, std::uint64_t now_us) {
   const std::optional<Initiate> request = initiate_of(frame);
   for (const Active& active : active_) {
     const NodeFault& fault = active.fault;
-    if (fault.row->kind == FaultKind::no_sdo) {
+    if (fault.row->kind == NodeFaultKind::no_sdo) {
       if (fault.arguments.object == nullptr) return false;
       if (request && names_entry(fault, request->index, request->sub_index)) return false;
     }
@@ -189,27 +189,27 @@ bool NodeFaults::change(Active& active, canopen::Frame& frame, std::uint64_t& du
   const bool is_response = has_id(frame, sdo_response_id + node_.node_id());
   const bool is_error_control = has_id(frame, error_control_id + node_.node_id());
   switch (active.fault.row->kind) {
-    case FaultKind::silent: return false;
-    case FaultKind::no_boot_up: return !is_error_control || frame.data[0] != 0;
-    case FaultKind::no_heartbeat: return !is_error_control || frame.data[0] == 0;
-    case FaultKind::sdo_delay:
+    case NodeFaultKind::silent: return false;
+    case NodeFaultKind::no_boot_up: return !is_error_control || frame.data[0] != 0;
+    case NodeFaultKind::no_heartbeat: return !is_error_control || frame.data[0] == 0;
+    case NodeFaultKind::sdo_delay:
       if (is_response) due_us += *arguments.time_us;
       return true;
-    case FaultKind::sdo_drop: return !is_response || ++active.frames % *arguments.number != 0;
-    case FaultKind::sdo_toggle:
+    case NodeFaultKind::sdo_drop: return !is_response || ++active.frames % *arguments.number != 0;
+    case NodeFaultKind::sdo_toggle:
       if (is_response && is_segment_response(frame)) frame.data[0] ^= toggle_bit;
       return true;
-    case FaultKind::pdo_short:
+    case NodeFaultKind::pdo_short:
       if (is_tpdo(active, frame))
         frame.size = static_cast<std::uint8_t>(std::min<unsigned>(frame.size, *arguments.count));
       return true;
-    case FaultKind::no_pdo: return !is_tpdo(active, frame);
-    case FaultKind::no_sdo:
-    case FaultKind::abort:
-    case FaultKind::babbling:
-    case FaultKind::stuck:
-    case FaultKind::twin:
-    case FaultKind::lost_node_id: return true;
+    case NodeFaultKind::no_pdo: return !is_tpdo(active, frame);
+    case NodeFaultKind::no_sdo:
+    case NodeFaultKind::abort:
+    case NodeFaultKind::babbling:
+    case NodeFaultKind::stuck:
+    case NodeFaultKind::twin:
+    case NodeFaultKind::lost_node_id: return true;
   }
   return true;
 }
@@ -221,7 +221,7 @@ void NodeFaults::send(const canopen::Frame& frame, std::uint64_t now_us) {
     if (!change(active, changed, due_us)) return;
   }
   queue(changed, due_us);
-  if (has(FaultKind::twin)) queue(changed, due_us);
+  if (has(NodeFaultKind::twin)) queue(changed, due_us);
 }
 
 void NodeFaults::queue(const canopen::Frame& frame, std::uint64_t due_us) {

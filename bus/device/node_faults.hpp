@@ -14,7 +14,7 @@
 
 namespace edsc {
 
-enum class FaultKind : std::uint8_t {
+enum class NodeFaultKind : std::uint8_t {
   silent,
   no_boot_up,
   no_heartbeat,
@@ -32,13 +32,13 @@ enum class FaultKind : std::uint8_t {
 };
 
 struct NodeFaultRow {
-  FaultKind kind;
+  NodeFaultKind kind;
   std::string_view name;
   std::string_view arguments;  ///< a pattern of read_arguments()
   std::string_view help;
 };
 
-[[nodiscard]] std::span<const NodeFaultRow> fault_rows();
+[[nodiscard]] std::span<const NodeFaultRow> node_fault_rows();
 
 struct NodeFault {
   const NodeFaultRow* row = nullptr;
@@ -67,9 +67,9 @@ class NodeFaults {
   void on_time(std::uint64_t now_us);
   [[nodiscard]] std::optional<std::uint64_t> next_us() const;
 
-  [[nodiscard]] bool has(FaultKind kind) const;
+  [[nodiscard]] bool has(NodeFaultKind kind) const;
   /// Whether an entry has a fault.
-  [[nodiscard]] bool has(FaultKind kind, std::uint16_t index, std::uint8_t sub_index) const;
+  [[nodiscard]] bool has(NodeFaultKind kind, std::uint16_t index, std::uint8_t sub_index) const;
   /// The names of the present faults, with commas; empty without one.
   [[nodiscard]] std::string text() const;
 

@@ -40,6 +40,7 @@ class Rate {
 
 struct MonitoredNode {
   std::string name;                          ///< from the EDS
+  bool is_simulated = false;                 ///< by this program
   std::optional<canopen::NmtState> state;    ///< reported by error control
   std::optional<canopen::NmtState> assumed;  ///< from later NMT commands and TPDOs, if not `state`
   std::optional<std::int64_t> heard_us;      ///< its last error control message
@@ -84,6 +85,7 @@ class MonitorState {
   };
 
   void set_name(std::uint8_t node_id, std::string name) { node_of(node_id).name = std::move(name); }
+  void set_simulated(std::uint8_t node_id, bool is_simulated) { node_of(node_id).is_simulated = is_simulated; }
 
   /// Returns true for new information. Heartbeats of the same state, PDOs with the same octets and mapping, SYNC and
   /// TIME are not new.

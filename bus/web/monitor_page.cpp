@@ -86,6 +86,7 @@ std::vector<LiveRow> monitor_rows(const MonitorState& state, std::optional<unsig
                           {{"kind", "node"},
                            {"node_id", node_id},
                            {"name", printable(node.name)},
+                           {"simulated", node.is_simulated},
                            {"state", state_text(node.state)},
                            {"assumed_state", state_text(node.assumed)},
                            {"heard_us", node.heard_us ? Json(*node.heard_us - state.start_us()) : Json(nullptr)},

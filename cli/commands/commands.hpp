@@ -44,6 +44,7 @@ AddOptions add_version_options;
 // Subcommands of `network`.
 AddOptions add_network_apply_options;
 AddOptions add_network_generate_options;
+AddOptions add_network_run_options;
 AddOptions add_network_scan_options;
 AddOptions add_network_simulate_options;
 AddOptions add_network_verify_options;
@@ -68,7 +69,7 @@ inline constexpr CommandRow commands[] = {
      add_overlay_options},
     {"EDS files", "diff", "compare two EDS files; report breaking changes", add_diff_options},
     {"EDS files", "document", "write a device or a network as an HTML page or as Markdown", add_document_options},
-    {"Networks", "network", "check, generate, simulate, verify and configure a network", add_network_options},
+    {"Networks", "network", "check, generate, simulate, verify, configure and run a network", add_network_options},
 #ifndef EDSC_OFFLINE
     {"Bus", "scan", "find and identify the nodes on a bus", add_scan_options},
     {"Bus", "read", "read objects of a node over SDO", add_read_options},

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "commands/commands.hpp"
-#include "decode/decoder.hpp"
 #include "decode/log/print_message.hpp"
 #include "monitor/monitor_view.hpp"
 #include "monitor/terminal.hpp"
@@ -14,14 +13,12 @@
 #include "shared/exit_code.hpp"
 #include "shared/given_nodes.hpp"
 #include "shared/live_options.hpp"
+#include "shared/monitor_feed.hpp"
+#include "shared/monitor_server.hpp"
 #include "shared/output.hpp"
 #include "shared/with_bus.hpp"
 #include "text/counted.hpp"
 #include "text/printable.hpp"
-#include "web/live_rows.hpp"
-#include "web/monitor_page.hpp"
-#include "web/request_guard.hpp"
-#include "web/web_server.hpp"
 
 namespace edsc {
 namespace {
@@ -56,16 +53,7 @@ std::optional<unsigned> bit_rate_of(const Settings& settings, const GivenNodes& 
 class Monitor {
  public:
   Monitor(LiveBus& bus, const Settings& settings, const GivenNodes& nodes)
-      : bus_{bus}, decoder_{nodes.known()}, view_{settings.bus, bit_rate_of(settings, nodes), false} {
-    for (const auto& [node_id, node] : nodes.devices) state_.set_name(node_id, node.named.device.product_name);
-    for (std::uint8_t node_id = 1; node_id <= 127; ++node_id) {
-      if (const std::string_view name = nodes.labels.name(node_id); !name.empty()) {
-        state_.set_name(node_id, std::string{name});
-      }
-    }
-    last_ = bus_.now();
-    state_.start(0);
-  }
+      : bus_{bus}, feed_{nodes, bus.now()}, view_{settings.bus, bit_rate_of(settings, nodes), false} {}
 
   /// A table that is updated ten times a second, until q or Ctrl-C.
   int show_table(bool colour) {
@@ -83,33 +71,20 @@ class Monitor {
     while (!Interruption::noted()) {
       take_frames(between_pictures, [this](const Message& message) {
         const std::string who = message.node_id == 0 ? "" : fmt::format("node {} ", message.node_id);
-        print_visibly(stdout, "{:>12.6f}  {:<9} {}{}\n", static_cast<double>(now_us_) / 1e6, service_label(message),
-                      who, message.text);
+        print_visibly(stdout, "{:>12.6f}  {:<9} {}{}\n", static_cast<double>(feed_.now_us()) / 1e6,
+                      service_label(message), who, message.text);
         flush_output();
       });
     }
     return exit_fine;
   }
 
-  /// Serves a page that is updated ten times a second, until Ctrl-C. Throws CannotListen.
+  /// Serves a page that is updated ten times a second, until Ctrl-C.
   int show_in_browser(const ListenAddress& address) {
-    LiveRows rows;
-    EmergencyLog emergencies;
-    const WebServer server{address, monitor_page(view_.bus), rows};
-    if (!RequestGuard::is_loopback(address.host)) {
-      print_to_stderr("edsc: whoever sees this URL in the network can read the bus; the connection is not encrypted\n");
-    }
-    if (!has_plots()) print_to_stderr("edsc: this program was built without uPlot: the page has no plots\n");
-    fmt::print("{}\n", server.url());
-    flush_output();
+    MonitorServer server{address, view_.bus};
     while (!Interruption::noted()) {
-      take_frames(between_pictures, [&](const Message& message) {
-        if (message.service == Service::emcy) emergencies.add(message, now_us_);
-      });
-      std::vector<LiveRow> changed = monitor_rows(state_, view_.bit_rate, now_us_);
-      std::vector<std::string> removed;
-      emergencies.take(changed, removed);
-      rows.publish(std::move(changed), removed);
+      take_frames(between_pictures, [&](const Message& message) { server.add(message, feed_.now_us()); });
+      server.publish(feed_.state(), view_.bit_rate, feed_.now_us());
     }
     return exit_fine;
   }
@@ -117,16 +92,16 @@ class Monitor {
   /// The state after this time, or at Ctrl-C.
   int print_once(std::uint64_t span_us, const std::string& format) {
     const auto end_us = static_cast<std::int64_t>(span_us);
-    while (!Interruption::noted() && now_us_ < end_us) {
-      const std::int64_t left = end_us - now_us_;
+    while (!Interruption::noted() && feed_.now_us() < end_us) {
+      const std::int64_t left = end_us - feed_.now_us();
       take_frames(std::min(between_pictures, canopen::Duration{static_cast<std::uint32_t>(left)}),
                   [](const Message&) {});
     }
-    state_.end(now_us_);
+    feed_.state().end(feed_.now_us());
     if (format == "json") {
-      fmt::print("{}\n", json_text(monitor_json(state_, view_, now_us_)));
+      fmt::print("{}\n", json_text(monitor_json(feed_.state(), view_, feed_.now_us())));
     } else {
-      for (const std::string& line : monitor_lines(state_, view_, now_us_)) fmt::print("{}\n", line);
+      for (const std::string& line : monitor_lines(feed_.state(), view_, feed_.now_us())) fmt::print("{}\n", line);
     }
     return exit_fine;
   }
@@ -138,25 +113,15 @@ class Monitor {
     const canopen::TimePoint end = bus_.now() + span;
     for (canopen::TimePoint present = bus_.now(); present < end && !Interruption::noted(); present = bus_.now()) {
       const auto frame = bus_.receive(end - present);
-      advance();
       if (!frame) continue;
-      decoder_.decode({*frame, true, now_us_}, message_);
-      if (state_.add(*frame, message_, now_us_)) on_news(message_);
+      if (const Message* const message = feed_.add(*frame, bus_.now())) on_news(*message);
     }
-    advance();
-    state_.pass(now_us_);
-  }
-
-  /// A TimePoint wraps after 71 minutes; this does not.
-  void advance() {
-    const canopen::TimePoint present = bus_.now();
-    now_us_ += (present - last_).count();
-    last_ = present;
+    feed_.pass(bus_.now());
   }
 
   [[nodiscard]] std::vector<std::string> picture() const {
     const Terminal::Size size = Terminal::size();
-    std::vector<std::string> lines = monitor_lines(state_, view_, now_us_);
+    std::vector<std::string> lines = monitor_lines(feed_.state(), view_, feed_.now_us());
     lines.front() += "  (q ends)";
     if (lines.size() > size.rows) {
       const std::size_t hidden = lines.size() - size.rows + 1;
@@ -168,29 +133,16 @@ class Monitor {
   }
 
   LiveBus& bus_;
-  Decoder decoder_;
+  MonitorFeed feed_;
   MonitorView view_;
-  MonitorState state_;
-  Message message_;
-  canopen::TimePoint last_;
-  std::int64_t now_us_ = 0;
 };
-
-int serve(Monitor& monitor, const ListenAddress& address) {
-  try {
-    return monitor.show_in_browser(address);
-  } catch (const CannotListen& problem) {
-    print_to_stderr("edsc: {}\n", problem.what());
-    return exit_wrong_usage;
-  }
-}
 
 int run_monitor(const Settings& settings) {
   if (settings.format == "json" && !settings.once_us) throw_requires("--format json", "--once");
   const GivenNodes nodes = load_given_nodes(settings, settings.color);
   return with_bus(settings.bus, [&](LiveBus& bus) {
     Monitor monitor{bus, settings, nodes};
-    if (settings.web) return serve(monitor, *settings.web);
+    if (settings.web) return monitor.show_in_browser(*settings.web);
     if (settings.once_us) return monitor.print_once(*settings.once_us, settings.format);
     return Terminal::is_there() ? monitor.show_table(settings.color.on(stdout)) : monitor.print_changes();
   });
@@ -207,11 +159,7 @@ void add_monitor_options(Command command, int& exit_code) {
       .add_option("--bit-rate", settings.bit_rate,
                   "to compute the bus load, without stuff bits (default: that of the network file)")
       .range(5, 1000);
-  command.add_text_option("--web", [&settings](const std::string& text) { settings.web = parse_listen_address(text); })
-      .optional_value()
-      .show_default("127.0.0.1:8080")
-      .excludes("--once")
-      .check(listen_address_problem);
+  add_web_option(command, settings.web).excludes("--once");
   add_format_option(command, settings.format);
   settings.color.add_to(command);
 }

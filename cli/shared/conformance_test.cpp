@@ -228,7 +228,7 @@ void add_conformance_options(Command command, ConformanceSettings& settings) {
   command.add_flag("--application", settings.application);
   command.add_flag("--outputs", settings.outputs);
   command.add_flag("--force", settings.force, "the device has another vendor-ID or product code");
-  command.add_option("--only", settings.only)
+  command.add_option("--only", settings.only, "a case, 2.5, or several, 3.*")
       .one_value_each()
       .check([](const std::string& pattern) {
         const auto rows = conform::all_cases();

@@ -12,6 +12,7 @@ using enum OptionValueKind;
 constexpr CommandOptionRow rows_of_options[] = {
     {"--help",           'h', "",          flag,       "print the options and examples, and end"},
     {"--version",        'V', "",          flag,       "print the version, and end"},
+    {"--absent",         0,   "DURATION",  duration,   "time without a frame and without an answer after which a node is absent"},
     {"--access-types",   0,   "WORD",      text,       "how the file writes access types"},
     {"--against",        0,   "FILE",      file,       "older version to compare with: a file, or git:REF"},
     {"--all",            0,   "",          flag,       "all entries, not only those that differ or that are named"},
@@ -44,6 +45,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--encoding",       0,   "NAME",      text,       "encoding of the text in the file"},
     {"--every",          0,   "DURATION",  duration,   "period of the frame; without --count until Ctrl-C"},
     {"--exit-on",        0,   "ALARM",     rule,       "end at this alarm, or at any"},
+    {"--except",         0,   "NODES",     text,       "nodes not to run, such as axis1,axis2"},
     {"--explain",        0,   "RULE",      rule,       "describe a rule, and end"},
     {"--fail-on",        0,   "WORD",      word,       "changes that cause exit code 1"},
     {"--fault",          0,   "FAULT",     text,       "fault to inject"},
@@ -85,7 +87,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--nodes",          0,   "LIST",      text,       "node-IDs to scan: 1..127, or a list such as 1,3,8..20"},
     {"--on-error",       0,   "WORD",      word,       "after a node that cannot be configured: abort, continue with the others, or retry"},
     {"--once",           0,   "DURATION",  duration,   "print one table after this time, and end"},
-    {"--only",           0,   "CASE",      case_pattern, "cases to run: 2.5 or 3.*"},
+    {"--only",           0,   "NAMES",     text,       "run only these"},
     {"--operator",       0,   "NAME",      text,       "who tests, for the report"},
     {"--options",        0,   "FILE",      file,       "options file (default: the name of the EDS with .options.json, if there)"},
     {"--output",         'o', "PATH",      path,       "file or folder to write"},
@@ -171,9 +173,9 @@ constexpr OldOptionRow rows_of_old_options[] = {
 }  // namespace
 
 std::string_view to_string(OptionValueKind kind) {
-  constexpr std::string_view names[] = {"flag",   "text", "number",    "duration",     "word",         "file",
-                                        "folder", "path", "node_file", "address",      "bus",          "node",
-                                        "object", "rule", "case",      "case_command", "command_words"};
+  constexpr std::string_view names[] = {"flag",   "text", "number",       "duration",     "word", "file",
+                                        "folder", "path", "node_file",    "address",      "bus",  "node",
+                                        "object", "rule", "case_command", "command_words"};
   return names[static_cast<std::size_t>(kind)];
 }
 

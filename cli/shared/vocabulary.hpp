@@ -23,7 +23,6 @@ enum class OptionValueKind : std::uint8_t {
   node,
   object,
   rule,           ///< a rule of `edsc check` or of the command
-  case_pattern,   ///< cases of the conformance test
   case_command,   ///< `5.4=COMMAND`
   command_words,  ///< the words of a command of edsc
 };

@@ -196,7 +196,7 @@
   const showNode = (node) => {
     const { element, cells } = nodes.row(node.node_id, node.node_id);
     setText(cells[0], String(node.node_id));
-    setText(cells[1], node.name || '-');
+    setText(cells[1], (node.name || '-') + (node.simulated ? ' (simulated)' : ''));
     setText(cells[2], node.assumed_state ? `${node.assumed_state}?` : node.state || '-');
     setText(cells[3], heard(node));
     setText(cells[4], String(node.emergencies));

@@ -28,7 +28,7 @@ COMMANDS = {one["command"]: one for one in LANGUAGE["commands"]}
 HAS_COMMANDS = {name.rsplit(" ", 1)[0] for name in COMMANDS if " " in name} | {""}
 LEAVES = [one for name, one in COMMANDS.items() if name not in HAS_COMMANDS]
 # A value that is not of the kind of an option or argument.
-WRONG_VALUES = {"number": "many", "duration": "5", "word": "nonsense", "address": "nowhere", "rule": "no-such-rule", "case": "99.9",
+WRONG_VALUES = {"number": "many", "duration": "5", "word": "nonsense", "address": "nowhere", "rule": "no-such-rule",
                 "case_command": "reboot", "node": "300", "bus": "can0"}
 # Two that contradict each other, and one without the other that it needs.
 BY_HAND = (
@@ -40,7 +40,7 @@ BY_HAND = (
     "lss {bus} assign --node-id 5 --product 1", "lss {bus} bit-rate 33", "lss {bus} state operational", "nmt {bus} start 128",
     "nmt {bus} begin 5", "nmt {bus} start all --wait 1s", "nmt start 5", "scan {bus} --step 20ms", "scan {bus} --nodes 1..200",
     "scan {bus} --eds no_such.eds", "configure {bus} 5 device.eds", "configure {bus} 5 x.dcf --eds device.eds",
-    "conform {bus} 5", "conform {bus} axis1", "conform --level all", "conform {bus} 5 no_such.eds",
+    "conform {bus} 5", "conform {bus} 5 device.eds --only 99.9", "conform {bus} axis1", "conform --level all", "conform {bus} 5 no_such.eds",
     "conform {bus} 5 device.eds --deviations no_such.json", "accept {bus} 5 folder", "decode no_such.log", "decode folder",
     "decode bus.log --node axis1", "decode bus.log --node 5", "decode bus.log --filter nod=5", "decode bus.log --network no_such.json",
     "audit bus.log --node 5=device.eds --master 0", "plot bus.log", "plot bus.log 1017h", "check no_such.eds", "check",

@@ -32,7 +32,8 @@ constexpr const char* examples = R"(Examples:
                                  R"(
   edsc network scan socketcan:can0 --eds eds -o plant.json       the network file of the nodes on a bus
   edsc network verify socketcan:can0 plant.json                  what differs from it
-  edsc network apply socketcan:can0 plant.json --start           configure all nodes, then start them)"
+  edsc network apply socketcan:can0 plant.json --start           configure all nodes, then start them
+  edsc network run socketcan:can0 plant.json                     be the nodes that are not on the bus)"
 #endif
     ;
 
@@ -148,6 +149,7 @@ constexpr ActionRow actions[] = {
     {"scan", "write a network file of the nodes on a bus", add_network_scan_options},
     {"verify", "compare the nodes on a bus with a network file", add_network_verify_options},
     {"apply", "configure the nodes on a bus as a network file states", add_network_apply_options},
+    {"run", "run the nodes of a network that are not on the bus, without a compiler", add_network_run_options},
 #endif
 };
 

@@ -10,6 +10,7 @@ script that runs edsc under valgrind (CONTRIBUTING.md).
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import subprocess
@@ -102,10 +103,25 @@ class EveryCommand(ReferenceDevices):
         self.assertNotRegex(error, REPORT)
         self.assertEqual(node.returncode, FINE, error)
 
+    def run_missing_node(self) -> None:
+        """A ninth device beside the eight, with the page of the monitor and a log."""
+        self.used.add(("network", "run"))
+        (self.folder / "ninth.json").write_text(json.dumps({"bit_rate": 125, "nodes": {
+            "present": {"node_id": 6, "eds": f"{SOURCE_DIR}/eds/cpd.eds"}, "missing": {"node_id": 21, "eds": f"{SOURCE_DIR}/eds/cpd.eds"}}}))
+        run = subprocess.Popen([str(EDSC), "network", "run", self.network.address, "ninth.json", "--log", "run.log", "--web",
+                                "127.0.0.1:0"], env=ENVIRONMENT, cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(run.kill)
+        self.wait_for("715 00")
+        run.terminate()
+        _, error = run.communicate(timeout=600)
+        self.assertNotRegex(error, REPORT)
+        self.assertEqual(run.returncode, FINE, error)
+
     def test_3_bus(self) -> None:
         """On a bus with all devices; a log of it is the input of the commands for logs."""
         self.start_devices()
         self.run_as_node(20, SOURCE_DIR / "eds/cpd.eds")
+        self.run_missing_node()
         with tempfile.TemporaryFile("w+") as log:
             recorder = subprocess.Popen([str(EDSC), "record", self.network.address], stdout=log, stderr=subprocess.PIPE,
                                         text=True, env=ENVIRONMENT)

@@ -33,6 +33,7 @@ MORE = {
     "network scan": ("network scan @ --eds . --nodes 100 --for 1ms --timeout 10ms -o none.json", FAILED),
     "network verify": ("network verify @ absent.json --timeout 10ms", FAILED),
     "network apply": ("network apply @ absent.json --timeout 10ms", FAILED),
+    "network run": ("network run @ no_rate.json", FAILED),
     "scan": ("scan @ --nodes 100 --for 1ms --timeout 10ms", FAILED),
     "read": ("read @ 5 1018h:01 --type u32 --timeout 60s", FINE),
     "write": ("write @ 5 1017h 0 --type u16 --timeout 60s", FINE),
@@ -86,7 +87,7 @@ WAITING = {
 # Ctrl-C is their regular end.
 ENDED_BY_USER = {"bus": "bus --listen 127.0.0.1:0", "monitor": "monitor @", "record": "record @ -o recorded.log",
                  "watch": "watch @ --network plant.json",
-                 "node": "node @ device.eds --node-id 9"}
+                 "node": "node @ device.eds --node-id 9", "network run": "network run @ absent.json"}
 NOT_WAITING = {"lss state"}
 
 

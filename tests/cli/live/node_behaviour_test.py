@@ -23,6 +23,7 @@ from sdo import Abort, SdoClient, Silence
 
 NODE = 5
 BOOT_UP, EMCY, TPDO1, TPDO2, RESPONSE, REQUEST = 0x705, 0x085, 0x185, 0x285, 0x585, 0x605
+LSS_MASTER, LSS_SLAVE = 0x7E5, 0x7E4
 CONTROLWORD, STATUSWORD, POSITION, HEARTBEAT = 0x6040, 0x6041, 0x6064, 0x1017
 SHORT = 1.0  # for frames that must not be received
 
@@ -405,6 +406,12 @@ class Faults(Behaviour):
         self.assertEqual(self.command("state"), "ok no node-ID, faults: lost-node-id")
         self.assertIsNone(self.wire.receive(BOOT_UP, SHORT))
         self.no_answer(POSITION, 0)
+        self.wire.send(LSS_MASTER, bytes([0x04, 0x01, 0, 0, 0, 0, 0, 0]))  # switch state global: configuration
+        self.wire.send(LSS_MASTER, bytes([0x11, 9, 0, 0, 0, 0, 0, 0]))  # configure node-ID
+        self.assertEqual(self.wire.receive(LSS_SLAVE, PATIENCE)[:2], bytes([0x11, 0]))
+        self.wire.send(LSS_MASTER, bytes([0x04, 0x00, 0, 0, 0, 0, 0, 0]))  # waiting
+        self.expect_frame(0x709, b"\0")
+        self.assertEqual(SdoClient(self.wire, 9, PATIENCE).upload(POSITION, 0), i32(0))
         self.fault("clear")
         self.expect_frame(BOOT_UP, b"\0")
         self.assertEqual(self.sdo.upload(POSITION, 0), i32(0))

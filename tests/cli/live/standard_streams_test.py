@@ -98,7 +98,7 @@ ROWS = (
     Row("discover", ("bus.log", "-o", "found.json"), FAILED, files=("found.json",), warns=True),
     Row("plot", ("bus.log", "1017h", "--node", "5=device.eds"), FAILED, warns=True),
 )
-ENDLESS = {"bus", "node"}  # until SIGINT
+ENDLESS = {"bus", "node", "network run"}  # until SIGINT
 
 
 class PreparedFiles(LiveTest):
