@@ -42,7 +42,7 @@ class AuditPage(DocumentCase):
         pages = [self.audit("findings", WITH_FINDINGS, 1), self.audit("clean", WITHOUT, 0)]
         self.assert_clean(self.browse("audit", *pages))
         found = self.browse("texts", pages[0], "#audit tbody td:last-child", "script", "h2 small")
-        self.assertIn("heartbeat-late", found["#audit tbody td:last-child"])
+        self.assertIn("node-lost", found["#audit tbody td:last-child"])
         self.assertEqual(found["script"], [])
         self.assertEqual(self.browse("texts", pages[1], "#audit tbody td")["#audit tbody td"], [])
 

@@ -232,7 +232,7 @@ std::vector<Written> other_values(Dut& dut, const LiveEntry& entry, const Bytes&
   if (is_application(entry) && !dut.simulated()) return values;
   if (starts_sync(entry) && !dut.allowed(Permission::outputs)) return values;
   if (entry.type->kind == DataClass::string) {
-    for (const std::uint8_t letter : {'a', 'b'}) {
+    for (const std::uint8_t letter : {std::uint8_t{'a'}, std::uint8_t{'b'}}) {
       values.push_back(
           {entry.type->type == canopen::DataType::unicode_string ? Bytes{letter, 0} : Bytes{letter}, what});
     }
