@@ -29,6 +29,7 @@ std::span<const Provocation> provocations() {
       {"sdo-toggle", "2.14 2.15 2.17", "a segment with the wrong toggle bit"},
       {"sdo-crc", "2.24 2.25", "a block with a wrong CRC"},
       {"sdo-sequence", "2.27", "the confirmation of a segment that was not sent"},
+      {"sdo-gives-up", "9.4", "a request to a device in Stopped, which does not answer"},
       {"sdo-length", "2.105", "requests of less than 8 bytes"},
       {"sdo-unfinished", "2.106 2.107", "a new transfer before the end of the previous one"},
       {"pdo-length", "3.104 5.101 5.108 5.109", "an RPDO that is too short"},

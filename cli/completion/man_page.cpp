@@ -72,6 +72,13 @@ std::string sentence(const std::string& text) {
   return upper_case(text.substr(0, 1)) + text.substr(1) + (text.ends_with('.') ? "" : ".");
 }
 
+/// The same for `a|b|c`, which may be longer than a line: a line can end after each `|`.
+std::string breakable(std::string_view choices) {
+  std::string out;
+  for (const char one : escaped(choices)) out.append(1, one).append(one == '|' ? "\\:" : "");
+  return out;
+}
+
 std::string name_of(const CommandParts& command) { return escaped("edsc " + command.path_with(" ")); }
 
 /// With the arguments that are before a subcommand: `edsc lss BUS inquire`.
@@ -98,7 +105,8 @@ void append_option(std::string& out, const OptionParts& option) {
   std::string text = option.description;
   std::string type;
   if (option.is_argument && !option.value.words.empty()) text += ": " + option.value.name;
-  if (!option.is_argument && !option.value.name.empty()) type = fmt::format(" \\fI{}\\fR", escaped(option.value.name));
+  if (!option.is_argument && !option.value.name.empty())
+    type = fmt::format(" \\fI{}\\fR", breakable(option.value.name));
   out += fmt::format(".TP\n{}{}\n{}\n", fmt::join(names, ", "), type, escaped(text));
 }
 

@@ -67,7 +67,7 @@ class Provoked(unittest.TestCase):
         declared = {rule: [one["id"] for one in self.report["cases"] if rule in one["provokes"]] for rule in cases}
         self.assertEqual(cases, declared | {"lss-refused": ["11.11", "11.13", "11.15"]}, "this device does not refuse node-ID 255")
         self.assertEqual(set(cases), {"can-id-unknown", "lss-mode", "lss-refused", "nmt-command", "nmt-reset", "node-unknown", "pdo-length",
-                                      "sdo-command", "sdo-crc", "sdo-length", "sdo-sequence", "sdo-toggle", "sdo-unfinished"})
+                                      "sdo-command", "sdo-crc", "sdo-gives-up", "sdo-length", "sdo-sequence", "sdo-toggle", "sdo-unfinished"})
 
     def test_without_the_report_they_are_findings(self) -> None:
         result = self.run_audit(self.log, "--format", "json")

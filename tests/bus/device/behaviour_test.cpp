@@ -233,7 +233,7 @@ TEST_F(BehaviourOfDrive, EachFaultAndCommandCanBeRead) {
                                            "twin",
                                            "lost-node-id"};
   for (const std::string& fault : faults) EXPECT_EQ(parse_command("fault " + fault, *names_).problem, "") << fault;
-  for (const NodeFaultRow& row : fault_rows()) {
+  for (const NodeFaultRow& row : node_fault_rows()) {
     const auto has = [&](const std::string& fault) { return fault.substr(0, fault.find(' ')) == row.name; };
     EXPECT_TRUE(std::any_of(faults.begin(), faults.end(), has)) << row.name;
   }
