@@ -23,6 +23,7 @@ COMPILER = "x86_64-w64-mingw32-g++-posix"
 GOOGLETEST = Path("/usr/src/googletest/googletest")
 # The other tests of the folder use POSIX. Of these, two expect rights and names that only Linux has.
 TESTS = ("gzip", "input_file", "path", "temporary_folder")
+ONLY_FOR_A_BUS = ("available_input.cpp",)
 NOT_ON_WINDOWS = ("Path.KeepsItsTextFromAndToTheFileSystem", "TemporaryFolder.IsNewPrivateAndRemovedWithItsFiles")
 
 
@@ -30,7 +31,7 @@ def sources() -> list[Path]:
     """As generator/CMakeLists.txt selects them: those of system/windows instead of those of the same name."""
     folder = SOURCE_DIR / "generator/system"
     of_windows = sorted(folder.glob("windows/*.cpp"))
-    names = {path.name for path in of_windows}
+    names = {path.name for path in of_windows} | set(ONLY_FOR_A_BUS)
     return [*of_windows, *(path for path in sorted(folder.glob("*.cpp")) if path.name not in names)]
 
 
