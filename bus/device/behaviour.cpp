@@ -13,6 +13,8 @@
 namespace edsc {
 namespace {
 
+constexpr std::uint64_t least_fire_us = 1'000;
+
 std::uint32_t key_of_entry(const Entry& entry) { return canopen::object_key(entry.index, entry.sub_index); }
 
 bool is_entry(const BehaviourRule& rule, BehaviourEvent event, std::uint16_t index, std::uint8_t sub_index) {
@@ -101,7 +103,8 @@ CommandAnswer Behaviour::stop(const Entry& entry) {
 CommandAnswer Behaviour::fire(std::string_view rule) {
   const auto at = std::ranges::find_if(rules_, [rule](const RunningRule& one) { return one.rule.name == rule; });
   if (at != rules_.end()) {
-    execute(at->rule);
+    // Later: a rule that fires itself, also by others, leaves time for the node.
+    execute_later(std::max(at->rule.after_us, least_fire_us), [this, &rule = *at] { execute(rule.rule); });
     return {};
   }
   std::vector<std::string> names;

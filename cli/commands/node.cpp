@@ -1,16 +1,18 @@
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
+#include <canopen/host/file_storage.hpp>
 #include <canopen/lss/lss_protocol.hpp>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -27,10 +29,12 @@
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
+#include "shared/frame_log.hpp"
 #include "shared/live_device.hpp"
 #include "shared/live_options.hpp"
 #include "shared/output.hpp"
 #include "shared/with_bus.hpp"
+#include "system/path.hpp"
 #include "text/printable.hpp"
 
 namespace edsc {
@@ -167,6 +171,15 @@ class Plan {
 
   [[nodiscard]] const std::vector<PlannedNode>& nodes() const { return nodes_; }
 
+  /// The files that the command reads.
+  [[nodiscard]] std::vector<std::string> inputs() const {
+    std::vector<std::string> all{settings_.script};
+    for (const auto& [path, file] : files_) {
+      for (std::string& name : input_files(*file.loaded)) all.push_back(std::move(name));
+    }
+    return all;
+  }
+
  private:
   /// Each file is loaded once.
   const File& file(const std::string& path) {
@@ -199,29 +212,6 @@ void report_ready(const PlannedNode& node, const std::string& bus) {
   print_visibly(stdout, "{} \"{}\" on {}\n", id, node.file->loaded->device->product_name, bus);
 }
 
-/// Writes frames as a candump log, with the time of day.
-class FrameLog {
- public:
-  FrameLog(const std::string& path, const std::string& bus) : interface_{interface_of(bus)} {
-    file_.reset(std::fopen(path.c_str(), "we"));
-    if (!file_) fail(fmt::format("{}: {}", printable(path), std::strerror(errno)));
-  }
-  void write(const canopen::Frame& frame) {
-    timespec time{};
-    ::clock_gettime(CLOCK_REALTIME, &time);
-    const socketcand::TimeStamp stamp{time.tv_sec, static_cast<std::int32_t>(time.tv_nsec / 1000)};
-    fmt::print(file_.get(), "{}\n", candump_line(frame, interface_, stamp));
-    std::fflush(file_.get());
-  }
-
- private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  std::unique_ptr<std::FILE, Close> file_;
-  std::string interface_;
-};
-
 /// Reports what an action of a script could not do.
 void report_problem(unsigned node_id, const std::string& problem) {
   print_to_stderr("edsc: node {}: {}\n", node_id, problem);
@@ -243,17 +233,42 @@ CommandedNode add_node(NodeHost& host, const PlannedNode& node, const Settings& 
   return {added, node.file->names.get()};
 }
 
+/// Why a node cannot keep its stored values in a file; empty: it can. The file need not exist.
+std::string problem_of_memory(const std::string& path) {
+  canopen::FileStorage storage{path};
+  if (storage.open() == canopen::StorageState::damaged)
+    return storage.error() ? storage.error().message() : "is not a file of stored values, or is damaged";
+  const std::filesystem::path folder = to_native(path).parent_path();
+  std::error_code error;
+  const bool has_folder = folder.empty() || std::filesystem::is_directory(folder, error);
+  return has_folder ? "" : "the folder does not exist";
+}
+
+/// Ends the command if it would write one of its inputs, or if --memory is not a file of stored values.
+void check_written_files(const Settings& settings, std::vector<std::string> inputs) {
+  refuse_input(settings.memory, inputs);
+  inputs.push_back(settings.memory);
+  refuse_input(settings.log, inputs);
+  if (settings.memory.empty()) return;
+  const std::string problem = problem_of_memory(settings.memory);
+  if (!problem.empty()) fail(fmt::format("{}: {}", printable(settings.memory), problem));
+}
+
 /// How often standard input is read while it is open: without it, an idle node does not use the computer.
 constexpr canopen::Duration command_wait{20'000}, idle_wait{100'000};
 
 int run_node(const Settings& settings) {
   const Plan plan{settings};
+  check_written_files(settings, plan.inputs());
   return with_bus(settings.bus, [&](LiveBus& bus) {
     NodeHost host{bus};
     std::optional<FrameLog> log;
     if (!settings.log.empty()) {
-      log.emplace(settings.log, settings.bus);
-      host.on_frame = [&log](const canopen::Frame& frame) { log->write(frame); };
+      log.emplace(settings.log, interface_of(settings.bus));
+      host.on_frame = [&](const canopen::Frame& frame) {
+        const bool is_written = log->write(frame, bus.now(), bus.now()) && log->flush();
+        if (!is_written) fail(fmt::format("{}: {}", printable(settings.log), std::strerror(errno)));
+      };
     }
     std::vector<CommandedNode> nodes;
     for (const PlannedNode& node : plan.nodes()) nodes.push_back(add_node(host, node, settings));

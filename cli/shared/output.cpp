@@ -5,11 +5,14 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <system_error>
 #include <utility>
 
 #include "shared/exit_code.hpp"
+#include "system/path.hpp"
+#include "text/printable.hpp"
 
 namespace edsc {
 namespace {
@@ -46,6 +49,14 @@ void write_output(const std::string& path, std::string text, const std::vector<s
 
 void write_all_files(const std::vector<OutputFile>& files, const std::vector<std::string>& inputs) {
   if (const std::string failure = write_files(files, inputs); !failure.empty()) fail(failure);
+}
+
+void refuse_input(const std::string& path, const std::vector<std::string>& inputs) {
+  for (const std::string& input : inputs) {
+    std::error_code error;
+    if (!path.empty() && !input.empty() && std::filesystem::equivalent(to_native(path), to_native(input), error))
+      fail(fmt::format("{}: is the same file as the input {}", printable(path), printable(input)));
+  }
 }
 
 void flush_output() {

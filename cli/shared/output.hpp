@@ -23,6 +23,9 @@ void write_output(const std::string& path, std::string text, const std::vector<s
 /// Writes all files or none; ends the command if one of them cannot be written, or is one of `inputs`.
 void write_all_files(const std::vector<OutputFile>& files, const std::vector<std::string>& inputs = {});
 
+/// Ends the command if a file that it writes piece by piece is one of `inputs`, by whatever name. Empty names are none.
+void refuse_input(const std::string& path, const std::vector<std::string>& inputs);
+
 /// Flushes standard output immediately, for commands that run until they are interrupted. Throws std::system_error on a
 /// write error.
 void flush_output();

@@ -15,6 +15,7 @@
 #include "device/load_sheet.hpp"
 #include "device/node_host.hpp"
 #include "device/value_overlay.hpp"
+#include "load/load_device.hpp"
 #include "network/error_control.hpp"
 #include "network/node_configuration.hpp"
 #include "network/presence_watch.hpp"
@@ -242,6 +243,12 @@ int run_plant(const Settings& settings) {
   const LiveNetwork live = load_live_network(load);
   const Network& network = live.loaded->network;
   const std::vector<const NetworkNode*> nodes = chosen_nodes(settings, network);
+  std::vector<std::string> inputs{settings.path};
+  for (const NetworkNode& node : network.nodes) {
+    if (!node.loaded) continue;
+    for (std::string& name : input_files(*node.loaded)) inputs.push_back(std::move(name));
+  }
+  refuse_input(settings.log, inputs);
   GivenNodes given;
   if (settings.web) {
     NodesSettings of_page;

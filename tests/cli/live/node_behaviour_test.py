@@ -278,6 +278,14 @@ class Scripts(Behaviour):
         self.expect_upload(0x607A, i32(4))
         self.assertRegex(self.command("fire thrid"), r'\Aerror: "thrid" is not a rule; did you mean "third"\?')
 
+    def test_a_rule_that_fires_itself_repeats(self) -> None:
+        self.begin(script={"rules": [
+            {"name": "blink", "on": {"power-on": True}, "after": "50ms", "do": ["emcy 5530h", "emcy-over", "fire blink"]},
+            {"name": "busy", "on": {"power-on": True}, "do": ["fire busy"]}]})
+        for _ in range(3):
+            self.expect_emergency(0x5530)
+        self.assertEqual(self.sdo.upload(POSITION, 0), i32(0))
+
     def test_errors_have_a_line(self) -> None:
         wrong = {"set": {"no_such": 1}, "generate": {"6064h": "rmap 0 1 5s"}, "no_such_member": 1,
                  "rules": [{"on": {"writen": "6040h"}, "do": ["get 6040h", "fault silnt"]}]}

@@ -112,6 +112,20 @@ class NodeTest(NodeOnBus):
         self.assertIn("node-ID 128 is above 127", self.refused(WRONG_USAGE, device("cpd"), "--node-id", 127, "--count", 2))
         self.assertIn("no_such.eds", self.refused(WRONG_USAGE, "no_such.eds", "--node-id", 5))
         self.assertIn("--memory", self.refused(WRONG_USAGE, device("cpd"), "--node-id", 5, "--count", 2, "--memory", "file"))
+        self.assertIn("folder", self.refused(WRONG_USAGE, device("cpd"), "--node-id", 5, "--memory", "no_such_folder/file"))
+
+    def test_files_of_others_are_not_overwritten(self) -> None:
+        eds = self.folder / "drive.eds"
+        content = device("cpd").read_bytes()
+        eds.write_bytes(content)
+        (self.folder / "other.txt").write_text("not the values of a node")
+        for option, name, message in (("--log", "drive.eds", "is the same file as the input"),
+                                      ("--memory", "drive.eds", "is the same file as the input"),
+                                      ("--memory", "other.txt", "is not a file of stored values")):
+            with self.subTest(option=option, name=name):
+                self.assertIn(message, self.refused(WRONG_USAGE, eds, "--node-id", 5, option, name))
+        self.assertEqual(eds.read_bytes(), content)
+        self.assertEqual((self.folder / "other.txt").read_text(), "not the values of a node")
 
 
 if __name__ == "__main__":
