@@ -16,6 +16,9 @@ struct OptionValue {
   OptionValueKind kind = OptionValueKind::flag;
   std::vector<std::string> words;        ///< the only values; empty: any
   std::vector<std::string> suggestions;  ///< values to offer, where there are others too
+
+  /// Whether the words are listed in the description of an option, which then has the value WORD.
+  [[nodiscard]] bool has_long_list() const { return !words.empty() && name.size() > 24; }
 };
 
 struct OptionParts {

@@ -56,8 +56,7 @@ std::string capitalised(std::string text) {
 
 /// `--format text|json`; long lists of words are in the description.
 void append_option(std::string& out, const OptionParts& option) {
-  constexpr std::size_t max_words = 24;
-  const bool is_long = !option.value.words.empty() && option.value.name.size() > max_words;
+  const bool is_long = option.value.has_long_list();
   std::vector<std::string> names = option.names;
   std::ranges::reverse(names);  // the short one first
   std::string name = fmt::format("{}", fmt::join(names, ", "));

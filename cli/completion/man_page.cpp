@@ -72,13 +72,6 @@ std::string sentence(const std::string& text) {
   return upper_case(text.substr(0, 1)) + text.substr(1) + (text.ends_with('.') ? "" : ".");
 }
 
-/// The same for `a|b|c`, which may be longer than a line: a line can end after each `|`.
-std::string breakable(std::string_view choices) {
-  std::string out;
-  for (const char one : escaped(choices)) out.append(1, one).append(one == '|' ? "\\:" : "");
-  return out;
-}
-
 std::string name_of(const CommandParts& command) { return escaped("edsc " + command.path_with(" ")); }
 
 /// With the arguments that are before a subcommand: `edsc lss BUS inquire`.
@@ -102,11 +95,13 @@ void append_option(std::string& out, const OptionParts& option) {
   for (const std::string& name : option.names) {
     names.push_back(fmt::format("\\f{}{}\\fR", option.is_argument ? 'I' : 'B', escaped(name)));
   }
+  const bool is_long = option.value.has_long_list();
   std::string text = option.description;
   std::string type;
-  if (option.is_argument && !option.value.words.empty()) text += ": " + option.value.name;
+  if (is_long || (option.is_argument && !option.value.words.empty()))
+    text += fmt::format(": {}", fmt::join(option.value.words, ", "));
   if (!option.is_argument && !option.value.name.empty())
-    type = fmt::format(" \\fI{}\\fR", breakable(option.value.name));
+    type = fmt::format(" \\fI{}\\fR", is_long ? "WORD" : escaped(option.value.name));
   out += fmt::format(".TP\n{}{}\n{}\n", fmt::join(names, ", "), type, escaped(text));
 }
 
