@@ -88,11 +88,11 @@ void Auditor::see(const LogLine& line, const Message& message) {
   bus_.see(seen, audit_);
   heartbeat_.see(seen, audit_);
   guarding_.see(seen, audit_);
+  sdo_.see(seen, audit_);  // before a boot-up message ends the state in which the node was asked
   nmt_.see(seen, audit_);
   sync_.see(seen, audit_);
   pdo_.see(seen, audit_);
   emergency_.see(seen, audit_);
-  sdo_.see(seen, audit_);
   lss_.see(seen, audit_);
   cycle_times_.see(seen, audit_);
   if (network_times_) network_times_->see(seen);

@@ -209,6 +209,9 @@ void Decoder::decode_error_control(const Frame& frame, Message& message) {
   if (found->state == canopen::NmtState::initialisation && !found->toggle) {
     message.service = Service::boot_up;
     message.text += "boot-up";
+    for (Follower& follower : followers_) {
+      if (follower.node_id == message.node_id) follower.sdo = {};  // the server has forgotten its transfer
+    }
     NodeModel* const model = model_of(message.node_id);
     if (model != nullptr && model->reset()) find_routes();
     return;

@@ -58,22 +58,37 @@ bool SdoCheck::check_answer(Channel& channel, const Moment& now, AuditState& aud
 
 void SdoCheck::see(const SeenMessage& seen, AuditState& audit) {
   const Message& message = seen.message;
+  if (message.service == Service::boot_up) return end_transfers(seen, audit);
   if (message.service != Service::sdo) return;
   if (channels_.size() <= message.channel) channels_.resize(message.channel + 1U);
   Channel& channel = channels_[message.channel];
   channel.node_id = message.node_id;
   const bool late = check_answer(channel, seen.at, audit);
-  // The client gave up after its time, or asks again: the response that was missing is one finding, not two.
-  const bool gave_up = late && (message.fault == SdoFault::unfinished || message.fault == SdoFault::command);
+  // The client gave up after its time, or asks again: the response that was missing is one finding, not two. A node
+  // that was not there could not answer.
+  const bool gave_up =
+      (late || channel.is_unheard) && (message.fault == SdoFault::unfinished || message.fault == SdoFault::command);
   if (message.fault != SdoFault::none && !gave_up) check_fault(seen, audit);
   if (message.step == TransferStep::aborted) {
     const Subject subject{"sdo-abort", message.node_id, message.index, message.sub_index, message.abort_code};
     audit.findings.add(subject, seen.at, 0, [&] { return Texts{"the end of the transfer", message.text}; });
   }
   channel.asked_us.reset();
-  if (!message.from_client || message.step != TransferStep::part || !seen.at.has_time) return;
-  if (!answers(audit.sender(message))) return;
+  channel.is_unheard = false;
+  if (!message.from_client || message.step != TransferStep::part) return;
+  channel.is_unheard = !answers(audit.sender(message));
+  if (channel.is_unheard || !seen.at.has_time) return;
   channel = {message.node_id, seen.at.us, message.index, message.sub_index};
+}
+
+/// A node that boots does not answer what was asked before.
+void SdoCheck::end_transfers(const SeenMessage& boot_up, AuditState& audit) {
+  for (Channel& channel : channels_) {
+    if (channel.node_id != boot_up.message.node_id) continue;
+    (void)check_answer(channel, boot_up.at, audit);
+    channel.asked_us.reset();
+    channel.is_unheard = false;
+  }
 }
 
 void SdoCheck::finish(const Moment& end, AuditState& audit) {

@@ -17,7 +17,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 
 from audits import EDSC, SOURCE_DIR, Audits, Broken, add, data, guarded, lss, replaced
-from plant import (END_MS, STOP_MS, Frame, axis, block_upload, changed, clean, eds_of, in_order, log_of, repeated_block_upload, sdo, segmented_upload,
+from plant import (END_MS, PRE_OPERATIONAL, STOP_MS, Frame, axis, block_upload, changed, clean, eds_of, in_order, log_of, repeated_block_upload, sdo, segmented_upload,
                    supply, without)
 
 PAGE = SOURCE_DIR / "docs/how-to/audit.md"
@@ -249,6 +249,22 @@ class Behaviour(Audits):
     def test_a_scan_of_absent_nodes_is_clean(self) -> None:
         requests = [Frame(1100 + node, 0x600 + node, data("4000100000000000")) for node in range(20, 100)]
         self.assertEqual(self.report(Broken(add(*requests)))["findings"], [])
+
+    def test_a_request_without_a_response_is_not_an_unfinished_transfer(self) -> None:
+        """Node 9 appears between two requests; node 5 boots between them, or is silent."""
+        boot_up, heartbeat = b"\0", bytes([PRE_OPERATIONAL])
+        rows = ((9, 1250, [Frame(1500, 0x709, boot_up)], 1650, []),
+                (9, 1250, [Frame(1500, 0x709, heartbeat)], 1650, []),
+                (5, 200, [Frame(250, 0x705, boot_up)], 270, ["nmt-reset"]),
+                (5, 1250, [Frame(1500, 0x705, boot_up)], 2100, ["nmt-reset", "sdo-timeout"]),
+                (5, 1250, [], 2100, ["sdo-timeout"]))
+        for node, first, between, second, expected in rows:
+            with self.subTest(node=node, first=first, between=between):
+                log = [Frame(first, 0x600 + node, data("4000100000000000")), *between,
+                       *sdo(second, node, "4000100000000000", "4300100092010200")]
+                findings = self.report(Broken(add(*log)), "--timeout", "200ms")["findings"]
+                counts = {one["rule"]: one["count"] for one in findings if one["rule"] == "nmt-reset" or one["rule"].startswith("sdo")}
+                self.assertEqual(counts, dict.fromkeys(expected, 1))
 
 
 class Incidents(Audits):
