@@ -21,14 +21,6 @@ bool is_entry(const BehaviourRule& rule, BehaviourEvent event, std::uint16_t ind
   return rule.event == event && rule.entry->index == index && rule.entry->sub_index == sub_index;
 }
 
-/// The bits of an integer; those of a negative one are its two's complement. Numbers that 64 bits do not have: 0.
-std::uint64_t bits_of(double number) {
-  constexpr double end = 18'446'744'073'709'551'616.0;  // 2^64
-  if (number >= 0 && number < end) return static_cast<std::uint64_t>(number);
-  if (number < 0 && number >= -end / 2) return static_cast<std::uint64_t>(static_cast<std::int64_t>(number));
-  return 0;
-}
-
 std::string abort_text(canopen::AbortCode code) {
   return fmt::format("{:08X}h {}", static_cast<std::uint32_t>(code), canopen::to_text(code));
 }
@@ -39,8 +31,8 @@ bool NumberCondition::holds(double number) const {
   if (above && !(number > *above)) return false;
   if (below && !(number < *below)) return false;
   if (!mask) return !equals || number == *equals;
-  const std::uint64_t bits = bits_of(number) & *mask;
-  return equals ? bits == (bits_of(*equals) & *mask) : bits != 0;
+  const std::uint64_t bits = bits_of_integer(number) & *mask;
+  return equals ? bits == (bits_of_integer(*equals) & *mask) : bits != 0;
 }
 
 Behaviour::Behaviour(BehaviourTarget& target, std::uint64_t seed) : target_{target}, seed_{seed} {}

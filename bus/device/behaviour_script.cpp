@@ -135,17 +135,26 @@ class BehaviourReader {
     if (!value.is_array()) return R"(expected an array: [{"on": {...}, "do": ["..."]}])";
     for (const Json& item : value) {
       RuleParts parts;
+      const auto errors = reader.diagnostics_.errors();
       reader.read_members(item, rule_members, parts);
-      if (!item.is_object()) continue;
-      if (!parts.has_event) reader.error(reader.file_.value_position(item), "a rule requires on");
-      if (parts.rule.refuse != canopen::ok && parts.rule.event != BehaviourEvent::written &&
-          parts.rule.event != BehaviourEvent::read)
-        reader.error(reader.file_.value_position(item), "refuse requires on written or read");
-      if (parts.rule.actions.empty() && parts.rule.refuse == canopen::ok)
-        reader.error(reader.file_.value_position(item), "a rule requires do or refuse");
+      if (reader.diagnostics_.errors() > errors) continue;  // what a rule lacks may be what is wrong in it
+      const std::string problem = reader.problem_of(item, parts);
+      if (!problem.empty()) reader.error(reader.file_.value_position(item), problem);
       reader.script_.rules.push_back(std::move(parts.rule));
     }
     return {};
+  }
+
+  /// What a rule lacks, or what contradicts itself or another rule.
+  [[nodiscard]] std::string problem_of(const Json& item, const RuleParts& parts) const {
+    const BehaviourRule& rule = parts.rule;
+    if (!parts.has_event) return "a rule requires on, with an event";
+    const bool is_access = rule.event == BehaviourEvent::written || rule.event == BehaviourEvent::read;
+    if (rule.refuse != canopen::ok && !is_access) return "refuse requires on written or read";
+    if (rule.actions.empty() && rule.refuse == canopen::ok) return "a rule requires do or refuse";
+    if (item.contains("once") && item.contains("times")) return "once and times contradict each other";
+    const bool is_double = !rule.name.empty() && std::ranges::count(script_.rules, rule.name, &BehaviourRule::name) > 0;
+    return is_double ? fmt::format("two rules have the name \"{}\"", printable(rule.name)) : std::string{};
   }
 
   // Members with simple values.
@@ -230,7 +239,7 @@ class BehaviourReader {
       if (name == "equals") rule.condition.equals = number;
       if (name == "above") rule.condition.above = number;
       if (name == "below") rule.condition.below = number;
-      if (name == "mask") rule.condition.mask = static_cast<std::uint64_t>(static_cast<std::int64_t>(number));
+      if (name == "mask") rule.condition.mask = bits_of_integer(number);
     }
   }
 

@@ -60,4 +60,11 @@ std::vector<std::uint8_t> entry_bytes(const Entry& entry, double number, OutOfRa
   return bytes_of(std::bit_cast<std::uint64_t>(number), size);
 }
 
+std::uint64_t bits_of_integer(double number) {
+  constexpr double end = 18'446'744'073'709'551'616.0;  // 2^64
+  if (number >= 0 && number < end) return static_cast<std::uint64_t>(number);
+  if (number < 0 && number >= -end / 2) return static_cast<std::uint64_t>(static_cast<std::int64_t>(number));
+  return 0;
+}
+
 }  // namespace edsc

@@ -23,4 +23,7 @@ enum class OutOfRange : std::uint8_t { nearest, wraps };
 [[nodiscard]] std::vector<std::uint8_t> entry_bytes(const Entry& entry, double number,
                                                     OutOfRange out_of_range = OutOfRange::nearest);
 
+/// The bits of an integer; those of a negative one are its two's complement. Numbers that 64 bits do not have: 0.
+[[nodiscard]] std::uint64_t bits_of_integer(double number);
+
 }  // namespace edsc

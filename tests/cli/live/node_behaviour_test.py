@@ -295,6 +295,22 @@ class Scripts(Behaviour):
                      "get is not a command of rules", "did you mean \"silent\"?"):
             self.assertRegex(errors, rf"(?m)^wrong\.behaviour\.json:\d+:\d+: error: .*{re.escape(text)}")
 
+    def test_rules_that_contradict_themselves_or_each_other(self) -> None:
+        every, action = {"every": "1s"}, ["set 6064h 1"]
+        rows = (({"on": every}, "a rule requires do or refuse"),
+                ({"do": action}, "a rule requires on, with an event"),
+                ({"on": every, "do": ["set 9999h 1"]}, "9999h"),
+                ({"on": every, "do": action, "once": True, "times": 5}, "once and times contradict each other"),
+                ({"on": every, "refuse": "0609 0031h"}, "refuse requires on written or read"),
+                ({"name": "first", "on": every, "do": action}, 'two rules have the name "first"'))
+        for rule, message in rows:
+            with self.subTest(message):
+                rules = [{"name": "first", "on": every, "do": action}, rule]
+                (self.folder / "wrong.behaviour.json").write_text(json.dumps({"rules": rules}))
+                errors = self.refused(FAILED, device("cpc-tc1"), "--node-id", NODE, "--script", "wrong.behaviour.json")
+                self.assertEqual(errors.count("error:"), 1, errors)
+                self.assertIn(message, errors)
+
     def test_the_same_seed_gives_the_same_values(self) -> None:
         script = {"generate": {"6064h": "noise 0 1000000 1s"}}
         (self.folder / "noise.behaviour.json").write_text(json.dumps(script))
