@@ -102,7 +102,7 @@ inline constexpr Rule audit[] = {
     row("can-id-senders", error, "two nodes send PDOs with one CAN-ID", "CiA 301, 7.2.2",
         "by the COB-IDs in force of both"),
     row("node-unknown", note, "a node whose EDS is not given", "edsc", "--node"),
-    row("node-silent", note, "a node of --node that does not send anything", "edsc", ""),
+    row("node-silent", note, "a node that was given does not send anything", "edsc", ""),
     row("node-lost", error, "a node sends nothing any more", "CiA 301, 7.2.8.3.2.2",
         "for more than two and a half heartbeats; without an EDS by the distance of its last two heartbeats"),
     row("sdo-gives-up", warning, "an SDO client aborts a transfer because its time has passed", "CiA 301, 7.2.4.1",

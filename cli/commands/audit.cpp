@@ -95,6 +95,7 @@ int audit_log(const Settings& given) {
   Settings settings = given;
   settings.limits.sdo_timeout_us = std::int64_t{settings.timeout_ms} * 1000;
   const GivenNodes nodes = load_given_nodes(settings, settings.color);
+  if (settings.times && !nodes.network) throw_requires("--times", "--network");
   settings.limits.bit_rate = bit_rate_of(settings, nodes) * 1000;
   LogDecoder decoder{
       nodes.known_with_masters(), nodes.labels, {settings.log_name(), settings.interface, LogOutput::text, false, {}}};

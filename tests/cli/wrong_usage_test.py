@@ -53,7 +53,7 @@ BY_HAND = (
     "overlay apply device.eds", "bus vcan/0", "bus --listen 127.0.0.1", "record {bus} --log-interface a/b", "record {bus} --count 0",
     "record slcan:/dev/no_such", "record simulated:./no_such@5", "completion fish", "help chek", "chek device.eds",
     "read {bus} 5 1018h --timeout 5 --tmeout", "check device.eds --force", "check -x device.eds", "--verson", "", "version 1",
-    "check device.eds --strict=5", "read {bus} 5 no_such_name", "read {bus} 5 1018h --type u7", "save {bus} 5", "audit bus.log --silence x",
+    "check device.eds --strict=5", "read {bus} 5 no_such_name", "read {bus} 5 1018h --type u7", "save {bus} 5", "audit bus.log --silence x", "audit bus.log --times",
     "watch", "watch bus.log", "watch bus.log --network no_such.json", "watch bus.log --network bad.json --allow x", "watch bus.log --silence x",
     "replay bus.log", "replay bus.log can0", "replay no_such.log --node 5=device.eds", "replay bus.log {bus} --speed 0",
     "replay bus.log {bus}", "replay bus.log --node 5=device.eds --ignore no_such_name", "discover no_such.log",

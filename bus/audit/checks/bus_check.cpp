@@ -87,7 +87,7 @@ void BusCheck::see(const SeenMessage& seen, AuditState& audit) {
   }
   if (!is_from_node(message) || seen.frame.remote || audit.sender(message).model != nullptr) return;
   audit.findings.add({"node-unknown", message.node_id}, seen.at, 0, [&] {
-    return Texts{"a node of --node", row_of(message.service).label};
+    return Texts{"a node that was given", row_of(message.service).label};
   });
 }
 

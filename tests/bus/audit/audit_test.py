@@ -164,6 +164,11 @@ class Options(Audits):
         self.assertEqual(self.run_edsc(log="").returncode, INPUT_HAS_ERRORS)
         self.assertEqual(self.run_edsc("missing.log", "--node", "5=axis.eds").returncode, WRONG_USAGE)
 
+    def test_the_times_are_those_of_a_network_file(self) -> None:
+        result = self.audit(Broken(), "--times")
+        self.assertEqual((result.returncode, result.stdout), (WRONG_USAGE, ""))
+        self.assertIn("edsc: --times requires --network\n", result.stderr)
+
 
 class Behaviour(Audits):
     def test_values_written_in_the_log_are_in_force(self) -> None:
