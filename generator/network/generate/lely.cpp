@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "device/index_range.hpp"
+#include "eds/ini.hpp"
 #include "eds/number.hpp"
 #include "format/dcf/concise_dcf.hpp"
 #include "network/communication_objects.hpp"
@@ -95,6 +96,9 @@ std::optional<std::string> number_text(const Entry& entry, std::string_view data
   return fmt::format("0x{:X}", number);
 }
 
+/// Keys of `bus.yml` that are not nodes, or are the master.
+constexpr std::string_view reserved_keys[] = {"master", "options", "defaults"};
+
 class BusYml {
  public:
   BusYml(const Network& network, const NetworkNode& master) : network_{network}, master_{master} {}
@@ -142,7 +146,7 @@ class BusYml {
   /// The name of a node is a key, and names a node of ROS and a file.
   std::string key_of(const NetworkNode& node) {
     std::string key = to_snake_case(node.name);
-    if (key.empty() || key == "master" || key == "options" || !keys_.insert(key).second) {
+    if (key.empty() || std::ranges::find(reserved_keys, key) != std::end(reserved_keys) || !keys_.insert(key).second) {
       key = fmt::format("{}{}{}", key, key.empty() ? "node_" : "_", node.node_id);
       keys_.insert(key);
     }
@@ -152,8 +156,8 @@ class BusYml {
   void add_slave(const LelyNode& one, std::vector<std::string>& notes) {
     const NetworkNode& node = *one.node;
     const Device& device = node.device();
-    text_ += fmt::format("\n{}:\n", key_of(node));
-    add("dcf", yaml_text(node_file(node, "dcf")));
+    text_ += fmt::format("\n{}:\n", yaml_text(key_of(node)));
+    add("dcf", yaml_text(lely_dcf_file(node)));
     add_number("node_id", node.node_id);
     add_if_stated("serial_number", node.description->serial_number);
     if ((value_of(device, 0x1000).value_or(0) & profile_bits) == drive_profile) {
@@ -207,11 +211,17 @@ class BusYml {
 
 }  // namespace
 
+/// File names may not differ in case only.
+std::string lely_dcf_file(const NetworkNode& node) {
+  std::string file = node_file(node, "dcf");
+  return equal_ignoring_case(file, "master.dcf") ? fmt::format("master_{}.dcf", node.node_id) : file;
+}
+
 LelyFiles lely_files(const Network& network, const NetworkNode& master, std::vector<LelyNode> nodes) {
   LelyFiles files;
   files.bus_yml = {"bus.yml", BusYml{network, master}.text(nodes, files.notes)};
   const auto own = std::ranges::find(nodes, &master, &LelyNode::node);
-  if (own != nodes.end()) files.master_dcf = {node_file(master, "dcf"), master_text(std::move(own->dcf))};
+  if (own != nodes.end()) files.master_dcf = {lely_dcf_file(master), master_text(std::move(own->dcf))};
   return files;
 }
 
