@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,7 +51,7 @@ struct Settings {
   std::string format = "text";
   std::string command_line;
   std::vector<std::string> silence, exit_on, allow;
-  std::uint64_t span_us = max_duration_us;
+  std::optional<std::uint64_t> span_us;  ///< of a bus
   std::uint64_t remind_us = 60'000'000;
   bool list_alarms = false;
   ColorOption color;
@@ -176,7 +177,7 @@ int watch_bus(LiveBus& bus, const Network& network, const Settings& settings) {
                      [&](watch::Alarm&& alarm) { alarms.take(std::move(alarm)); }};
   const std::int64_t start_us = duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
   constexpr std::int64_t longest_wait_us = 50'000;
-  const auto span_us = static_cast<std::int64_t>(settings.span_us);
+  const auto span_us = static_cast<std::int64_t>(settings.span_us.value_or(max_duration_us));
   canopen::TimePoint last = bus.now();
   std::int64_t elapsed_us = 0;
   std::uint64_t frames = 0;
@@ -249,6 +250,7 @@ bool is_bus(const std::string& text) {
 int run_watch(const Settings& settings) {
   if (settings.list_alarms) return list_alarms(settings);
   if (settings.source.empty()) throw_required("SOURCE");
+  if (settings.span_us && !is_bus(settings.source)) throw_requires("--for", "a bus; a log is read to its end");
   const std::string path = network_or_default(settings.network);
   if (path.empty()) throw_required("--network");
   const auto loaded = load_given_network(path, settings.color);
