@@ -251,6 +251,10 @@ int run_watch(const Settings& settings) {
   if (settings.list_alarms) return list_alarms(settings);
   if (settings.source.empty()) throw_required("SOURCE");
   if (settings.span_us && !is_bus(settings.source)) throw_requires("--for", "a bus; a log is read to its end");
+  for (const std::string& id : settings.exit_on) {
+    if (std::ranges::find(settings.silence, id) == settings.silence.end()) continue;
+    throw_invalid("--exit-on", "\"" + id + "\" is not reported, because of --silence");
+  }
   const std::string path = network_or_default(settings.network);
   if (path.empty()) throw_required("--network");
   const auto loaded = load_given_network(path, settings.color);

@@ -261,7 +261,8 @@ class Watch(unittest.TestCase):
 
     def test_rejects_wrong_options(self) -> None:
         for arguments, expected in ((("--allow", "drive"), "is not NODE.OBJECT"), (("--allow", "drve.6040h"), 'did you mean "drive"'),
-                                    (("--exit-on", "no-alarm"), "--exit-on"), (("--silence", "no-alarm"), "--list-alarms"), (("--for", "1s"), "--for requires a bus")):
+                                    (("--exit-on", "no-alarm"), "--exit-on"), (("--silence", "no-alarm"), "--list-alarms"),
+                                    (("--for", "1s"), "--for requires a bus"), (("--silence", "sdo-write", "--exit-on", "sdo-write"), "because of --silence")):
             result = subprocess.run([EDSC, "watch", "-", "--network", plant_file("eight_devices"), *arguments], input="",
                                     capture_output=True, text=True)
             self.assertEqual(result.returncode, 2, arguments)
