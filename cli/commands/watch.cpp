@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,7 +51,7 @@ struct Settings {
   std::string format = "text";
   std::string command_line;
   std::vector<std::string> silence, exit_on, allow;
-  std::uint64_t span_us = max_duration_us;
+  std::optional<std::uint64_t> span_us;  ///< of a bus
   std::uint64_t remind_us = 60'000'000;
   bool list_alarms = false;
   ColorOption color;
@@ -91,11 +92,40 @@ watch::GuardSettings guard_settings(const Settings& settings, const Network& net
   return result;
 }
 
+/// The times of a log: in order for the guard, for the alarms as the log has them.
+class LogTimes {
+ public:
+  /// Adds the time of a frame. Returns how far it goes back, if that is more than disorder; else 0.
+  std::int64_t add(std::int64_t us) {
+    const std::int64_t back_us = times_.add(us);
+    if (back_us > 0) {
+      shift_before_us_ = std::exchange(shift_us_, us - ordered_us());
+      shifted_since_us_ = ordered_us();
+    }
+    return back_us;
+  }
+
+  /// The time of the last frame, for the guard.
+  [[nodiscard]] std::int64_t ordered_us() const { return *times_.first_us() + times_.now_us(); }
+  [[nodiscard]] std::int64_t span_us() const { return times_.now_us(); }
+  /// A time of the guard, as in the log.
+  [[nodiscard]] std::int64_t logged_us(std::int64_t us) const {
+    return us + (us < shifted_since_us_ ? shift_before_us_ : shift_us_);
+  }
+
+ private:
+  OrderedTime times_;
+  std::int64_t shift_us_ = 0, shift_before_us_ = 0;
+  std::int64_t shifted_since_us_ = 0;  ///< the last step back
+};
+
 /// What becomes of the alarms: lines on standard output, commands, and the exit code.
 class Alarms {
  public:
-  explicit Alarms(const Settings& settings)
+  /// `times` of a log; null: the times of the alarms are right.
+  explicit Alarms(const Settings& settings, const LogTimes* times = nullptr)
       : settings_{settings},
+        times_{times},
         limit_{static_cast<std::int64_t>(settings.remind_us)},
         is_colored_{settings.color.on(stdout)} {
     if (!settings.command_line.empty()) command_ = std::make_unique<watch::AlarmCommand>(settings.command_line);
@@ -107,6 +137,7 @@ class Alarms {
     };
     if (ended_ || is_named(settings_.silence) || !limit_.passes(alarm)) return;
     ++count_;
+    if (times_ != nullptr) alarm.us = times_->logged_us(alarm.us);
     if (settings_.format == "json") {
       fmt::print("{}\n", watch::alarm_json(alarm));
     } else {
@@ -131,6 +162,7 @@ class Alarms {
 
  private:
   const Settings& settings_;
+  const LogTimes* times_;
   watch::AlarmLimit limit_;
   bool is_colored_;
   std::unique_ptr<watch::AlarmCommand> command_;
@@ -145,7 +177,7 @@ int watch_bus(LiveBus& bus, const Network& network, const Settings& settings) {
                      [&](watch::Alarm&& alarm) { alarms.take(std::move(alarm)); }};
   const std::int64_t start_us = duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
   constexpr std::int64_t longest_wait_us = 50'000;
-  const auto span_us = static_cast<std::int64_t>(settings.span_us);
+  const auto span_us = static_cast<std::int64_t>(settings.span_us.value_or(max_duration_us));
   canopen::TimePoint last = bus.now();
   std::int64_t elapsed_us = 0;
   std::uint64_t frames = 0;
@@ -172,10 +204,12 @@ int watch_log(const Network& network, const Settings& settings) {
   log.interface = settings.interface;
   constexpr std::size_t max_complaints = 50;
   std::size_t complaints = 0;
-  Alarms alarms{settings};
+  constexpr std::size_t max_shown_steps = 10;
+  std::size_t steps_back = 0;
+  LogTimes times;
+  Alarms alarms{settings, &times};
   watch::Guard guard{network, guard_settings(settings, network),
                      [&](watch::Alarm&& alarm) { alarms.take(std::move(alarm)); }};
-  OrderedTime times;
   std::uint64_t frames = 0;
   const auto use = [&](LogLine& line) {
     if (line.kind == LogLineKind::broken || line.kind == LogLineKind::unreadable) {
@@ -188,9 +222,13 @@ int watch_log(const Network& network, const Settings& settings) {
         settings.interface.empty() || line.interface.empty() || line.interface == settings.interface;
     if (line.kind != LogLineKind::frame || !is_of_interface || alarms.ended()) return;
     if (!line.has_time) fail(log.log_name() + ": the log does not have times", exit_input_has_errors);
-    times.add(line.microseconds);
+    const std::int64_t back_us = times.add(line.microseconds);
+    if (back_us > 0 && ++steps_back <= max_shown_steps) {
+      print_to_stderr("{}:{}: the times go back by {:.3f} s; the watch continues without a gap\n", log.log_name(),
+                      line.number, static_cast<double>(back_us) / 1e6);
+    }
     ++frames;
-    guard.see(line.frame, *times.first_us() + times.now_us());
+    guard.see(line.frame, times.ordered_us());
   };
   const auto fail_if_unreadable = read_log(log, use, [] { flush_output(); });
   if (frames == 0) {
@@ -198,7 +236,7 @@ int watch_log(const Network& network, const Settings& settings) {
     fail(log.log_name() + ": the log has no frames", exit_input_has_errors);
   }
   guard.finish();
-  const int exit_code = alarms.end(frames, times.now_us());
+  const int exit_code = alarms.end(frames, times.span_us());
   fail_if_unreadable();
   return complaints > 0 ? exit_input_has_errors : exit_code;
 }
@@ -212,6 +250,11 @@ bool is_bus(const std::string& text) {
 int run_watch(const Settings& settings) {
   if (settings.list_alarms) return list_alarms(settings);
   if (settings.source.empty()) throw_required("SOURCE");
+  if (settings.span_us && !is_bus(settings.source)) throw_requires("--for", "a bus; a log is read to its end");
+  for (const std::string& id : settings.exit_on) {
+    if (std::ranges::find(settings.silence, id) == settings.silence.end()) continue;
+    throw_invalid("--exit-on", "\"" + id + "\" is not reported, because of --silence");
+  }
   const std::string path = network_or_default(settings.network);
   if (path.empty()) throw_required("--network");
   const auto loaded = load_given_network(path, settings.color);

@@ -55,6 +55,7 @@ BY_HAND = (
     "read {bus} 5 1018h --timeout 5 --tmeout", "check device.eds --force", "check -x device.eds", "--verson", "", "version 1",
     "check device.eds --strict=5", "read {bus} 5 no_such_name", "read {bus} 5 1018h --type u7", "save {bus} 5", "audit bus.log --silence x", "audit bus.log --times",
     "watch", "watch bus.log", "watch bus.log --network no_such.json", "watch bus.log --network bad.json --allow x", "watch bus.log --silence x",
+    "watch bus.log --network bad.json --for 1s", "watch {bus} --network bad.json --silence sdo-write --exit-on sdo-write",
     "replay bus.log", "replay bus.log can0", "replay no_such.log --node 5=device.eds", "replay bus.log {bus} --speed 0",
     "replay bus.log {bus}", "replay bus.log --node 5=device.eds --ignore no_such_name", "discover no_such.log",
     "discover bus.log --eds no_such.eds -o x.json", "discover bus.log --eds device.eds", "discover bus.log --for 1ms",

@@ -229,6 +229,22 @@ class Watch(unittest.TestCase):
         self.assertEqual([one["suppressed"] for one in alarms], [0, 19])
         self.assertEqual(len(self.watch("eight_devices", flood, "--remind", "0s")), 30)
 
+    def test_a_clock_that_is_set_back(self) -> None:
+        """The alarms have the times of their frames in the log, and a message states the line."""
+        lss = "7E5#0401000000000000"
+        log = insert((0, lss), (10, lss))(self.log_of("eight_devices"))
+        first, second = (at for at, one in enumerate(log) if one.id == "7E5")
+        step = (first + second) // 2
+        log = log[:step] + [one._replace(us=one.us - 7 * SECOND) for one in log[step:]]
+        back_us = log[step - 1].us - log[step].us
+        (self.folder / "bus.log").write_text(text_of(log))
+        result = subprocess.run([EDSC, "watch", "bus.log", "--network", plant_file("eight_devices"), "--format", "json", "--remind", "0s"],
+                                cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(result.stderr,
+                         f"bus.log:{step + 1}: the times go back by {back_us / SECOND:.3f} s; the watch continues without a gap\n")
+        alarms = [json.loads(line) for line in result.stdout.splitlines()]
+        self.assertEqual([(one["alarm"], one["time_us"]) for one in alarms], [("lss-command", log[at].us) for at in (first, second)])
+
     def test_options(self) -> None:
         log = self.log_of("eight_devices")
         write = insert((0, "605#2B4060000F000000"))(log)
@@ -245,7 +261,8 @@ class Watch(unittest.TestCase):
 
     def test_rejects_wrong_options(self) -> None:
         for arguments, expected in ((("--allow", "drive"), "is not NODE.OBJECT"), (("--allow", "drve.6040h"), 'did you mean "drive"'),
-                                    (("--exit-on", "no-alarm"), "--exit-on"), (("--silence", "no-alarm"), "--list-alarms")):
+                                    (("--exit-on", "no-alarm"), "--exit-on"), (("--silence", "no-alarm"), "--list-alarms"),
+                                    (("--for", "1s"), "--for requires a bus"), (("--silence", "sdo-write", "--exit-on", "sdo-write"), "because of --silence")):
             result = subprocess.run([EDSC, "watch", "-", "--network", plant_file("eight_devices"), *arguments], input="",
                                     capture_output=True, text=True)
             self.assertEqual(result.returncode, 2, arguments)
