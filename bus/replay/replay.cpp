@@ -5,6 +5,7 @@
 #include <canopen/can/cob_id.hpp>
 #include <canopen/nmt/nmt.hpp>
 #include <canopen/sdo/sdo_protocol.hpp>
+#include <initializer_list>
 #include <map>
 #include <utility>
 
@@ -42,6 +43,17 @@ bool begins_transfer(const canopen::Frame& frame) {
     case ClientCommand::block_upload: return (frame.data[0] & 3U) == 0;
     default: return false;
   }
+}
+
+/// The nodes that send frames with one of these function codes.
+NodeSet senders(const std::vector<RecordedFrame>& frames, std::initializer_list<std::uint32_t> functions) {
+  NodeSet nodes;
+  for (const RecordedFrame& one : frames) {
+    const canopen::Frame& frame = one.frame;
+    if (frame.extended || frame.remote || (frame.id & node_mask) == 0) continue;
+    if (std::ranges::find(functions, frame.id & function_mask) != functions.end()) nodes.set(frame.id & node_mask);
+  }
+  return nodes;
 }
 
 class Replay {
@@ -449,14 +461,11 @@ class Replay {
 }  // namespace
 
 NodeSet answering_nodes(const std::vector<RecordedFrame>& frames) {
-  NodeSet nodes;
-  for (const RecordedFrame& one : frames) {
-    const canopen::Frame& frame = one.frame;
-    const bool is_response =
-        !frame.extended && !frame.remote && (frame.id & function_mask) == function_code::sdo_response;
-    if (is_response && (frame.id & node_mask) != 0) nodes.set(frame.id & node_mask);
-  }
-  return nodes;
+  return senders(frames, {function_code::sdo_response});
+}
+
+NodeSet sending_nodes(const std::vector<RecordedFrame>& frames) {
+  return senders(frames, {function_code::emcy, function_code::sdo_response, function_code::error_control});
 }
 
 Result replay(LiveBus& bus, const std::vector<RecordedFrame>& frames, const std::vector<KnownNode>& known,

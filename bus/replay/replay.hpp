@@ -90,6 +90,8 @@ struct Result {
 
 /// The nodes that answer SDO requests in these frames.
 [[nodiscard]] NodeSet answering_nodes(const std::vector<RecordedFrame>& frames);
+/// The nodes that send frames with a fixed CAN-ID: SDO responses, EMCYs, boot-up messages and heartbeats.
+[[nodiscard]] NodeSet sending_nodes(const std::vector<RecordedFrame>& frames);
 
 /// `known`: nodes with an EDS, for names, PDOs and further SDO servers. Throws Interrupted, BusLost.
 [[nodiscard]] Result replay(LiveBus& bus, const std::vector<RecordedFrame>& frames, const std::vector<KnownNode>& known,

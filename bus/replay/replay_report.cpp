@@ -106,9 +106,11 @@ std::string text_report(const Report& report) {
   std::string text;
   const Result& result = report.result;
   for (const Difference& one : result.differences) text += difference_text(one, report);
-  text += fmt::format("{}: {} sent to {}, {} compared: {}\n", printable(report.log), counted(result.sent, "frame"),
-                      counted(report.nodes.count(), "node"), counted(result.compared, "response"),
-                      result.differences.empty() ? "no difference" : counted(result.differences.size(), "difference"));
+  const std::string_view without_difference = result.compared == 0 ? "no result" : "no difference";
+  text +=
+      fmt::format("{}: {} sent to {}, {} compared: {}\n", printable(report.log), counted(result.sent, "frame"),
+                  counted(report.nodes.count(), "node"), counted(result.compared, "response"),
+                  result.differences.empty() ? without_difference : counted(result.differences.size(), "difference"));
   return text;
 }
 

@@ -135,6 +135,25 @@ std::unique_ptr<replay::NodePort> simulated_nodes(const GivenNodes& given, const
   return port;
 }
 
+/// ` 5, 9`
+std::string id_list(const replay::NodeSet& nodes) {
+  std::string text;
+  for (std::size_t node_id = 1; node_id < nodes.size(); ++node_id) {
+    if (nodes[node_id]) text += fmt::format("{} {}", text.empty() ? "" : ",", node_id);
+  }
+  return text;
+}
+
+/// A result without a comparison says nothing about the nodes.
+void report_nothing_compared(const Settings& settings, const replay::NodeSet& compared,
+                             const replay::NodeSet& sending) {
+  const auto label = [](const replay::NodeSet& nodes) { return nodes.count() == 1 ? "node" : "nodes"; };
+  print_to_stderr("edsc: {}: nothing was compared with {}{}; {}\n", settings.log_name(), label(compared),
+                  id_list(compared),
+                  sending.none() ? "no node sends frames in the log"
+                                 : fmt::format("the log has frames of {}{}", label(sending), id_list(sending)));
+}
+
 int replay_log(const Settings& settings) {
   const GivenNodes given = load_given_nodes(settings, settings.color);
   const RecordedLog recorded = read_recorded(settings, given);
@@ -150,7 +169,9 @@ int replay_log(const Settings& settings) {
     const replay::Result result = replay::replay(bus, frames, given.known(), how);
     const replay::Report report{settings.log_name(), settings.target, how.nodes, given.labels, result};
     write_output(settings.format == "json" ? json_report(report) : text_report(report));
-    return result.differences.empty() && !recorded.has_broken_lines ? exit_fine : exit_input_has_errors;
+    const bool has_compared = result.compared != 0 || !result.differences.empty();
+    if (!has_compared) report_nothing_compared(settings, how.nodes, replay::sending_nodes(frames));
+    return has_compared && result.differences.empty() && !recorded.has_broken_lines ? exit_fine : exit_input_has_errors;
   };
   if (!settings.target.empty()) return with_bus(settings.target, run);
   auto port = simulated_nodes(given, how.nodes);

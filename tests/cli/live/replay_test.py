@@ -225,6 +225,16 @@ class Replay(LiveTest):
         found = self.differences(log, self.network.address, "--timeout", "50ms")
         self.assertEqual([(one["kind"], one["node_id"]) for one in found], [("missing", 9)])
 
+    def test_nothing_is_compared(self) -> None:
+        log = self.log_of(*DIALOG, frame(0x709, "05"))
+        result = self.replay(log, f"--node={NODE + 1}=device.eds")
+        self.assertEqual(result.returncode, FAILED)
+        self.assertRegex(result.stdout, r"0 responses compared: no result\n\Z")
+        self.assertEqual(result.stderr, "edsc: made.log: nothing was compared with node 6; the log has frames of nodes 5, 9\n")
+        result = self.replay(self.log_of(frame(0x080)), SIMULATED, "--format", "json")
+        self.assertEqual((result.returncode, json.loads(result.stdout)["compared"]), (FAILED, 0))
+        self.assertIn("no node sends frames in the log", result.stderr)
+
     def test_wrong_usage(self) -> None:
         log = self.log_of(*DIALOG)
         for arguments, message in (((log,), "TARGET"), ((log, "can0"), "can0"), ((), "LOG is required")):
