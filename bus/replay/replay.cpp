@@ -171,7 +171,7 @@ class Replay {
   // Frames of the log
 
   void take(const RecordedFrame& one) {
-    receive_until(one.us * 100 / settings_.speed + shift_us_);
+    receive_until((one.us - one.skipped_us) * 100 / settings_.speed + shift_us_);
     if (is_done()) return;
     log_decoder_.decode({one.frame, one.has_time, one.us}, message_);
     present_ = &one;

@@ -25,7 +25,13 @@ struct RecordedFrame {
   std::size_t line = 0;  ///< or packet, from 1
   bool has_time = false;
   std::int64_t us = 0;  ///< since the first frame; does not decrease
+  /// How much of this time is not waited for, see max_gap_us.
+  std::int64_t skipped_us = 0;
 };
+
+/// A longer time without a frame takes only this time, such as one at which a clock was set. It is longer than the
+/// longest heartbeat time, 65.535 s.
+inline constexpr std::int64_t max_gap_us = 120'000'000;
 
 struct Settings {
   NodeSet nodes;                      ///< whose responses are compared; frames of other nodes are sent in their place

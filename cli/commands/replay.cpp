@@ -76,14 +76,14 @@ RecordedLog read_recorded(const Settings& settings, const GivenNodes& nodes) {
   RecordedLog recorded;
   std::vector<replay::RecordedFrame>& frames = recorded.frames;
   OrderedTime time;
-  std::int64_t at_us = 0;
+  std::int64_t at_us = 0, skipped_us = 0;
   std::string complaints;
   const auto print_complaints = [&] {
     write_to_stderr(complaints);
     complaints.clear();
   };
   const auto use = [&](LogLine& line) {
-    constexpr std::int64_t without_time_us = 1000;
+    constexpr std::int64_t without_time_us = 1000, second_us = 1'000'000;
     if (decoder.evaluate(line, complaints) == nullptr || line.kind != LogLineKind::frame) return;
     if (line.has_time) {
       static_cast<void>(time.add(line.microseconds));
@@ -91,7 +91,13 @@ RecordedLog read_recorded(const Settings& settings, const GivenNodes& nodes) {
     } else if (!frames.empty()) {
       at_us += without_time_us;
     }
-    frames.push_back({line.frame, line.number, line.has_time, at_us});
+    if (const std::int64_t gap_us = frames.empty() ? 0 : at_us - frames.back().us; gap_us > replay::max_gap_us) {
+      skipped_us += gap_us - replay::max_gap_us;
+      complaints += fmt::format("edsc: {}:{}: {} s: no frame for {} s before this one; the replay takes {} s for it\n",
+                                printable(settings.log_name()), line.number, at_us / second_us, gap_us / second_us,
+                                replay::max_gap_us / second_us);
+    }
+    frames.push_back({line.frame, line.number, line.has_time, at_us, skipped_us});
   };
   const auto fail_if_unreadable = read_log(settings, use, print_complaints);
   print_complaints();

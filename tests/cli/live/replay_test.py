@@ -225,6 +225,17 @@ class Replay(LiveTest):
         found = self.differences(log, self.network.address, "--timeout", "50ms")
         self.assertEqual([(one["kind"], one["node_id"]) for one in found], [("missing", 9)])
 
+    def test_a_clock_that_was_set(self) -> None:
+        """From 1970 on; the times of differences remain those of the log."""
+        (self.folder / "jump.log").write_text(
+            "(10.0) can0 705#00\n(1764300000.0) can0 605#4018100100000000\n(1764300000.1) can0 585#43181001EECDAB00\n")
+        began = time.monotonic()
+        result = self.replay("jump.log", SIMULATED, "--format", "json")
+        self.assertLess(time.monotonic() - began, PATIENCE / 2)
+        self.assertEqual(result.stderr, "edsc: jump.log:2: 1764299990 s: no frame for 1764299990 s before this one; "
+                                        "the replay takes 120 s for it\n")
+        self.assertEqual([(one["line"], one["at_us"]) for one in json.loads(result.stdout)["differences"]], [(3, 1_764_299_990_100_000)])
+
     def test_nothing_is_compared(self) -> None:
         log = self.log_of(*DIALOG, frame(0x709, "05"))
         result = self.replay(log, f"--node={NODE + 1}=device.eds")
