@@ -95,6 +95,9 @@ std::optional<std::string> number_text(const Entry& entry, std::string_view data
   return fmt::format("0x{:X}", number);
 }
 
+/// Keys of `bus.yml` that are not nodes, or are the master.
+constexpr std::string_view reserved_keys[] = {"master", "options", "defaults"};
+
 class BusYml {
  public:
   BusYml(const Network& network, const NetworkNode& master) : network_{network}, master_{master} {}
@@ -142,7 +145,7 @@ class BusYml {
   /// The name of a node is a key, and names a node of ROS and a file.
   std::string key_of(const NetworkNode& node) {
     std::string key = to_snake_case(node.name);
-    if (key.empty() || key == "master" || key == "options" || !keys_.insert(key).second) {
+    if (key.empty() || std::ranges::find(reserved_keys, key) != std::end(reserved_keys) || !keys_.insert(key).second) {
       key = fmt::format("{}{}{}", key, key.empty() ? "node_" : "_", node.node_id);
       keys_.insert(key);
     }
@@ -152,7 +155,7 @@ class BusYml {
   void add_slave(const LelyNode& one, std::vector<std::string>& notes) {
     const NetworkNode& node = *one.node;
     const Device& device = node.device();
-    text_ += fmt::format("\n{}:\n", key_of(node));
+    text_ += fmt::format("\n{}:\n", yaml_text(key_of(node)));
     add("dcf", yaml_text(node_file(node, "dcf")));
     add_number("node_id", node.node_id);
     add_if_stated("serial_number", node.description->serial_number);

@@ -90,6 +90,13 @@ class Lely(unittest.TestCase):
         self.assertEqual(int(bus["pump_2"]["heartbeat_multiplier"] * 70), 100)
         self.assertEqual(bus["a"]["driver"], "ros2_canopen::ProxyDriver")
 
+    def test_names_with_a_meaning_in_yaml_and_dcfgen(self) -> None:
+        names = ("on", "null", "y", "defaults", "options")
+        self.generate({"bit_rate": 500, "nodes": {
+            "control": {"node_id": 127, "master": True},
+            **{name: {"node_id": node_id, "eds": "node.eds"} for node_id, name in enumerate(names, 1)}}})
+        self.assertEqual(list(self.bus()), ["master", "on", "null", "y", "defaults_4", "options_5"])
+
     def test_a_drive_has_the_driver_for_drives(self) -> None:
         for file in (SOURCE_DIR / "eds").glob("ezd-1136.*"):
             shutil.copy(file, self.folder)
