@@ -62,11 +62,12 @@ GeneratedNetwork generate_network(const Network& network, Diagnostics& diagnosti
   PlantParts parts;
   std::vector<LelyNode> lely_nodes;
   for (const NetworkNode& node : network.nodes) {
-    NodeDcf dcf = make_node_dcf(network, node, diagnostics);
+    const std::string file = program == MasterProgram::lely ? lely_dcf_file(node) : node_file(node, "dcf");
+    NodeDcf dcf = make_node_dcf(network, node, file, diagnostics);
     if (!node.has_file()) {
       generated.files.push_back({node_file(node, "eds"), std::string{node.loaded->source->text()}});
     }
-    generated.files.push_back({node_file(node, "dcf"), std::move(dcf.text)});
+    generated.files.push_back({file, std::move(dcf.text)});
     parts.concise_dcfs.push_back(dcf.concise);
     if (program == MasterProgram::lely) lely_nodes.push_back({&node, std::move(dcf.document), dcf.concise});
     generated.files.push_back({node_file(node, "cdcf"), std::move(dcf.concise)});

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "device/index_range.hpp"
+#include "eds/ini.hpp"
 #include "eds/number.hpp"
 #include "format/dcf/concise_dcf.hpp"
 #include "network/communication_objects.hpp"
@@ -156,7 +157,7 @@ class BusYml {
     const NetworkNode& node = *one.node;
     const Device& device = node.device();
     text_ += fmt::format("\n{}:\n", yaml_text(key_of(node)));
-    add("dcf", yaml_text(node_file(node, "dcf")));
+    add("dcf", yaml_text(lely_dcf_file(node)));
     add_number("node_id", node.node_id);
     add_if_stated("serial_number", node.description->serial_number);
     if ((value_of(device, 0x1000).value_or(0) & profile_bits) == drive_profile) {
@@ -210,11 +211,17 @@ class BusYml {
 
 }  // namespace
 
+/// File names may not differ in case only.
+std::string lely_dcf_file(const NetworkNode& node) {
+  std::string file = node_file(node, "dcf");
+  return equal_ignoring_case(file, "master.dcf") ? fmt::format("master_{}.dcf", node.node_id) : file;
+}
+
 LelyFiles lely_files(const Network& network, const NetworkNode& master, std::vector<LelyNode> nodes) {
   LelyFiles files;
   files.bus_yml = {"bus.yml", BusYml{network, master}.text(nodes, files.notes)};
   const auto own = std::ranges::find(nodes, &master, &LelyNode::node);
-  if (own != nodes.end()) files.master_dcf = {node_file(master, "dcf"), master_text(std::move(own->dcf))};
+  if (own != nodes.end()) files.master_dcf = {lely_dcf_file(master), master_text(std::move(own->dcf))};
   return files;
 }
 

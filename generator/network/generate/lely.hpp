@@ -23,6 +23,9 @@ struct LelyFiles {
   std::vector<std::string> notes;  ///< values that `bus.yml` cannot hold: `axis1: 2001h:00 Label (VISIBLE_STRING)`
 };
 
+/// The DCF of a node: `NAME.dcf`, but not `master.dcf`, which dcfgen writes.
+[[nodiscard]] std::string lely_dcf_file(const NetworkNode& node);
+
 /// Lely's loader takes a file that the master sends from UploadFile of an entry that can only be read, and its master
 /// does not need SDO client parameters (1280h to 12FFh), which it would otherwise use in place of the default ones.
 /// dcfgen adds a PDO to the master for each PDO of the DCFs, and writes the values of `sdo` to the nodes in this order.

@@ -67,9 +67,10 @@ std::string line_of(std::string text) {
 
 class NodeDcfMaker {
  public:
-  NodeDcfMaker(const Network& network, const NetworkNode& node, Diagnostics& diagnostics)
+  NodeDcfMaker(const Network& network, const NetworkNode& node, const std::string& file, Diagnostics& diagnostics)
       : network_{network},
         node_{node},
+        file_{file},
         diagnostics_{diagnostics},
         sheet_{std::string{node.loaded->sheet.is_dcf ? "node.dcf" : "node.eds"}, sheet_text(node), node.node_id} {}
 
@@ -81,7 +82,7 @@ class NodeDcfMaker {
     NodeDcf dcf;
     dcf.text = to_text(document);
     dcf.document = std::move(document);
-    const ReadSheet read{node_file(node_, "dcf"), dcf.text, node_.node_id};
+    const ReadSheet read{file_, dcf.text, node_.node_id};
     check_values(read);
     Diagnostics ignored;
     dcf.concise = concise_dcf(read.sheet, read.device, ignored);
@@ -143,7 +144,7 @@ class NodeDcfMaker {
 
   void complete(DocumentSection& section) const {
     switch (section.kind.kind) {
-      case SectionKind::file_info: return set_key(section, "FileName", node_file(node_, "dcf"));
+      case SectionKind::file_info: return set_key(section, "FileName", file_);
       case SectionKind::device_commissioning: return complete_commissioning(section);
       case SectionKind::sub_object: return add_download_file(section);
       default: return;
@@ -187,6 +188,7 @@ class NodeDcfMaker {
 
   const Network& network_;
   const NetworkNode& node_;
+  const std::string& file_;
   Diagnostics& diagnostics_;
   ReadSheet sheet_;
   GivenValues given_;
@@ -194,8 +196,9 @@ class NodeDcfMaker {
 
 }  // namespace
 
-NodeDcf make_node_dcf(const Network& network, const NetworkNode& node, Diagnostics& diagnostics) {
-  return NodeDcfMaker{network, node, diagnostics}.make();
+NodeDcf make_node_dcf(const Network& network, const NetworkNode& node, const std::string& file,
+                      Diagnostics& diagnostics) {
+  return NodeDcfMaker{network, node, file, diagnostics}.make();
 }
 
 std::string node_file(const NetworkNode& node, std::string_view extension) {

@@ -17,8 +17,9 @@ struct NodeDcf {
 
 /// The file of the node in canonical form, with [DeviceComissioning] of the network and a ParameterValue for each entry
 /// that the network file or the DCF of the node configures; of a PDO mapping all values. 1F22h of a master refers to
-/// the concise DCFs of the other nodes. A value that a DCF cannot express is reported.
-[[nodiscard]] NodeDcf make_node_dcf(const Network& network, const NetworkNode& node, Diagnostics& diagnostics);
+/// the concise DCFs of the other nodes. A value that a DCF cannot express is reported. `file` is the name of the DCF.
+[[nodiscard]] NodeDcf make_node_dcf(const Network& network, const NetworkNode& node, const std::string& file,
+                                    Diagnostics& diagnostics);
 
 /// `NAME.dcf`, with `_` in place of characters that file names cannot have everywhere.
 [[nodiscard]] std::string node_file(const NetworkNode& node, std::string_view extension);

@@ -116,7 +116,7 @@ class SourceWriter {
   }
 
   std::string dcf_text(const NetworkNode& node, std::size_t place) {
-    const NodeDcf dcf = make_node_dcf(network_, node, diagnostics_);
+    const NodeDcf dcf = make_node_dcf(network_, node, node_file(node, "dcf"), diagnostics_);
     return fmt::format("// {}\nconstexpr std::uint8_t {}[] = {{{}\n}};\n", cpp_comment(node.name), dcf_name(place),
                        byte_list(dcf.concise));
   }

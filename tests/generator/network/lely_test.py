@@ -90,6 +90,14 @@ class Lely(unittest.TestCase):
         self.assertEqual(int(bus["pump_2"]["heartbeat_multiplier"] * 70), 100)
         self.assertEqual(bus["a"]["driver"], "ros2_canopen::ProxyDriver")
 
+    def test_no_file_is_that_of_dcfgen(self) -> None:
+        self.generate()
+        self.assertEqual(self.bus()["master_3"]["dcf"], "master_3.dcf")
+        self.generate({"bit_rate": 500, "nodes": {"Master": {"node_id": 127, "master": True}, "a": {"node_id": 1, "eds": "node.eds"}}})
+        self.assertEqual(sheet(self.out / "master_127.dcf")["1F22sub1"]["UploadFile"], "a.cdcf")
+        self.assertEqual(sheet(self.out / "master_127.dcf")["FileInfo"]["FileName"], "master_127.dcf")
+        self.assertFalse((self.out / "Master.dcf").exists())
+
     def test_names_with_a_meaning_in_yaml_and_dcfgen(self) -> None:
         names = ("on", "null", "y", "defaults", "options")
         self.generate({"bit_rate": 500, "nodes": {
