@@ -80,7 +80,8 @@ bool read_frames(const Settings& settings, discover::BusSurvey& survey) {
   return !decoder.skipped_lines();
 }
 
-void write_network_file(const Settings& settings, const discover::BusSurvey& survey, const SheetFiles& sheets) {
+/// Returns whether the commands for a network accept the file: it has all nodes.
+bool write_network_file(const Settings& settings, const discover::BusSurvey& survey, const SheetFiles& sheets) {
   DescribeSettings describe;
   describe.folder = from_native(to_native(settings.output).parent_path());
   describe.bit_rate = settings.bit_rate;
@@ -98,15 +99,17 @@ void write_network_file(const Settings& settings, const discover::BusSurvey& sur
   write_output(settings.output, network.text, inputs);
   for (const std::string& note : network.notes) print_to_stderr("edsc: {}\n", note);
   for (const std::string& note : network.errors) print_to_stderr("edsc: {}\n", note);
+  if (nodes.empty()) print_to_stderr("edsc: {}: no node was found\n", settings.output);
+  return network.errors.empty() && !nodes.empty();
 }
 
 int report(const Settings& settings, const discover::BusSurvey& survey, const SheetFiles& sheets) {
   const std::string source = settings.is_bus() ? settings.log : settings.log_name();
   if (survey.frames() == 0)
     fail(source + (settings.is_bus() ? ": no frame was received" : ": the log has no frames"), exit_input_has_errors);
-  if (!settings.output.empty()) write_network_file(settings, survey, sheets);
+  const bool has_nodes = settings.output.empty() || write_network_file(settings, survey, sheets);
   write_output(settings.format == "json" ? json_report(survey, source) : text_report(survey, source));
-  return exit_fine;
+  return has_nodes ? exit_fine : exit_input_has_errors;
 }
 
 int run_discover(const Settings& settings) {

@@ -123,7 +123,8 @@ class Discover(LiveTest):
         self.assertEqual((guess["transmission"], guess["period_us"]), ("timed", 10_000))
 
     def test_a_network_file(self) -> None:
-        result = self.discover(self.log_of(plant()), "--eds", "device.eds", "--bit-rate", 500, "-o", "plant.json")
+        result = self.discover(self.log_of(plant()), "--eds", "device.eds", "--bit-rate", 500, "-o", "plant.json",
+                               exit_code=FAILED)  # no file fits node 9
         self.assertIn("2 nodes", result.stdout)
         text = (self.folder / "plant.json").read_text()
         network = json.loads(re.sub(r"(?m)^\s*//.*$", "", text))
@@ -139,11 +140,18 @@ class Discover(LiveTest):
 
     def test_a_network_file_without_eds(self) -> None:
         """Its nodes are comments: the reader states the files."""
-        result = self.discover(self.log_of(plant()), "-o", "plant.json")
+        result = self.discover(self.log_of(plant()), "-o", "plant.json", exit_code=FAILED)
         self.assertIn("node 5: no file fits", result.stderr)
         text = (self.folder / "plant.json").read_text()
         self.assertIn('// "node_5": {"node_id": 5, "eds": ""}', text)
         self.assertEqual(json.loads(re.sub(r"(?m)^\s*//.*$", "", text))["nodes"], {})
+
+    def test_a_network_file_with_all_nodes(self) -> None:
+        self.discover(self.log_of([frame for frame in plant() if frame[1] & 0x7F != 9]), "--eds", "device.eds", "-o", "plant.json")
+
+    def test_a_network_file_without_nodes(self) -> None:
+        result = self.discover(self.log_of(every(0.01, 0x080, b"")), "-o", "plant.json", exit_code=FAILED)
+        self.assertEqual(result.stderr, "edsc: plant.json: no node was found\n")
 
     def test_a_bus(self) -> None:
         client = self.network.client()
