@@ -61,8 +61,9 @@ std::int64_t round_period(double us) {
 
 BusSurvey::BusSurvey() : decoder_{std::vector<KnownNode>{}} {}
 
-void BusSurvey::add(const canopen::Frame& frame, bool has_time, std::int64_t us) {
-  if (has_time) static_cast<void>(time_.add(us));
+std::int64_t BusSurvey::add(const canopen::Frame& frame, bool has_time, std::int64_t us) {
+  const std::int64_t back_us = has_time ? time_.add(us) : 0;
+  if (back_us > 0) restart_times();
   ++frames_;
   decoder_.decode({frame, has_time, us}, message_);
   const std::int64_t now = time_.now_us();
@@ -78,6 +79,15 @@ void BusSurvey::add(const canopen::Frame& frame, bool has_time, std::int64_t us)
     case Service::unknown: see_unknown(frame, has_time); break;
     default: see_node(message_, frame);
   }
+  return back_us;
+}
+
+/// No distance from a frame before is a period.
+void BusSurvey::restart_times() {
+  audit_.times_since = time_.now_us();
+  for (audit::NodeState& node : audit_.nodes) node.settings_since = audit_.times_since;
+  for (auto& [cob_id, pdo] : pdos_) pdo.last_us.reset();
+  last_sync_us_.reset();
 }
 
 void BusSurvey::see_node(const Message& message, const canopen::Frame& frame) {

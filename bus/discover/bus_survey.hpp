@@ -68,8 +68,9 @@ class BusSurvey {
 
   BusSurvey();
 
-  /// Adds a frame, in the order of the bus. Without a time, it does not count for periods.
-  void add(const canopen::Frame& frame, bool has_time, std::int64_t us);
+  /// Adds a frame, in the order of the bus. Without a time, it does not count for periods. Returns how far
+  /// the time goes back, in microseconds, if that is more than disorder; else 0. No period is measured across it.
+  std::int64_t add(const canopen::Frame& frame, bool has_time, std::int64_t us);
 
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
   /// Nothing without times.
@@ -94,6 +95,7 @@ class BusSurvey {
   [[nodiscard]] std::vector<FoundNode> found_nodes() const;
 
  private:
+  void restart_times();
   void see_node(const Message& message, const canopen::Frame& frame);
   void see_transfer(const Message& message);
   void see_unknown(const canopen::Frame& frame, bool has_time);

@@ -58,7 +58,7 @@ void listen_to(LiveBus& bus, const Settings& settings, discover::BusSurvey& surv
       now_us += (now - last).count();
       last = now;
     }
-    if (frame) survey.add(*frame, true, now_us);
+    if (frame) static_cast<void>(survey.add(*frame, true, now_us));
   }
 }
 
@@ -72,7 +72,11 @@ bool read_frames(const Settings& settings, discover::BusSurvey& survey) {
   };
   const auto use = [&](LogLine& line) {
     if (decoder.evaluate(line, complaints) == nullptr || line.kind != LogLineKind::frame) return;
-    survey.add(line.frame, line.has_time, line.microseconds);
+    constexpr double second_us = 1e6;
+    if (const std::int64_t back_us = survey.add(line.frame, line.has_time, line.microseconds); back_us > 0) {
+      complaints += fmt::format("edsc: {}:{}: the time goes back by {:.6f} s; no period is measured across this\n",
+                                printable(settings.log_name()), line.number, static_cast<double>(back_us) / second_us);
+    }
   };
   const auto fail_if_unreadable = read_log(settings, use, print_complaints);
   print_complaints();

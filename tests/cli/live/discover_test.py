@@ -122,6 +122,16 @@ class Discover(LiveTest):
         guess = self.found(self.log_of(frames))["pdos"][0]
         self.assertEqual((guess["transmission"], guess["period_us"]), ("timed", 10_000))
 
+    def test_times_that_go_back(self) -> None:
+        frames = sorted(every(0.1, 0x705, b"\5") + every(0.1, 0x185, bytes(2), delay=0.01))[:10]
+        again = [(at + 0.3, can_id, data) for at, can_id, data in frames]  # begins before the end of the first part
+        result = self.discover(self.log_of(frames + again), "--format", "json")
+        self.assertEqual(result.stderr, f"edsc: plant.log:11: the time goes back by {frames[-1][0] - again[0][0]:.6f} s; "
+                                        "no period is measured across this\n")
+        found = json.loads(result.stdout)
+        self.assertEqual(found["nodes"][0]["heartbeat_period_us"], 100_000)
+        self.assertEqual([(pdo["transmission"], pdo["period_us"]) for pdo in found["pdos"]], [("timed", 100_000)])
+
     def test_a_network_file(self) -> None:
         result = self.discover(self.log_of(plant()), "--eds", "device.eds", "--bit-rate", 500, "-o", "plant.json",
                                exit_code=FAILED)  # no file fits node 9

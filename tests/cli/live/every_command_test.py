@@ -194,7 +194,8 @@ class EveryCommand(ReferenceDevices):
         for form in ("text", "json"):
             self.run_command("replay", "bus.log", *self.sheets, "--all-differences", "--pdos", "--timeout", "100ms", "--format", form,
                              exit_codes=(FINE, FAILED))
-            self.run_command("discover", "bus.log", "--eds", SOURCE_DIR / "eds", "-o", f"discovered-{form}.json", "--format", form)
+            self.run_command("discover", "bus.log", "--eds", SOURCE_DIR / "eds", "-o", f"discovered-{form}.json", "--format", form,
+                             exit_codes=(FINE, FAILED))
         self.run_command("plot", "bus.log", "6/1017h", *self.sheets, "-o", "plot.svg")
 
 

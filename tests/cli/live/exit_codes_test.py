@@ -51,7 +51,7 @@ MORE = {
     "format": ("format broken.ini -o none.eds", FAILED),
     "decode": ("decode good.log", FINE),
     "audit": ("audit good.log --node 5=device.eds", FINE),
-    "replay": ("replay good.log --node 5=device.eds --ignore 1017h", FINE),
+    "replay": ("replay same.log --node 5=device.eds", FINE),
     "discover": ("discover good.log", FINE),
     "plot": ("plot good.log 1017h --node 5=device.eds -o plot.svg", FINE),
 }
@@ -95,6 +95,7 @@ class ExitCodes(standard_streams_test.PreparedFiles):
     def setUp(self) -> None:
         super().setUp()
         self.write("good.log", "(1.0) vcan0 605#4017100000000000\n(1.001) vcan0 585#4B17100000000000\n")
+        self.write("same.log", "(1.0) vcan0 605#4018100100000000\n(1.001) vcan0 585#43181001EFCDAB00\n")
         self.write("broken.ini", "[DeviceInfo\nVendorName\n")
         self.write("wrong.overlay", "[Overlay]\nVersion=1\nBase=device.eds\n\n[9999]\nDefaultValue=0 => 100\n")
         self.write("absent.json", json.dumps({"bit_rate": 500, "nodes": {"axis": {"node_id": 100, "eds": "device.eds"}}}))
