@@ -52,16 +52,18 @@ expect() {
 }
 
 # steps PRESET: those of its workflow. Many tests of the release build wait, for frames, pages or virtual machines: meanwhile
-# the programs of the later gears are built, which takes what the tests leave.
+# the programs of the later gears are built, which takes what other programs leave. What is not built then, the gear builds.
 steps() {
-  local status=0
+  local status=0 builder
   if [ "$1" != test ] || [ ${#ahead[@]} -eq 0 ]; then cmake --workflow --preset "$1"; return; fi
   cmake --preset test && cmake --build --preset test || return
-  (chrt --idle --pid 0 "$BASHPID" # tests in a virtual machine with CAN need their time
-   for later in "${ahead[@]}"; do nice -n 19 cmake --preset "$later" && nice -n 19 cmake --build --preset "$later"; done) \
+  chrt --idle 0 setsid bash -c 'for gear; do cmake --preset "$gear" && cmake --build --preset "$gear"; done' ahead "${ahead[@]}" \
     >build/ahead.log 2>&1 &
+  builder=$!
+  trap 'kill -- "-$builder" 2>/dev/null || true' EXIT
   ctest --preset test || status=$?
-  wait || true  # the gear builds again, and reports what fails
+  kill -- "-$builder" 2>/dev/null || true
+  wait "$builder" || true
   return $status
 }
 
