@@ -36,6 +36,11 @@ def frame(can_id: int, data: str = "") -> tuple[int, bytes]:
     return can_id, bytes.fromhex(data)
 
 
+def remote(can_id: int) -> tuple[int, None]:
+    return can_id, None
+
+
+LSS_REQUEST, LSS_RESPONSE = 0x7E5, 0x7E4
 REQUEST, RESPONSE, BOOT_UP, STATE = 0x600 + NODE, 0x580 + NODE, 0x700 + NODE, 0x7F
 # What the device of tests/fixtures/live_device.eds sends by CiA 301: the request, and the response or none.
 VENDOR = (frame(REQUEST, "4018100100000000"), frame(RESPONSE, "43181001efcdab00"))
@@ -54,11 +59,12 @@ class Replay(LiveTest):
         super().setUp()
         shutil.copy(SHEET.with_name("live_device.options.json"), self.folder / "device.options.json")
 
-    def log_of(self, *frames: tuple[int, bytes], name: str = "made.log") -> str:
+    def log_of(self, *frames: tuple[int, bytes | None], name: str = "made.log") -> str:
         """Written by python-can, with 10 ms between the frames."""
         writer = can.CanutilsLogWriter(str(self.folder / name))
         for place, (can_id, data) in enumerate(frames):
             writer.on_message_received(can.Message(timestamp=1_700_000_000 + place / 100, arbitration_id=can_id, data=data,
+                                                   is_remote_frame=data is None, dlc=1 if data is None else None,
                                                    is_extended_id=False, channel="can0"))
         writer.stop()
         return name
@@ -146,6 +152,31 @@ class Replay(LiveTest):
         found = self.one_difference(log, "--pdos")
         self.assertEqual((found["kind"], found["service"]), ("content", "tpdo"))
         self.assertIn("Statusword", found["received"]["text"])
+
+    def test_node_guarding(self) -> None:
+        """CiA 301, 7.2.8.3.1: the state, and a bit that changes with each response, 0 in the first one."""
+        guarded = BOOT + (remote(BOOT_UP), frame(BOOT_UP, "7f"), remote(BOOT_UP), frame(BOOT_UP, "ff"))
+        device = f"--node={NODE}={SOURCE_DIR / 'eds/can-2053c.eds'}"
+        self.expect_same(self.log_of(*guarded), device, compared=3)
+        (found,) = self.differences(self.log_of(*guarded[:-1], frame(BOOT_UP, "7f")), device)
+        self.assertEqual((found["kind"], found["service"], found["expected"]["data"], found["received"]["data"]),
+                         ("content", "guarding", "7F", "FF"))
+
+    def test_lss(self) -> None:
+        """CiA 305: configuration state for all, then the vendor-ID, which is in the EDS."""
+        asked = BOOT + (frame(LSS_REQUEST, "0401000000000000"), frame(LSS_REQUEST, "5a00000000000000"))
+        self.expect_same(self.log_of(*asked, frame(LSS_RESPONSE, "5aefcdab00000000")), SIMULATED, compared=2)
+        found = self.one_difference(self.log_of(*asked, frame(LSS_RESPONSE, "5aeecdab00000000")))
+        self.assertEqual((found["kind"], found["service"], found["node_id"], found["request"]["data"]),
+                         ("content", "lss", None, "5A00000000000000"))
+
+    def test_two_nodes(self) -> None:
+        other = NODE + 1
+        of_other = tuple((can_id + 1, data) for can_id, data in BOOT + VENDOR + UNKNOWN)
+        nodes = (SIMULATED, f"--node={other}=device.eds")
+        self.expect_same(self.log_of(*BOOT, *of_other, *VENDOR), *nodes, compared=5)
+        wrong = self.log_of(*BOOT, *of_other[:2], frame(0x580 + other, "43181001eecdab00"), *VENDOR)
+        self.assertEqual([(one["node_id"], one["kind"]) for one in self.differences(wrong, *nodes)], [(other, "value")])
 
     def test_ignored_objects(self) -> None:
         log = self.replaced(VENDOR[1], (frame(RESPONSE, "43181001eecdab00"),))
