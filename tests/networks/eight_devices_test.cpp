@@ -5,28 +5,13 @@
 #include <cstdint>
 #include <string>
 
-#include "networks/eight_devices_control.hpp"
-#include "plant_bench.hpp"
+#include "networks/eight_devices_bench.hpp"
 
 namespace {
 
 using namespace std::chrono_literals;
 using canopen::NmtState;
-
-struct Devices : plant_bench::PlantBench<EightDevices> {
-  Devices() : PlantBench{125'000} {}
-
-  auto& plant() { return control.plant; }
-
-  plant_bench::LiveNode<can_2057c::Device> digital_outputs{bus, 1};
-  plant_bench::LiveNode<can_2053c::Device> digital_inputs{bus, 2};
-  plant_bench::LiveNode<can_2024c::Device> analog_outputs{bus, 3};
-  plant_bench::LiveNode<can_2017c::Device> analog_inputs{bus, 4};
-  plant_bench::LiveNode<cpc_tc1::Device> drive{bus, 5};
-  plant_bench::LiveNode<cpd::Device> second_drive{bus, 6};
-  plant_bench::LiveNode<ezd_1136::Device> axis{bus, 7};
-  plant_bench::LiveNode<rk5c::Device> sensor{bus, 8};
-};
+using plant_bench::Devices;
 
 TEST(EightDevices, SensorAndAxisAreShownByTheOutputs) {
   Devices bench;

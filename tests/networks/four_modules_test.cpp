@@ -6,25 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "networks/four_modules_control.hpp"
-#include "plant_bench.hpp"
+#include "networks/four_modules_bench.hpp"
 
 namespace {
 
 using namespace std::chrono_literals;
 using canopen::NmtState;
+using plant_bench::Modules;
 using Bytes = std::vector<std::uint8_t>;
-
-struct Modules : plant_bench::PlantBench<FourModules> {
-  Modules() : PlantBench{125'000} {}
-
-  auto& plant() { return control.plant; }
-
-  plant_bench::LiveNode<can_2057c::Device> digital_outputs{bus, 1};
-  plant_bench::LiveNode<can_2053c::Device> digital_inputs{bus, 2};
-  plant_bench::LiveNode<can_2024c::Device> analog_outputs{bus, 3};
-  plant_bench::LiveNode<can_2017c::Device> analog_inputs{bus, 4};
-};
 
 TEST(FourModules, AllNodesAreConfiguredAndStarted) {
   Modules bench;

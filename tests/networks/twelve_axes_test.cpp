@@ -3,27 +3,15 @@
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
 
-#include "networks/twelve_axes_control.hpp"
-#include "plant_bench.hpp"
+#include "networks/twelve_axes_bench.hpp"
 
 namespace {
 
 using namespace std::chrono_literals;
 using canopen::NmtState;
+using plant_bench::Axes;
 namespace od = ezd_1136::od;
-
-struct Axes : plant_bench::PlantBench<TwelveAxes> {
-  Axes() : PlantBench{1'000'000} {
-    for (std::uint8_t i = 1; i <= 12; ++i) axes.emplace_back(bus, i);
-  }
-
-  auto& plant() { return control.plant; }
-  auto& node(std::size_t number) { return axes[number - 1].node(); }
-
-  std::deque<plant_bench::LiveNode<ezd_1136::Device>> axes;
-};
 
 TEST(TwelveAxes, EachAxisFollowsTheOneBefore) {
   Axes bench;
