@@ -10,6 +10,7 @@
 
 #include "decode/lss_text.hpp"
 #include "decode/pdo_frame.hpp"
+#include "decode/predefined_set.hpp"
 #include "decode/services.hpp"
 #include "values/append.hpp"
 
@@ -22,7 +23,6 @@ using canopen::CobId;
 using canopen::Frame;
 using Use = Decoder::Use;
 
-constexpr std::uint32_t function_mask = 0x780, node_mask = 0x7F;
 constexpr std::size_t max_further_followers = 1024;
 
 /// The pre-defined connection set: CAN-IDs with node-ID 0, and those of a node. PDOs need an EDS.
@@ -43,7 +43,7 @@ constexpr PredefinedUse predefined_uses[] = {
 Use predefined_use(std::uint32_t can_id) {
   if (can_id == canopen::lss::request_id || can_id == canopen::lss::response_id) return Use::lss;
   for (const PredefinedUse& row : predefined_uses) {
-    if (row.function == (can_id & function_mask)) return (can_id & node_mask) == 0 ? row.of_all : row.of_node;
+    if (row.function == function_code_of(can_id)) return node_id_of(can_id) == 0 ? row.of_all : row.of_node;
   }
   return Use::unknown;
 }
@@ -55,12 +55,9 @@ bool is_fixed(Use use) {
 }
 
 /// `TPDO 2 of node 7`; nothing for CAN-IDs of other services.
-std::string predefined_pdo(std::uint32_t can_id) {
-  if (can_id < function_code::tpdo1 || can_id >= function_code::sdo_response || (can_id & node_mask) == 0) return "";
-  const std::uint32_t base = can_id & function_mask;
-  const bool transmit = (base & 0x80) != 0;
-  return fmt::format("{}PDO {} of node {}", transmit ? 'T' : 'R', transmit ? base / 0x100 : base / 0x100 - 1,
-                     can_id & node_mask);
+std::string predefined_pdo_text(std::uint32_t can_id) {
+  const auto pdo = predefined_pdo(can_id);
+  return pdo ? fmt::format("{}PDO {} of node {}", pdo->transmit ? 'T' : 'R', pdo->number, pdo->node_id) : std::string{};
 }
 
 void decode_unknown(const Frame& frame, Message& message) {
@@ -69,7 +66,7 @@ void decode_unknown(const Frame& frame, Message& message) {
   append_can_id(message.text, frame);
   message.text += "h is not used by any known node";
   if (frame.extended) return;
-  if (const std::string pdo = predefined_pdo(frame.id); !pdo.empty()) {
+  if (const std::string pdo = predefined_pdo_text(frame.id); !pdo.empty()) {
     message.text += "; in the pre-defined connection set it is " + pdo;
   } else if (const char* reason = canopen::restriction_of(frame.id)) {
     message.text += std::string{"; restricted by CiA 301: "} + reason;
@@ -111,7 +108,7 @@ const NodeModel* Decoder::find_model(std::uint8_t node_id) const {
 
 Decoder::Route Decoder::predefined_route(const Frame& frame) {
   const Use use = frame.extended ? Use::unknown : predefined_use(frame.id);
-  const auto node_id = static_cast<std::uint8_t>(frame.id & node_mask);
+  const auto node_id = node_id_of(frame.id);
   return {use, node_id, node_id};
 }
 
@@ -188,7 +185,7 @@ void Decoder::decode(const TimedFrame& timed, Message& message) {
 }
 
 void Decoder::decode_error_control(const Frame& frame, Message& message) {
-  message.node_id = static_cast<std::uint8_t>(frame.id & node_mask);
+  message.node_id = node_id_of(frame.id);
   message.service = Service::heartbeat;
   bool& asked = guarding_asked_[message.node_id];
   if (frame.remote) {

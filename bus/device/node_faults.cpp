@@ -8,11 +8,14 @@
 #include <iterator>
 #include <utility>
 
+#include "decode/sdo_initiate.hpp"
 #include "text/printable.hpp"
 #include "text/suggestion.hpp"
 
 namespace edsc {
 namespace {
+
+namespace function_code = canopen::function_code;
 
 // clang-format off
 constexpr NodeFaultRow fault_table[] = {
@@ -34,27 +37,9 @@ constexpr NodeFaultRow fault_table[] = {
 // clang-format on
 
 constexpr std::uint64_t babbling_us = 1'000;
-constexpr std::uint32_t sdo_response_id = 0x580, sdo_request_id = 0x600, error_control_id = 0x700, emcy_id = 0x080;
-constexpr std::uint8_t toggle_bit = 0x10, command_mask = 0xE0;
 
 [[nodiscard]] bool has_id(const canopen::Frame& frame, std::uint32_t can_id) {
   return !frame.extended && !frame.remote && frame.id == can_id;
-}
-
-/// An SDO request that begins a transfer.
-struct Initiate {
-  std::uint16_t index;
-  std::uint8_t sub_index;
-  bool is_read;
-};
-std::optional<Initiate> initiate_of(const canopen::Frame& frame) {
-  if (frame.size < 8) return std::nullopt;
-  const unsigned command = frame.data[0] & command_mask;
-  // Download, upload, block upload and block download; segments and the other steps of a block have other commands.
-  const bool is_download = command == 0x20 || (command == 0xC0 && (frame.data[0] & 1U) == 0);
-  const bool is_upload = command == 0x40 || (command == 0xA0 && (frame.data[0] & 3U) == 0);
-  if (!is_download && !is_upload) return std::nullopt;
-  return Initiate{static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8), frame.data[3], is_upload};
 }
 
 /// Whether the object of a fault, which may have none, is this entry.
@@ -64,16 +49,17 @@ bool names_entry(const NodeFault& fault, std::uint16_t index, std::uint8_t sub_i
   return arguments.object->index == index && (arguments.entry == nullptr || arguments.entry->sub_index == sub_index);
 }
 
-bool aborts(const NodeFault& fault, const Initiate& request) {
+bool aborts(const NodeFault& fault, const SdoInitiate& request) {
   const std::string& when = fault.arguments.word;
   return fault.row->kind == NodeFaultKind::abort && names_entry(fault, request.index, request.sub_index) &&
-         (when.empty() || (when == "read") == request.is_read);
+         (when.empty() || (when == "write") == request.is_download);
 }
 
 /// An SDO response to a segment.
 bool is_segment_response(const canopen::Frame& frame) {
-  const unsigned command = frame.data[0] & command_mask;
-  return command == 0x00 || command == 0x20;
+  const canopen::sdo::ServerCommand command = canopen::sdo::server_command(frame.data[0]);
+  return command == canopen::sdo::ServerCommand::upload_segment ||
+         command == canopen::sdo::ServerCommand::download_segment;
 }
 
 }  // namespace
@@ -109,7 +95,7 @@ void NodeFaults::start(NodeFault fault, std::uint64_t now_us) {
   if (active.fault.span_us) active.end_us = now_us + *active.fault.span_us;
   if (active.fault.row->kind == NodeFaultKind::twin) {
     canopen::Frame boot_up{};
-    boot_up.id = error_control_id + node_.node_id();
+    boot_up.id = function_code::error_control + node_.node_id();
     boot_up.size = 1;
     queue(boot_up, now_us);
   }
@@ -123,7 +109,7 @@ void NodeFaults::on_time(std::uint64_t now_us) {
   for (Active& active : active_) {
     if (active.fault.row->kind != NodeFaultKind::babbling || active.next_us > now_us) continue;
     canopen::Frame frame{};
-    frame.id = emcy_id + node_.node_id();
+    frame.id = function_code::emcy + node_.node_id();
     frame.size = 8;
     frame.data = {0x00, 0xFF, 0x01};
     queue(frame, now_us);
@@ -159,8 +145,8 @@ std::string NodeFaults::text() const {
 }
 
 bool NodeFaults::receive(const canopen::Frame& frame, std::uint64_t now_us) {
-  if (!has_id(frame, sdo_request_id + node_.node_id())) return true;
-  const std::optional<Initiate> request = initiate_of(frame);
+  if (!has_id(frame, function_code::sdo_request + node_.node_id())) return true;
+  const std::optional<SdoInitiate> request = sdo_initiate(frame);
   for (const Active& active : active_) {
     const NodeFault& fault = active.fault;
     if (fault.row->kind == NodeFaultKind::no_sdo) {
@@ -169,10 +155,11 @@ bool NodeFaults::receive(const canopen::Frame& frame, std::uint64_t now_us) {
     }
     if (!request || !aborts(fault, *request)) continue;
     canopen::Frame response{};
-    response.id = sdo_response_id + node_.node_id();
+    response.id = function_code::sdo_response + node_.node_id();
     response.size = 8;
-    response.data = {0x80, frame.data[1], frame.data[2], frame.data[3]};
-    for (unsigned i = 0; i < 4; ++i) response.data[4 + i] = static_cast<std::uint8_t>(*fault.arguments.code >> (8 * i));
+    response.data[0] = canopen::sdo::abort_command;
+    canopen::sdo::put_multiplexer(response.data, request->index, request->sub_index);
+    canopen::sdo::put_word(response.data, *fault.arguments.code);
     send(response, now_us);
     return false;
   }
@@ -186,8 +173,8 @@ bool NodeFaults::is_tpdo(const Active& active, const canopen::Frame& frame) cons
 
 bool NodeFaults::change(Active& active, canopen::Frame& frame, std::uint64_t& due_us) const {
   const CommandArguments& arguments = active.fault.arguments;
-  const bool is_response = has_id(frame, sdo_response_id + node_.node_id());
-  const bool is_error_control = has_id(frame, error_control_id + node_.node_id());
+  const bool is_response = has_id(frame, function_code::sdo_response + node_.node_id());
+  const bool is_error_control = has_id(frame, function_code::error_control + node_.node_id());
   switch (active.fault.row->kind) {
     case NodeFaultKind::silent: return false;
     case NodeFaultKind::no_boot_up: return !is_error_control || frame.data[0] != 0;
@@ -197,7 +184,7 @@ bool NodeFaults::change(Active& active, canopen::Frame& frame, std::uint64_t& du
       return true;
     case NodeFaultKind::sdo_drop: return !is_response || ++active.frames % *arguments.number != 0;
     case NodeFaultKind::sdo_toggle:
-      if (is_response && is_segment_response(frame)) frame.data[0] ^= toggle_bit;
+      if (is_response && is_segment_response(frame)) frame.data[0] ^= canopen::sdo::toggle;
       return true;
     case NodeFaultKind::pdo_short:
       if (is_tpdo(active, frame))

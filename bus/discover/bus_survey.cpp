@@ -4,15 +4,13 @@
 #include <canopen/can/cob_id.hpp>
 #include <cmath>
 
+#include "decode/predefined_set.hpp"
 #include "values/little_endian.hpp"
 
 namespace edsc::discover {
 namespace {
 
-namespace function_code = canopen::function_code;
-
 constexpr std::size_t max_pdos = 4096;
-constexpr std::uint32_t node_mask = 0x7F, function_mask = 0x780;
 constexpr std::uint16_t first_parameter = 0x1000, last_parameter = 0x1BFF;
 /// Fewer distances are not a period.
 constexpr std::uint64_t min_distances = 3;
@@ -196,14 +194,12 @@ void BusSurvey::find_owner(const canopen::Frame& frame, GuessedPdo& guessed) con
       if (!nodes_[node_id].parameters.empty() && owns(node_id, first)) return;
     }
   }
-  if (frame.extended || frame.id < function_code::tpdo1 || frame.id >= function_code::sdo_response) return;
-  const auto node_id = static_cast<std::uint8_t>(frame.id & node_mask);
-  if (nodes_[node_id].frames == 0) return;
-  const std::uint32_t base = frame.id & function_mask;
+  const auto pdo = frame.extended ? std::nullopt : predefined_pdo(frame.id);
+  if (!pdo || nodes_[pdo->node_id].frames == 0) return;
   guessed.source = PdoSource::default_cob_id;
-  guessed.node_id = node_id;
-  guessed.is_tpdo = (base & function_code::emcy) != 0;
-  guessed.number = static_cast<std::uint16_t>(guessed.is_tpdo ? base / 0x100 : base / 0x100 - 1);
+  guessed.node_id = pdo->node_id;
+  guessed.is_tpdo = pdo->transmit;
+  guessed.number = pdo->number;
 }
 
 std::vector<FoundNode> BusSurvey::found_nodes() const {

@@ -4,11 +4,13 @@
 #include <array>
 #include <canopen/can/cob_id.hpp>
 #include <canopen/nmt/nmt.hpp>
-#include <canopen/sdo/sdo_protocol.hpp>
 #include <initializer_list>
 #include <map>
 #include <utility>
 
+#include "decode/predefined_set.hpp"
+#include "decode/sdo_initiate.hpp"
+#include "online/elapsed_time.hpp"
 #include "replay/response_stream.hpp"
 
 namespace edsc::replay {
@@ -16,7 +18,6 @@ namespace {
 
 namespace function_code = canopen::function_code;
 
-constexpr std::uint32_t function_mask = 0x780, node_mask = 0x7F;
 constexpr std::uint8_t max_node_id = 127;
 
 /// What is done with a frame of the log.
@@ -26,23 +27,11 @@ enum class Role : std::uint8_t {
   unused,
 };
 
-/// Whether the CAN-ID is that of a TPDO or an RPDO of the pre-defined connection set.
+/// Whether a PDO has its CAN-ID from the pre-defined connection set.
 bool is_predefined_pdo(const canopen::Frame& frame, bool transmit) {
-  if (frame.extended || frame.remote || frame.id < function_code::tpdo1 || frame.id >= function_code::sdo_response)
-    return false;
-  return (frame.id & node_mask) != 0 && ((frame.id & function_code::emcy) != 0) == transmit;
-}
-
-/// Whether a request of a client begins an SDO transfer.
-bool begins_transfer(const canopen::Frame& frame) {
-  using canopen::sdo::ClientCommand;
-  switch (canopen::sdo::client_command(frame.data[0])) {
-    case ClientCommand::initiate_download:
-    case ClientCommand::initiate_upload: return true;
-    case ClientCommand::block_download: return (frame.data[0] & 1U) == 0;
-    case ClientCommand::block_upload: return (frame.data[0] & 3U) == 0;
-    default: return false;
-  }
+  if (frame.extended || frame.remote) return false;
+  const auto pdo = predefined_pdo(frame.id);
+  return pdo && pdo->transmit == transmit;
 }
 
 /// The nodes that send frames with one of these function codes.
@@ -50,8 +39,8 @@ NodeSet senders(const std::vector<RecordedFrame>& frames, std::initializer_list<
   NodeSet nodes;
   for (const RecordedFrame& one : frames) {
     const canopen::Frame& frame = one.frame;
-    if (frame.extended || frame.remote || (frame.id & node_mask) == 0) continue;
-    if (std::ranges::find(functions, frame.id & function_mask) != functions.end()) nodes.set(frame.id & node_mask);
+    if (frame.extended || frame.remote || node_id_of(frame.id) == 0) continue;
+    if (std::ranges::find(functions, function_code_of(frame.id)) != functions.end()) nodes.set(node_id_of(frame.id));
   }
   return nodes;
 }
@@ -59,7 +48,7 @@ NodeSet senders(const std::vector<RecordedFrame>& frames, std::initializer_list<
 class Replay {
  public:
   Replay(LiveBus& bus, const std::vector<KnownNode>& known, const Settings& settings)
-      : bus_{bus}, settings_{settings}, log_decoder_{known}, live_decoder_{known}, last_now_{bus.now()} {
+      : bus_{bus}, settings_{settings}, log_decoder_{known}, live_decoder_{known}, elapsed_{bus.now()} {
     for (const KnownNode& node : known) known_.push_back(node.node_id);
   }
 
@@ -82,12 +71,7 @@ class Replay {
   // Time
 
   /// Microseconds since the beginning of the replay.
-  std::int64_t elapsed() {
-    const canopen::TimePoint now = bus_.now();
-    elapsed_us_ += (now - last_now_).count();
-    last_now_ = now;
-    return elapsed_us_;
-  }
+  std::int64_t elapsed() { return elapsed_.advance(bus_.now()); }
 
   /// Receives frames for at most this time, and until the first one.
   void receive(std::int64_t us) {
@@ -159,8 +143,8 @@ class Replay {
   static bool boots_first(const std::vector<RecordedFrame>& frames, std::uint8_t node_id) {
     for (const RecordedFrame& one : frames) {
       const canopen::Frame& frame = one.frame;
-      if (frame.extended || frame.remote || (frame.id & node_mask) != node_id) continue;
-      const std::uint32_t function = frame.id & function_mask;
+      if (frame.extended || frame.remote || node_id_of(frame.id) != node_id) continue;
+      const std::uint32_t function = function_code_of(frame.id);
       if (function == function_code::error_control) return frame.size == 1 && frame.data[0] == 0;
       if (function == function_code::emcy || function == function_code::sdo_response || is_predefined_pdo(frame, true))
         return false;
@@ -206,7 +190,7 @@ class Replay {
         return sent_if(is_of_node || receives(frame));
       case Service::rpdo: return sent_if(is_of_node || receives(frame));
       case Service::unknown: {
-        const bool is_predefined = is_replayed(static_cast<std::uint8_t>(frame.id & node_mask));
+        const bool is_predefined = is_replayed(node_id_of(frame.id));
         if (is_predefined && is_predefined_pdo(frame, true)) return expected_if(settings_.pdos);
         return sent_if(is_predefined && is_predefined_pdo(frame, false));
       }
@@ -266,7 +250,7 @@ class Replay {
     const bool is_request = message_.service == Service::sdo || message_.service == Service::lss;
     const StreamKey key = key_of(one.frame, message_);
     const DecodedFrame request{one.frame, message_.text};
-    const bool begins = message_.service == Service::sdo && begins_transfer(one.frame);
+    const auto begun = message_.service == Service::sdo ? sdo_initiate(one.frame) : std::nullopt;
     if (message_.command) note_command(*message_.command, message_.node_id);
 
     const std::int64_t before = elapsed();
@@ -278,7 +262,7 @@ class Replay {
     if (is_request) {
       ResponseStream& stream = streams_[key];
       stream.request = request;
-      if (begins) begin_transfer(EntryKey{canopen::sdo::index_of(one.frame.data), one.frame.data[3]}, stream);
+      if (begun) begin_transfer(EntryKey{begun->index, begun->sub_index}, stream);
     }
     live_decoder_.decode({one.frame, false, 0}, live_message_);
     bus_.send_all(one.frame);
@@ -345,7 +329,7 @@ class Replay {
   }
 
   [[nodiscard]] static std::uint8_t node_of(const canopen::Frame& frame, const Message& message) {
-    if (message.service == Service::unknown) return static_cast<std::uint8_t>(frame.id & node_mask);
+    if (message.service == Service::unknown) return node_id_of(frame.id);
     return message.service == Service::lss ? std::uint8_t{0} : message.node_id;
   }
 
@@ -451,8 +435,7 @@ class Replay {
   std::map<StreamKey, ResponseStream> streams_;
   std::array<bool, max_node_id + 1> may_boot_{};  ///< after a reset command
   std::array<bool, max_node_id + 1> is_on_{};     ///< of simulated nodes
-  canopen::TimePoint last_now_;
-  std::int64_t elapsed_us_ = 0;
+  ElapsedTime elapsed_;
   std::int64_t shift_us_ = 0;  ///< by which the replay is later than the log
   const RecordedFrame* present_ = nullptr;
   Result result_;

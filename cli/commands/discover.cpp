@@ -8,6 +8,7 @@
 #include "decode/log/log_decoder.hpp"
 #include "discover/survey_report.hpp"
 #include "network/describe_network.hpp"
+#include "online/elapsed_time.hpp"
 #include "shared/arguments.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -46,19 +47,14 @@ void listen_to(LiveBus& bus, const Settings& settings, discover::BusSurvey& surv
   using namespace std::chrono;
   constexpr milliseconds look_again{100};
   const auto end = steady_clock::now() + microseconds{settings.span_us};
-  std::int64_t now_us = 0;
-  canopen::TimePoint last = bus.now();
+  ElapsedTime elapsed{bus.now()};
   while (!Interruption::noted()) {
     const auto left = duration_cast<milliseconds>(end - steady_clock::now());
     if (left <= milliseconds{0}) return;
     const auto frame =
         bus.receive(canopen::Duration{static_cast<std::uint32_t>(std::min(left, look_again).count()) * 1000U});
-    const canopen::TimePoint now = frame ? bus.received_at() : bus.now();
-    if (now > last) {
-      now_us += (now - last).count();
-      last = now;
-    }
-    if (frame) static_cast<void>(survey.add(*frame, true, now_us));
+    elapsed.advance(frame ? bus.received_at() : bus.now());
+    if (frame) static_cast<void>(survey.add(*frame, true, elapsed.us()));
   }
 }
 

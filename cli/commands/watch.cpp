@@ -12,7 +12,9 @@
 #include "commands/commands.hpp"
 #include "decode/log/ordered_time.hpp"
 #include "lookup/find_entry.hpp"
+#include "online/elapsed_time.hpp"
 #include "online/live_bus.hpp"
+#include "shared/arguments.hpp"
 #include "shared/common_options.hpp"
 #include "shared/define_command.hpp"
 #include "shared/exit_code.hpp"
@@ -178,23 +180,21 @@ int watch_bus(LiveBus& bus, const Network& network, const Settings& settings) {
   const std::int64_t start_us = duration_cast<microseconds>(system_clock::now().time_since_epoch()).count();
   constexpr std::int64_t longest_wait_us = 50'000;
   const auto span_us = static_cast<std::int64_t>(settings.span_us.value_or(max_duration_us));
-  canopen::TimePoint last = bus.now();
-  std::int64_t elapsed_us = 0;
+  ElapsedTime elapsed{bus.now()};
   std::uint64_t frames = 0;
-  while (!Interruption::noted() && !alarms.ended() && elapsed_us < span_us) {
-    const std::int64_t wait_us = std::min(longest_wait_us, span_us - elapsed_us);
+  while (!Interruption::noted() && !alarms.ended() && elapsed.us() < span_us) {
+    const std::int64_t wait_us = std::min(longest_wait_us, span_us - elapsed.us());
     const auto frame = bus.receive(canopen::Duration{static_cast<std::uint32_t>(wait_us)});
-    // A TimePoint wraps after 71 minutes; this does not.
     const canopen::TimePoint present = bus.now();
-    elapsed_us += (present - std::exchange(last, present)).count();
+    elapsed.advance(present);
     if (!frame) {
-      guard.pass(start_us + elapsed_us);
+      guard.pass(start_us + elapsed.us());
       continue;
     }
     ++frames;
-    guard.see(*frame, start_us + elapsed_us - (present - bus.received_at()).count());
+    guard.see(*frame, start_us + elapsed.us() - (present - bus.received_at()).count());
   }
-  return alarms.end(frames, elapsed_us);
+  return alarms.end(frames, elapsed.us());
 }
 
 int watch_log(const Network& network, const Settings& settings) {
@@ -241,16 +241,10 @@ int watch_log(const Network& network, const Settings& settings) {
   return complaints > 0 ? exit_input_has_errors : exit_code;
 }
 
-/// Whether the argument is a bus, not the path of a log.
-bool is_bus(const std::string& text) {
-  constexpr std::string_view schemes[] = {"socketcan:", "slcan:", "socketcand:", "simulated:"};
-  return std::ranges::any_of(schemes, [&](std::string_view scheme) { return text.starts_with(scheme); });
-}
-
 int run_watch(const Settings& settings) {
   if (settings.list_alarms) return list_alarms(settings);
   if (settings.source.empty()) throw_required("SOURCE");
-  if (settings.span_us && !is_bus(settings.source)) throw_requires("--for", "a bus; a log is read to its end");
+  if (settings.span_us && !is_bus_address(settings.source)) throw_requires("--for", "a bus; a log is read to its end");
   for (const std::string& id : settings.exit_on) {
     if (std::ranges::find(settings.silence, id) == settings.silence.end()) continue;
     throw_invalid("--exit-on", "\"" + id + "\" is not reported, because of --silence");
@@ -259,7 +253,7 @@ int run_watch(const Settings& settings) {
   if (path.empty()) throw_required("--network");
   const auto loaded = load_given_network(path, settings.color);
   const Network& network = loaded->network;
-  if (!is_bus(settings.source)) return watch_log(network, settings);
+  if (!is_bus_address(settings.source)) return watch_log(network, settings);
   return with_bus(settings.source, [&](LiveBus& bus) { return watch_bus(bus, network, settings); });
 }
 

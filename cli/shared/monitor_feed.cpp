@@ -5,7 +5,7 @@
 
 namespace edsc {
 
-MonitorFeed::MonitorFeed(const GivenNodes& nodes, canopen::TimePoint now) : decoder_{nodes.known()}, last_{now} {
+MonitorFeed::MonitorFeed(const GivenNodes& nodes, canopen::TimePoint now) : decoder_{nodes.known()}, elapsed_{now} {
   for (const auto& [node_id, node] : nodes.devices) state_.set_name(node_id, node.named.device.product_name);
   for (std::uint8_t node_id = 1; node_id <= 127; ++node_id) {
     if (const std::string_view name = nodes.labels.name(node_id); !name.empty()) {
@@ -16,20 +16,14 @@ MonitorFeed::MonitorFeed(const GivenNodes& nodes, canopen::TimePoint now) : deco
 }
 
 const Message* MonitorFeed::add(const canopen::Frame& frame, canopen::TimePoint now) {
-  advance(now);
-  decoder_.decode({frame, true, now_us_}, message_);
-  return state_.add(frame, message_, now_us_) ? &message_ : nullptr;
+  elapsed_.advance(now);
+  decoder_.decode({frame, true, now_us()}, message_);
+  return state_.add(frame, message_, now_us()) ? &message_ : nullptr;
 }
 
 void MonitorFeed::pass(canopen::TimePoint now) {
-  advance(now);
-  state_.pass(now_us_);
-}
-
-/// A TimePoint wraps after 71 minutes; the time since the start does not.
-void MonitorFeed::advance(canopen::TimePoint now) {
-  now_us_ += (now - last_).count();
-  last_ = now;
+  elapsed_.advance(now);
+  state_.pass(now_us());
 }
 
 }  // namespace edsc

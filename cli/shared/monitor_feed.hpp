@@ -7,6 +7,7 @@
 
 #include "decode/decoder.hpp"
 #include "monitor/monitor_state.hpp"
+#include "online/elapsed_time.hpp"
 #include "shared/given_nodes.hpp"
 
 namespace edsc {
@@ -24,16 +25,13 @@ class MonitorFeed {
   [[nodiscard]] MonitorState& state() { return state_; }
   [[nodiscard]] const MonitorState& state() const { return state_; }
   /// The time since the start.
-  [[nodiscard]] std::int64_t now_us() const { return now_us_; }
+  [[nodiscard]] std::int64_t now_us() const { return elapsed_.us(); }
 
  private:
-  void advance(canopen::TimePoint now);
-
   Decoder decoder_;
   MonitorState state_;
   Message message_;
-  canopen::TimePoint last_;
-  std::int64_t now_us_ = 0;
+  ElapsedTime elapsed_;
 };
 
 }  // namespace edsc
