@@ -5,9 +5,6 @@
 namespace edsc::audit {
 namespace {
 
-/// An SDO abort of a client whose time has passed.
-constexpr std::uint32_t timeout_abort = 0x0504'0000;
-
 /// Rules whose excess is the time without a frame.
 bool is_of_silence(RuleId rule) {
   constexpr AuditRule rules[] = {"heartbeat-late", "pdo-event-timer", "heartbeat-consumer", "sdo-timeout"};

@@ -2,6 +2,7 @@
 /// and those that follow from it are listed on demand.
 #pragma once
 
+#include <canopen/base/abort_code.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,6 +12,9 @@
 #include "audit/findings.hpp"
 
 namespace edsc::audit {
+
+/// The abort code of a client whose time has passed.
+inline constexpr auto timeout_abort = static_cast<std::uint32_t>(canopen::AbortCode::timeout);
 
 /// An incident, and how long it can cause others.
 struct Incident {

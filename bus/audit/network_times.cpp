@@ -2,18 +2,13 @@
 
 #include <algorithm>
 #include <canopen/can/cob_id.hpp>
+#include <canopen/sdo/sdo_transfer.hpp>
 #include <chrono>
 
 #include "network/cob_id_use.hpp"
 
 namespace edsc::audit {
 namespace {
-
-constexpr std::uint32_t default_sdo_timeout_ms = 500;
-
-std::uint32_t id_with_flag(std::uint32_t can_id, bool extended) {
-  return can_id | (extended ? canopen::CobId::extended_bit : 0U);
-}
 
 double microseconds(Nanoseconds time) { return static_cast<double>(time.count()) / 1000; }
 
@@ -56,16 +51,17 @@ NetworkTimes::NetworkTimes(const Network& network) : network_{&network} {
     const bool is_sdo = one.service == FrameService::sdo;
     // The bound of SDO is that of one request and one response for the whole network.
     if (!is_sdo && !one.message.remote) {
-      places_.emplace(id_with_flag(one.message.can_id, one.message.extended), messages_.size());
+      places_.emplace(cob_id_of(one.message.can_id, one.message.extended), messages_.size());
     }
     messages_.push_back({.computed = std::move(one), .is_cyclic = cyclic});
   }
-  if (const CobIdUse* const sync = sync_producer(uses)) sync_ = id_with_flag(sync->can_id, sync->extended);
+  if (const CobIdUse* const sync = sync_producer(uses)) sync_ = cob_id_of(sync->can_id, sync->extended);
+  constexpr canopen::SdoClientOptions master;  // of the generated one
   for (const NetworkNode& node : network.nodes) {
     const auto timeout = sdo_timeout_ms(network.description, *node.description);
     servers_.push_back({.name = node.name,
                         .node_id = node.node_id,
-                        .timeout_us = std::int64_t{timeout.value_or(default_sdo_timeout_ms)} * 1000});
+                        .timeout_us = timeout ? std::int64_t{*timeout} * 1000 : master.timeout.count()});
   }
 }
 

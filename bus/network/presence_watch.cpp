@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <canopen/can/cob_id.hpp>
+#include <canopen/sdo/sdo_protocol.hpp>
 #include <utility>
 
 #include "network/cob_id_use.hpp"
@@ -12,14 +13,13 @@ namespace {
 
 namespace code = canopen::function_code;
 
-constexpr std::uint32_t extended_bit = 0x2000'0000;
-
 /// The upload of 1000h:00, which each node has.
 canopen::Frame presence_request(std::uint8_t node_id) {
   canopen::Frame frame;
   frame.id = code::sdo_request + node_id;
   frame.size = 8;
-  frame.data = {0x40, 0x00, 0x10, 0x00};
+  frame.data[0] = static_cast<std::uint8_t>(static_cast<unsigned>(canopen::sdo::ClientCommand::initiate_upload) << 5);
+  canopen::sdo::put_multiplexer(frame.data, 0x1000, 0);
   return frame;
 }
 
@@ -85,7 +85,7 @@ canopen::Duration PresenceWatch::quiet_time(const Node& node) const {
 std::set<std::uint32_t> own_cob_ids(const Network& network, const NetworkNode& node) {
   std::set<std::uint32_t> own, others;
   for (const CobIdUse& use : cob_id_uses(network)) {
-    const std::uint32_t cob_id = use.can_id | (use.extended ? extended_bit : 0);
+    const std::uint32_t cob_id = cob_id_of(use.can_id, use.extended);
     if (use.node == &node && shows_presence(use)) own.insert(cob_id);
     if (use.node != &node && use.transmits) others.insert(cob_id);
   }

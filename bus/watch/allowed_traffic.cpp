@@ -20,8 +20,6 @@ namespace {
 
 constexpr std::int64_t per_millisecond = 1000;
 
-std::uint32_t cob_id_of(const CobIdUse& use) { return use.can_id | (use.extended ? canopen::CobId::extended_bit : 0U); }
-
 /// Whether the use is of the server of an SDO, which has the CAN-IDs for both directions.
 bool is_of_server(const CobIdUse& use) { return (use.sdo == SdoFrames::requests) != use.transmits; }
 
@@ -55,18 +53,19 @@ AllowedTraffic::AllowedTraffic(const Network& network) : network_{&network} {
     if (use.service == FrameService::sdo ? is_of_server(use) : use.transmits) add(use, uses);
   }
   for (const CobIdUse& use : uses) {
-    if (!use.transmits && !places_.contains(cob_id_of(use))) received_.emplace(cob_id_of(use), named(use));
+    if (!use.transmits && !places_.contains(cob_id_of(use.can_id, use.extended)))
+      received_.emplace(cob_id_of(use.can_id, use.extended), named(use));
   }
   // The rates on which the load and the response times of the network rely.
   for (const TimedMessage& one : network_timing(network, uses).messages) {
-    const auto at = places_.find(one.message.can_id | (one.message.extended ? canopen::CobId::extended_bit : 0U));
+    const auto at = places_.find(cob_id_of(one.message.can_id, one.message.extended));
     if (at == places_.end() || one.service != FrameService::pdo) continue;
     frames_[at->second].period_us = std::chrono::duration_cast<std::chrono::microseconds>(one.message.period).count();
   }
 }
 
 void AllowedTraffic::add(const CobIdUse& use, const std::vector<CobIdUse>& uses) {
-  if (!places_.emplace(cob_id_of(use), frames_.size()).second) return;
+  if (!places_.emplace(cob_id_of(use.can_id, use.extended), frames_.size()).second) return;
   AllowedFrame frame{.node = use.node, .service = use.service, .sdo = use.sdo, .name = named(use)};
   const auto bytes = [&](std::uint8_t size) { frame.min_bytes = frame.max_bytes = size; };
   switch (use.service) {

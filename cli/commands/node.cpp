@@ -97,9 +97,9 @@ Value value_of_bytes(const canopen::DataTypeRow& type, const std::vector<std::ui
     value.bytes.assign(bytes.begin(), bytes.end());
     return value;
   }
-  const bool negative = type.kind == canopen::DataClass::signed_integer && !bytes.empty() && (bytes.back() & 0x80) != 0;
-  value.bits = negative ? ~std::uint64_t{0} : 0;
-  for (std::size_t i = bytes.size(); i-- > 0;) value.bits = value.bits << 8 | bytes[i];
+  value.bits = number_of(bytes);
+  if (type.kind == canopen::DataClass::signed_integer)
+    value.bits = static_cast<std::uint64_t>(sign_extended(value.bits, type.bits));
   return value;
 }
 

@@ -1,6 +1,7 @@
 /// The CAN-IDs that the nodes of a network use: who transmits what, and who receives it.
 #pragma once
 
+#include <canopen/can/cob_id.hpp>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -28,6 +29,11 @@ struct CobIdUse {
   std::string what;   ///< `TPDO 2`, `SDO server 1 response`
   Position position;  ///< of the value, or of the node
 };
+
+/// A CAN-ID as a COB-ID has it: with bit 29 for one of 29 bits.
+[[nodiscard]] constexpr std::uint32_t cob_id_of(std::uint32_t can_id, bool extended) {
+  return can_id | (extended ? canopen::CobId::extended_bit : 0U);
+}
 
 /// The uses of all nodes: configured COB-IDs that exist, and the fixed ones of NMT, the default SDO and error control.
 [[nodiscard]] std::vector<CobIdUse> cob_id_uses(const Network& network);

@@ -11,8 +11,6 @@ using Texts = std::pair<std::string, std::string>;
 
 constexpr std::int64_t after_us = 1'000'000;           ///< in which what follows from an incident is found
 constexpr std::int64_t late_response_us = 10'000'000;  ///< after the request
-constexpr std::uint32_t timeout_abort = 0x0504'0000;
-
 }  // namespace
 
 std::int64_t IncidentCheck::period_of(std::uint8_t node_id, const AuditState& audit) const {
