@@ -21,7 +21,7 @@ help() {
             all files of the repository; each header of the runtime alone; each fuzz target for a minute
 
 Without a gear: gates, test, asan, firmware. The last two use the program edsc of the release build, and build it there
-if it is missing. The time of each test is printed at the end of a gear, slowest first.
+if it is missing. They are built while tests of the release build wait; the output is in build/ahead.log. The time of each test is printed at the end of a gear, slowest first.
 HELP
 }
 

@@ -49,7 +49,7 @@ NetworkTimes::NetworkTimes(const Network& network) : network_{&network} {
   for (TimedMessage& one : timing.messages) {
     const bool cyclic = has_longest_distance(one, uses);
     const bool is_sdo = one.service == FrameService::sdo;
-    // The bound of SDO is that of one request and one response for the whole network.
+    // One bound is for all SDOs: one request and one response at a time in the whole network.
     if (!is_sdo && !one.message.remote) {
       places_.emplace(cob_id_of(one.message.can_id, one.message.extended), messages_.size());
     }

@@ -35,7 +35,7 @@ enum class Transmission : std::uint8_t { unknown, sync, timed, event };
 
 [[nodiscard]] std::string_view to_text(Transmission transmission);
 
-/// Why a frame is taken for a PDO of a node.
+/// How the node of a PDO was found.
 enum class PdoSource : std::uint8_t { none, parameters, default_cob_id };
 
 /// A CAN-ID without a fixed service.

@@ -21,7 +21,7 @@ enum class Presence : std::uint8_t { unknown, absent, present };
 /// as good as one of the watch: the watch does not disturb a transfer with a request of its own.
 class PresenceWatch {
  public:
-  /// A node in Stopped that has neither heartbeat nor guarding is taken for absent.
+  /// A node in Stopped without heartbeat and guarding sends nothing: it counts as absent.
   PresenceWatch(canopen::Duration absent, canopen::TimePoint now) : absent_{absent}, start_{now} {}
 
   /// Adds a node. `cob_ids` are those that only this node transmits on, with bit 29 for an extended CAN-ID.

@@ -21,7 +21,7 @@ struct Alarm {
   bool has_can_id = false;
   std::string text = {};         ///< what was received, and what is expected
   std::uint64_t suppressed = 0;  ///< alarms of this kind since the last one that was passed on
-  std::uint32_t detail = 0;      ///< tells alarms of one kind apart: an object, an NMT command
+  std::uint32_t detail = 0;      ///< object or NMT command, by which alarms of one kind differ
 };
 
 /// Passes on each alarm once in a time; alarms about the same thing within this time are counted.

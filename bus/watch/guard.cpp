@@ -325,7 +325,7 @@ void Guard::see_sync(const Frame& frame, const AllowedFrame& allowed, FrameState
     raise("sync-rate", &producer,
           fmt::format("SYNC after {}; expected every {}", milliseconds(distance), milliseconds(allowed.period_us)),
           &frame);
-    return;  // the cycle is that of the other frame
+    return;  // the earlier frame began the cycle
   }
   state.last_us = now_us_;
   if (std::exchange(state.is_late, false))
@@ -359,7 +359,7 @@ void Guard::see_pdo(const Frame& frame, const AllowedFrame& allowed, FrameState&
       raise("pdo-state", &node, fmt::format("{} of a node that is not Operational", allowed.name), &frame);
     }
   }
-  // After a gap of the whole bus, such as one of the recording, the PDO has not been missing.
+  // If the whole bus was silent, or was not recorded, the PDO alone was not missing.
   if (std::exchange(state.is_late, false) && gap_us_ < state.last_us) {
     report_late_frame(node, static_cast<std::size_t>(&state - frames_.data()));
   }

@@ -72,7 +72,7 @@ These programs are not packages of Debian or npm, and CI does not run them:
   AsyncMaster on `edsc bus` booted 4 of 4 nodes of `edsc node`, with the `controller.dcf` of edsc and with the `master.dcf` of dcfgen;
   with the latter it received the values of their TPDOs. Its time-out for SDO was 3 s, as the computer was busy. Without `--target lely`
   it booted none.
-- ros2_canopen was not run: the members `driver` and `package` of `bus.yml` are those of its documents.
+- ros2_canopen was not run: its documents state the members `driver` and `package` of `bus.yml`.
 """
 
 
