@@ -50,7 +50,7 @@ function(edsc_add_host_library name)
     target_precompile_headers(${name} REUSE_FROM edsc_device)
   endif()
   edsc_group_by_folder(${ARGN})
-  if(EDSC_BUILD_FUZZ) # Report coverage to the fuzzer.
+  if(EDSC_FUZZ_COVERAGE)
     target_compile_options(${name} PRIVATE -fsanitize=fuzzer-no-link)
   endif()
 endfunction()

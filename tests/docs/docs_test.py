@@ -2,11 +2,11 @@
 """The documents are correct: their commands succeed, their code is in files that are built and tested, the targets of their
 links exist, and the output of commands is as printed.
 
-    docs_test.py SOURCE_DIR EDSC
+    docs_test.py SOURCE_DIR EDSC [--cold-demo]
 
 In README.md, CONTRIBUTING.md, CHANGELOG.md and all *.md of docs
-- each line of a ```sh block is run in a copy of the repository, with edsc in the PATH. `./demo.sh` builds and runs there;
-  `./test.sh` is not run, but must exist.
+- each line of a ```sh block is run in a copy of the repository, with edsc in the PATH. `./demo.sh` runs there; it uses the
+  build of EDSC, and with --cold-demo it builds. `./test.sh` is not run, but must exist.
 - a block under `<!-- run by: path -->` is run by that test, which names the document.
 - a block under `<!-- path -->` is part of that file, character by character; under `<!-- all of path -->` it is the whole file.
 - a block under `<!-- output: command -->` is the output of the command.
@@ -145,6 +145,8 @@ def main() -> int:
         folder = Path(temporary) / "edsc"
         shutil.copytree(source, folder, ignore=shutil.ignore_patterns("build", ".git", "out"))
         environment = {**os.environ, "PATH": f"{edsc.parent}{os.pathsep}{os.environ['PATH']}"}
+        if "--cold-demo" not in sys.argv:
+            environment["EDSC_DEMO_BUILD"] = str(edsc.parents[1])
         for document in documents:
             text = (source / document).read_text(encoding="utf-8")
             problems += check_links(document, text, source)

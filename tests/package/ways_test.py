@@ -56,7 +56,7 @@ def blocks(section: str, language: str) -> list[str]:
     return [block for found, block in BLOCK.findall(text) if found == language]
 
 
-class Ways(unittest.TestCase):
+class Projects(unittest.TestCase):
     @classmethod
     def setUpClass(cls) -> None:
         cls.folder = Path(tempfile.mkdtemp(prefix="edsc-ways-")).resolve()
@@ -101,6 +101,15 @@ class Ways(unittest.TestCase):
         project.build()
         self.check_image(project.build_dir)
 
+    def archive(self) -> Path:
+        archive = self.folder / "edsc.tar.gz"
+        if not archive.exists():
+            with tarfile.open(archive, "w:gz", compresslevel=1) as tar:
+                tar.add(self.sources, "edsc-0.9.0", filter=lambda entry: None if "/build" in entry.name else entry)
+        return archive
+
+
+class Ways(Projects):
     # ---- installed ----
 
     def test_installed(self) -> None:
@@ -188,23 +197,6 @@ class Ways(unittest.TestCase):
 
     # ---- sources ----
 
-    def test_a_subdirectory(self) -> None:
-        """The subdirectory does not change the project that includes it."""
-        # The folders have the same names as with FetchContent, so that a compiler cache can use objects of one for the other.
-        line = blocks("A subdirectory", "cmake")[0].replace("(edsc)", "(edsc-src ../edsc-build)")
-        project = Project(self.folder / "subdirectory/project", SETTINGS + line + UNCHANGED)
-        copy_sources(project.source / "edsc-src")
-        log = self.check_host(project, "-DCMAKE_BUILD_TYPE=")
-        behind = dict(re.findall(r"behind edsc: (\w+)=(.*)", log))
-        launcher = ENVIRONMENT.get("CMAKE_CXX_COMPILER_LAUNCHER", "")
-        self.assertEqual(behind, {
-            "COMPILE_OPTIONS": "", "COMPILE_DEFINITIONS": "", "INCLUDE_DIRECTORIES": "", "LINK_OPTIONS": "",
-            "LINK_LIBRARIES": "", "TESTS": "",
-            "CMAKE_CXX_STANDARD": "17", "CMAKE_MODULE_PATH": "", "CMAKE_CXX_COMPILER_LAUNCHER": launcher})
-        self.assertIn("Total Tests: 0", run("ctest", "--test-dir", project.build_dir, "-N"))
-        run("cmake", "--install", project.build_dir, "--prefix", self.folder / "subdirectory/prefix")
-        self.assertFalse((self.folder / "subdirectory/prefix").exists(), "edsc is installed with the project")
-
     @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
     def test_a_subdirectory_for_a_cortex_m(self) -> None:
         """edsc is built for the host, independent of the compilers in the environment."""
@@ -218,20 +210,6 @@ class Ways(unittest.TestCase):
         finally:
             for name in variables:
                 del ENVIRONMENT[name]
-
-    def archive(self) -> Path:
-        archive = self.folder / "edsc.tar.gz"
-        if not archive.exists():
-            with tarfile.open(archive, "w:gz", compresslevel=1) as tar:
-                tar.add(self.sources, "edsc-0.9.0", filter=lambda entry: None if "/build" in entry.name else entry)
-        return archive
-
-    def test_fetch_content(self) -> None:
-        """FetchContent with an archive."""
-        archive = self.archive()
-        project = Project(self.folder / "fetched/project", blocks("FetchContent", "cmake")[0])
-        self.check_host(project, f"-DEDSC_ARCHIVE={archive}", f"-DFETCHCONTENT_BASE_DIR={project.source}",
-                        "-DCMAKE_BUILD_TYPE=")
 
     @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
     def test_fetch_content_for_a_cortex_m(self) -> None:
@@ -307,6 +285,34 @@ class Ways(unittest.TestCase):
         self.check_cross(project, f"-DCMAKE_PREFIX_PATH={self.prefix}", f"-DCMAKE_TOOLCHAIN_FILE={package / TOOLCHAIN}")
         symbols = run("arm-none-eabi-nm", "--numeric-sort", project.build_dir / "valve_firmware.elf")
         self.assertRegex(symbols, r"(?m)^00008[0-9a-f]{3} T reset$")
+
+
+class CompiledInAProject(Projects):
+    """edsc is compiled with the flags of the project: the longest tests."""
+
+    def test_a_subdirectory(self) -> None:
+        """The subdirectory does not change the project that includes it."""
+        # The folders have the same names as with FetchContent, so that a compiler cache can use objects of one for the other.
+        line = blocks("A subdirectory", "cmake")[0].replace("(edsc)", "(edsc-src ../edsc-build)")
+        project = Project(self.folder / "subdirectory/project", SETTINGS + line + UNCHANGED)
+        copy_sources(project.source / "edsc-src")
+        log = self.check_host(project, "-DCMAKE_BUILD_TYPE=")
+        behind = dict(re.findall(r"behind edsc: (\w+)=(.*)", log))
+        launcher = ENVIRONMENT.get("CMAKE_CXX_COMPILER_LAUNCHER", "")
+        self.assertEqual(behind, {
+            "COMPILE_OPTIONS": "", "COMPILE_DEFINITIONS": "", "INCLUDE_DIRECTORIES": "", "LINK_OPTIONS": "",
+            "LINK_LIBRARIES": "", "TESTS": "",
+            "CMAKE_CXX_STANDARD": "17", "CMAKE_MODULE_PATH": "", "CMAKE_CXX_COMPILER_LAUNCHER": launcher})
+        self.assertIn("Total Tests: 0", run("ctest", "--test-dir", project.build_dir, "-N"))
+        run("cmake", "--install", project.build_dir, "--prefix", self.folder / "subdirectory/prefix")
+        self.assertFalse((self.folder / "subdirectory/prefix").exists(), "edsc is installed with the project")
+
+    def test_fetch_content(self) -> None:
+        """FetchContent with an archive."""
+        archive = self.archive()
+        project = Project(self.folder / "fetched/project", blocks("FetchContent", "cmake")[0])
+        self.check_host(project, f"-DEDSC_ARCHIVE={archive}", f"-DFETCHCONTENT_BASE_DIR={project.source}",
+                        "-DCMAKE_BUILD_TYPE=")
 
 
 if __name__ == "__main__":
