@@ -13,13 +13,13 @@ help() {
             devices; the unit and trace tests (about 3 minutes after a build)
   test      a release build with all tests but those of the other gears
   asan      the GoogleTest programs (unit and trace tests) and a short run of each fuzz target with AddressSanitizer
-            and UBSan
+            and the checks of UBSan that compile fast
   firmware  the images of the reference devices for Cortex-M under QEMU
   odr       no two sources of edsc define different types of one name (g++ with -flto)
   long      before a release: odr; the packages of the static programs for x86-64 and Arm, what the programs write in an empty
             root folder compared with the release build, and the packages of builds in two folders; edsc.exe under wine with
-            all files of the repository; a cold demo; projects that compile edsc; each header of the runtime alone; each fuzz
-            target for a minute
+            all files of the repository; a cold demo; projects that compile edsc; each header of the runtime alone; the
+            programs of asan with all checks of UBSan, each fuzz target for a minute
 
 Without a gear: gates, test, asan, firmware. The last two use the program edsc of the release build, and build it there
 if it is missing. They are built while tests of the release build wait; the output is in build/ahead.log. The time of each test is printed at the end of a gear, slowest first.
@@ -28,9 +28,9 @@ HELP
 
 # Seconds on two processors: of a build from nothing, and of the tests.
 declare -A build_seconds=([gates]=0 [sources]=0 [quick]=700 [unit]=500 [odr]=300 [test]=700 [asan]=500 [firmware]=300 [static]=400
-                          [static-arm64]=400 [long]=0 [fuzz]=250)
+                          [static-arm64]=400 [long]=0 [sanitize]=900)
 declare -A test_seconds=([gates]=100 [sources]=1500 [quick]=60 [unit]=60 [odr]=0 [test]=1500 [asan]=350 [firmware]=100 [static]=0
-                         [static-arm64]=0 [long]=3000 [fuzz]=900)
+                         [static-arm64]=0 [long]=3000 [sanitize]=1250)
 
 build_of() {
   case $1 in
@@ -84,7 +84,7 @@ run() {
 parts() {
   case $1 in
     quick) echo gates quick unit ;;
-    long) echo static static-arm64 odr long fuzz ;;
+    long) echo static static-arm64 odr long sanitize ;;
     *) echo "$1" ;;
   esac
 }

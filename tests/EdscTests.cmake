@@ -1,9 +1,13 @@
+# What the tests of the label `unit` run.
+add_custom_target(unit_programs)
+
 # edsc_add_test_program(NAME [LONG] SOURCE...): a program of the label `unit`, without its test. The whole suite builds it once,
 # with the sanitizers. Hundreds of small tests over inlined templates take longer to compile than to run: only those that run
 # for LONG are optimised, and no program with more than -O1.
 function(edsc_add_test_program name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "LONG" "" "")
   add_executable(${name} ${arg_UNPARSED_ARGUMENTS})
+  add_dependencies(unit_programs ${name})
   if(NOT EDSC_GTEST_PROGRAMS)
     set_target_properties(${name} PROPERTIES EXCLUDE_FROM_ALL ON)
   endif()
