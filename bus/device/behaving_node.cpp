@@ -32,7 +32,8 @@ BehavingNode::BehavingNode(BehavingNodeSettings settings, canopen::SimulatedBus&
                  if (!bytes) return std::nullopt;
                  return static_cast<std::uint32_t>(number_of(*bytes));
                }}},
-      behaviour_{*this, settings_.seed} {
+      behaviour_{*this, settings_.seed},
+      profile_{make_profile_behaviour(settings_.profile, *this)} {
   node_ = make_dynamic_node(settings_.sheet, *this, memory_, settings_.memory, this);
 }
 
@@ -71,6 +72,7 @@ void BehavingNode::on_time(canopen::TimePoint now) {
 }
 
 void BehavingNode::serve() {
+  if (profile_) profile_->on_time(now_);
   behaviour_.on_time(now_us_);
   if (std::exchange(must_start_, false)) node_->request(canopen::NmtCommand::start, now_);
   node_->on_time(now_);
@@ -88,9 +90,12 @@ std::optional<canopen::TimePoint> BehavingNode::next_deadline() const {
   if (const std::optional<std::uint64_t> queued = faults_.next_us()) {
     consider(was_full_ ? std::max(*queued, now_us_ + full_bus_wait.count()) : *queued);
   }
-  const canopen::TimePoint own = now_ + canopen::Duration{static_cast<std::uint32_t>(wait)};
-  const std::optional<canopen::TimePoint> of_node = node_->next_deadline();
-  return of_node && *of_node < own ? *of_node : own;
+  canopen::TimePoint next = now_ + canopen::Duration{static_cast<std::uint32_t>(wait)};
+  for (const std::optional<canopen::TimePoint> time :
+       {node_->next_deadline(), profile_ ? profile_->next_deadline() : std::nullopt}) {
+    if (time && *time < next) next = *time;
+  }
+  return next;
 }
 
 canopen::AbortCode BehavingNode::set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
@@ -120,22 +125,38 @@ void BehavingNode::send_queued() {
 canopen::AbortCode BehavingNode::before_write(std::uint32_t key, std::span<std::uint8_t> bytes) {
   const std::uint16_t index = index_of(key);
   const std::uint8_t sub_index = sub_index_of(key);
-  const canopen::AbortCode code = behaviour_.before_write(index, sub_index, bytes);
+  canopen::AbortCode code = behaviour_.before_write(index, sub_index, bytes);
+  if (code == canopen::ok && profile_) code = profile_->before_write(key, bytes);
   if (code != canopen::ok || !faults_.has(NodeFaultKind::stuck, index, sub_index)) return code;
   // The present value replaces the written one.
   const auto present = node_->get(index, sub_index);
   return present ? node_->set(index, sub_index, *present) : code;
 }
 
-void BehavingNode::after_write(std::uint32_t key) { behaviour_.after_write(index_of(key), sub_index_of(key)); }
+void BehavingNode::after_write(std::uint32_t key) {
+  if (profile_) profile_->after_write(key);
+  behaviour_.after_write(index_of(key), sub_index_of(key));
+}
 
 canopen::AbortCode BehavingNode::before_read(std::uint32_t key) {
   return behaviour_.before_read(index_of(key), sub_index_of(key));
 }
 
 void BehavingNode::on_state(canopen::NmtState state) {
-  if (state == canopen::NmtState::initialisation) must_start_ = settings_.starts_operational;
+  if (state == canopen::NmtState::initialisation) {
+    must_start_ = settings_.starts_operational;
+    if (profile_) profile_->restart();
+  }
   behaviour_.on_state(state);
+}
+
+void BehavingNode::on_sync() {
+  if (profile_) profile_->on_sync();
+  behaviour_.on_sync();
+}
+
+void BehavingNode::on_error(std::uint16_t code) {
+  if (profile_) profile_->on_error(code);
 }
 
 std::optional<std::vector<std::uint8_t>> BehavingNode::get(std::uint16_t index, std::uint8_t sub_index) {

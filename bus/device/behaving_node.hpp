@@ -13,6 +13,7 @@
 #include "device/dynamic_node.hpp"
 #include "device/node_faults.hpp"
 #include "device/node_watch.hpp"
+#include "device/profile_behaviour.hpp"
 #include "device/sheet.hpp"
 
 namespace edsc {
@@ -23,6 +24,7 @@ struct BehavingNodeSettings {
   std::string memory;
   std::uint64_t seed = 0;
   bool starts_operational = false;  ///< after each boot-up
+  std::uint16_t profile = 0;        ///< it behaves as this device profile says; 0: only the protocol
 };
 
 class BehavingNode final : public canopen::SimulatedNode,
@@ -59,11 +61,14 @@ class BehavingNode final : public canopen::SimulatedNode,
   void after_write(std::uint32_t key) override;
   [[nodiscard]] canopen::AbortCode before_read(std::uint32_t key) override;
   void on_state(canopen::NmtState state) override;
-  void on_sync() override { behaviour_.on_sync(); }
+  void on_sync() override;
+  void on_error(std::uint16_t code) override;
 
   // Actions.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> get(std::uint16_t index, std::uint8_t sub_index) override;
   void request(canopen::NmtCommand command) override { node_->request(command, now_); }
+  void hold_error(canopen::ErrorRegister bits) override { node_->hold_error(bits); }
+  [[nodiscard]] canopen::NmtState nmt_state() const override { return node_->state(); }
   void power_cycle() override;
   void set_connected(bool connected) override;
   void start_fault(const NodeFault& fault) override;
@@ -83,6 +88,7 @@ class BehavingNode final : public canopen::SimulatedNode,
   canopen::SimulatedMemory& memory_;
   NodeFaults faults_;
   Behaviour behaviour_;
+  std::unique_ptr<ProfileBehaviour> profile_;  ///< null: only the protocol
   std::unique_ptr<DynamicNode> node_;
   canopen::TimePoint now_{};
   std::uint64_t now_us_ = 0;

@@ -29,6 +29,9 @@ class BehaviourTarget {
   [[nodiscard]] virtual std::optional<std::vector<std::uint8_t>> get(std::uint16_t index, std::uint8_t sub_index) = 0;
   virtual void emergency(std::uint16_t code, canopen::ErrorRegister bits) = 0;
   virtual void emergency_over(canopen::ErrorRegister bits) = 0;
+  /// Sets bits of 1001h for an error that the node has reported: Node::hold_error.
+  virtual void hold_error(canopen::ErrorRegister bits) = 0;
+  [[nodiscard]] virtual canopen::NmtState nmt_state() const = 0;
   virtual void request(canopen::NmtCommand command) = 0;
   virtual void power_cycle() = 0;
   /// Connects the node to the bus, or disconnects it: bus-off.

@@ -96,6 +96,7 @@ class NodeOfSheet final : public DynamicNode {
     node_.on_bus_status(status, now);
   }
   [[nodiscard]] canopen::NodeId node_id() const override { return node_.node_id(); }
+  void hold_error(canopen::ErrorRegister bits) override { node_.hold_error(bits); }
 
  private:
   /// A node has to be served every half hour at least.

@@ -3,6 +3,7 @@
 
 #include <canopen/can/bus_status.hpp>
 #include <canopen/can/node_id.hpp>
+#include <canopen/emcy/error_register.hpp>
 #include <canopen/host/simulated_node.hpp>
 #include <canopen/nmt/nmt.hpp>
 #include <cstdint>
@@ -25,6 +26,8 @@ class DynamicNode : public canopen::SimulatedNode {
   /// The state of the CAN controller has changed: Node::on_bus_status.
   virtual void on_bus_status(const canopen::BusStatus& status, canopen::TimePoint now) = 0;
   [[nodiscard]] virtual canopen::NodeId node_id() const = 0;
+  /// Sets bits of 1001h for an error that the node has reported: Node::hold_error.
+  virtual void hold_error(canopen::ErrorRegister bits) = 0;
 };
 
 /// Makes a node with this sheet, which it keeps. LSS uses `memory`, and so do the stored values of 1010h, unless `file`

@@ -25,6 +25,8 @@ class NodeWatch {
   virtual void on_state(canopen::NmtState state) = 0;
   /// After the PDOs of a SYNC.
   virtual void on_sync() = 0;
+  /// The node reports an error by EMCY, with this emergency error code.
+  virtual void on_error(std::uint16_t code) = 0;
 
  protected:
   ~NodeWatch() = default;
@@ -57,13 +59,15 @@ struct Handled<edsc::DynamicDevice, Node, edsc::WatchedBy> : HandlesNothing {
   static constexpr bool takes_any_object = true;
   template <class Event>
   static constexpr bool has_event_function =
-      std::is_same_v<Event, function::OnState> || std::is_same_v<Event, function::OnSync>;
+      std::is_same_v<Event, function::OnState> || std::is_same_v<Event, function::OnSync> ||
+      std::is_same_v<Event, function::OnError>;
 
   template <class Event, class... Arguments>
   static void notify(edsc::WatchedBy& handler, Node&, const Arguments&... arguments) {
     if (handler.watch == nullptr) return;
     if constexpr (std::is_same_v<Event, function::OnState>) handler.watch->on_state(arguments...);
     if constexpr (std::is_same_v<Event, function::OnSync>) handler.watch->on_sync();
+    if constexpr (std::is_same_v<Event, function::OnError>) handler.watch->on_error(arguments...);
   }
 };
 

@@ -20,8 +20,10 @@
 #include "commands/node_commands.hpp"
 #include "device/behaving_node.hpp"
 #include "device/entry_text.hpp"
+#include "device/io_loop.hpp"
 #include "device/load_sheet.hpp"
 #include "device/node_host.hpp"
+#include "device/profile_behaviour.hpp"
 #include "device/value_overlay.hpp"
 #include "load/load_device.hpp"
 #include "lookup/find_entry.hpp"
@@ -47,11 +49,13 @@ constexpr const char* examples = R"(Examples:
   edsc node socketcan:vcan0 --node 5=drive.eds --node 6=io.eds
   edsc node socketcan:vcan0 drive.eds --node-id 5 --set serial_number=1234 --set 1017h="500 ms"
   edsc node socketcan:vcan0 drive.eds --node-id 5 --memory drive.mem     keep what a master stores
+  edsc node socketcan:vcan0 drive.eds --node-id 5 --device-profile       with a simulated axis
   edsc node socketcan:vcan0 drive.eds --node-id 5 --script drive.behaviour.json --start
 
 Commands on standard input set values, start generators and inject faults; "help" lists them.)";
 
 constexpr unsigned highest_node_id = 127;
+constexpr std::uint16_t io_module_profile = 401;
 
 struct Settings {
   std::string bus;
@@ -66,6 +70,7 @@ struct Settings {
   std::string log;
   std::uint64_t seed = 0;
   bool start = false;
+  bool device_profile = false;
   bool keep_going = false;
   bool quiet = false;
   ColorOption color;
@@ -77,6 +82,7 @@ struct File {
   std::shared_ptr<const Sheet> sheet;
   std::unique_ptr<EntryFinder> names;
   BehaviourScript script;
+  std::uint16_t profile = 0;  ///< the device profile that its nodes follow; 0: none
 };
 
 struct PlannedNode {
@@ -118,6 +124,22 @@ void set_values(LoadedDevice& loaded, const std::vector<std::string>& texts) {
   loaded.device = with_values(*loaded.device, values, loaded.options, of_mapping);
 }
 
+/// Gives the nodes the behaviour of their device profile. Ends the command if there is none.
+void follow_profile(File& file, const std::string& path) {
+  const Entry* const type = file.loaded->device->find(0x1000, 0);
+  const bool is_known = type != nullptr && type->default_value;
+  const auto number = static_cast<std::uint16_t>(is_known ? type->default_value->bits : 0);
+  const std::vector<ValueCopy> wires = number == io_module_profile ? io_loop(*file.names) : std::vector<ValueCopy>{};
+  file.script.copies.insert(file.script.copies.end(), wires.begin(), wires.end());
+  file.profile = number;
+  if (wires.empty() && !has_profile_behaviour(number)) {
+    fail(fmt::format(
+        "{}: --device-profile is for modules of CiA 401 with inputs for their outputs, drives of CiA 402 and "
+        "encoders of CiA 406; 1000h states {}",
+        printable(path), number == 0 ? "no profile" : fmt::format("CiA {}", number)));
+  }
+}
+
 /// Ends the command if the file has errors, unless --keep-going is given.
 File load_file(const Settings& settings, const std::string& path) {
   Diagnostics diagnostics;
@@ -139,12 +161,14 @@ File load_file(const Settings& settings, const std::string& path) {
   if (!made.sheet) throw Exit{exit_input_has_errors};
   file.sheet = std::move(made.sheet);
   file.names = std::make_unique<EntryFinder>(file.loaded->named());
-  if (settings.script.empty()) return file;
-  std::string problem;
-  if (!load_behaviour(settings.script, *file.names, settings.color, file.script, problem)) {
-    if (!problem.empty()) fail(problem);
-    throw Exit{exit_input_has_errors};
+  if (!settings.script.empty()) {
+    std::string problem;
+    if (!load_behaviour(settings.script, *file.names, settings.color, file.script, problem)) {
+      if (!problem.empty()) fail(problem);
+      throw Exit{exit_input_has_errors};
+    }
   }
+  if (settings.device_profile) follow_profile(file, path);
   return file;
 }
 
@@ -219,13 +243,14 @@ void report_problem(unsigned node_id, const std::string& problem) {
 
 CommandedNode add_node(NodeHost& host, const PlannedNode& node, const Settings& settings) {
   BehavingNode* added = nullptr;
-  host.add(canopen::NodeId{static_cast<std::uint8_t>(node.node_id)}, [&](canopen::SimulatedBus& port,
-                                                                         canopen::SimulatedMemory& memory) {
-    BehavingNodeSettings of_node{node.file->sheet, settings.memory, settings.seed + node.node_id, settings.start};
-    auto made = std::make_unique<BehavingNode>(std::move(of_node), port, memory);
-    added = made.get();
-    return made;
-  });
+  host.add(canopen::NodeId{static_cast<std::uint8_t>(node.node_id)},
+           [&](canopen::SimulatedBus& port, canopen::SimulatedMemory& memory) {
+             BehavingNodeSettings of_node{node.file->sheet, settings.memory, settings.seed + node.node_id,
+                                          settings.start, node.file->profile};
+             auto made = std::make_unique<BehavingNode>(std::move(of_node), port, memory);
+             added = made.get();
+             return made;
+           });
   added->behaviour().report = [node_id = node.node_id](const std::string& problem) {
     report_problem(node_id, problem);
   };
@@ -296,6 +321,9 @@ void add_node_options(Command command, int& exit_code) {
   command.add_option("--set", settings.values).check(bad_value);
   command.add_option("--memory", settings.memory);
   command.add_option("--script", settings.script);
+  command.add_flag(
+      "--device-profile", settings.device_profile,
+      "modules (CiA 401) read their outputs, drives (CiA 402) move a simulated axis, encoders (CiA 406) move");
   command.add_option("--seed", settings.seed);
   command.add_flag("--start", settings.start, "the nodes become Operational after each boot-up");
   command.add_option("--log", settings.log);

@@ -17,7 +17,7 @@ std::string examples_of(const CLI::App& command) {
 }
 
 std::vector<std::string> names_of(const CLI::Option& option) {
-  if (option.get_positional()) return {option.get_name(true, false)};
+  if (option.get_positional()) return {facts_of(option).value};
   std::vector<std::string> names;
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);

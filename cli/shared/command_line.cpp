@@ -50,9 +50,13 @@ const CommandOptionRow& row_of(const std::string& name) {
   throw std::logic_error{"the vocabulary does not have " + name};
 }
 
-/// `-o,--output`, as CLI11 wants it.
+/// `-o,--output`, as CLI11 wants it. In the name of an argument it refuses `=`; `facts_of` has the name as it is shown.
 std::string names_of(const std::string& name) {
-  if (is_argument(name)) return name;
+  if (is_argument(name)) {
+    std::string accepted = name;
+    std::ranges::replace(accepted, '=', '-');
+    return accepted;
+  }
   const char short_name = row_of(name).short_name;
   return short_name == 0 ? name : fmt::format("-{},{}", short_name, name);
 }
@@ -102,7 +106,7 @@ Option add_number(CLI::App& app, const std::string& name, std::uint64_t max,
 const OptionFacts& facts_of(const CLI::Option& option) { return all_facts()[&option]; }
 
 bool Option::is_given() const { return option_->count() != 0; }
-std::string Option::name() const { return option_->get_name(); }
+std::string Option::name() const { return option_->get_positional() ? facts_of(*option_).value : option_->get_name(); }
 
 Option Option::required(bool is_required) const { return Option{*option_->required(is_required)}; }
 Option Option::needs(Option other) const { return Option{*option_->needs(other.option_)}; }

@@ -39,6 +39,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--delay",          0,   "DURATION",  duration,   "switch delay, before and after the switch of the bit rate"},
     {"--depfile",        0,   "FILE",      file,       "write what the output depends on, for make and ninja"},
     {"--depfile-target", 0,   "FILE",      file,       "target in the depfile (default: the output)"},
+    {"--device-profile", 0,   "",          flag,       "behave as the device profile in 1000h says"},
     {"--deviations",     0,   "FILE",      file,       "declared deviations of the node, with their reasons (JSON)"},
     {"--dry-run",        0,   "",          flag,       "print the differences and the steps, and write nothing to the node"},
     {"--eds",            0,   "FILE",      path,       "EDS, DCF, XDD or XDC of the node"},

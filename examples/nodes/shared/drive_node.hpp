@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <canopen/host/simulated_axis.hpp>
 #include <canopen/node.hpp>
 #include <canopen/profile/cia402.hpp>
 #include <cstdint>
@@ -12,10 +13,12 @@
 
 #include "input_line.hpp"
 #include "panel.hpp"
-#include "simulated_axis.hpp"
 #include "surroundings.hpp"
 
 namespace nodes {
+
+using canopen::AxisData;
+using canopen::SimulatedAxis;
 
 [[nodiscard]] constexpr std::string_view to_text(canopen::cia402::State state) {
   using canopen::cia402::State;

@@ -36,6 +36,8 @@ class RecordingTarget final : public BehaviourTarget {
     events.push_back("emcy " + std::to_string(code) + " " + std::to_string(static_cast<unsigned>(bits)));
   }
   void emergency_over(canopen::ErrorRegister) override { events.emplace_back("over"); }
+  void hold_error(canopen::ErrorRegister) override {}
+  [[nodiscard]] canopen::NmtState nmt_state() const override { return canopen::NmtState::operational; }
   void request(canopen::NmtCommand command) override {
     events.push_back("nmt " + std::to_string(static_cast<unsigned>(command)));
   }

@@ -3,20 +3,20 @@
 
 #include <gtest/gtest.h>
 
+#include <canopen/host/simulated_axis.hpp>
 #include <canopen/profile/cia402_node.hpp>
 #include <chrono>
 #include <cstdint>
 #include <every_mode/device.hpp>
 #include <string>
 
-#include "shared/simulated_axis.hpp"
 #include "support/bench.hpp"
 
 namespace bench {
 
 /// Positions in increments, velocities in increments per second; 0.1 % of the torque accelerates by 100 per second
 /// squared.
-struct Motor : nodes::SimulatedAxis {
+struct Motor : canopen::SimulatedAxis {
   Motor()
       : SimulatedAxis{{.increments_per_turn = 1'000,
                        .velocity_unit = 1,

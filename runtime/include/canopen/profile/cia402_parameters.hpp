@@ -70,10 +70,13 @@ struct Parameters {
   static constexpr bool leaves_modes =
       (listed_modes & ~implemented_modes) != 0 || (lowest_mode < 0 && listed_modes != 0);
 
-  /// Returns the value of an object; `otherwise` if the device does not have it.
+  /// Returns the value of an object; `otherwise` if the device does not have it. A node whose objects are not known
+  /// when it is compiled has value_or.
   template <class ObjectType, class Node>
   [[nodiscard]] static typename ObjectType::type value(const Node& node, typename ObjectType::type otherwise) {
-    if constexpr (has<ObjectType>) {
+    if constexpr (requires { node.template value_or<At<ObjectType>>(otherwise); }) {
+      return node.template value_or<At<ObjectType>>(otherwise);
+    } else if constexpr (has<ObjectType>) {
       return node.template get<At<ObjectType>>();
     } else {
       return otherwise;

@@ -1,0 +1,15 @@
+/// A drive of CiA 402 with a simulated axis, whatever its EDS.
+#pragma once
+
+#include <memory>
+
+#include "device/behaviour.hpp"
+#include "device/profile_behaviour.hpp"
+
+namespace edsc {
+
+/// The units are increments, increments per second and increments per second squared. A turn has the increments of
+/// 608Fh, 4096 if the device does not have it. The first axis only; touch probes (60B8h) are not simulated.
+[[nodiscard]] std::unique_ptr<ProfileBehaviour> make_simulated_drive(BehaviourTarget& target);
+
+}  // namespace edsc
