@@ -32,11 +32,11 @@ namespace od = cpc_tc1::od;
 namespace mode = canopen::cia402::mode;
 
 /// Positions are increments, velocities increments per second.
-inline constexpr canopen::AxisData axis{.increments_per_turn = 8'192,
-                                        .velocity_unit = 1,
-                                        .acceleration_unit = 1,
-                                        .highest_velocity = 8'192 * 80,
-                                        .highest_acceleration = 8'192 * 1'000};
+inline constexpr canopen::cia402::AxisData axis{.increments_per_turn = 8'192,
+                                                .velocity_unit = 1,
+                                                .acceleration_unit = 1,
+                                                .highest_velocity = 8'192 * 80,
+                                                .highest_acceleration = 8'192 * 1'000};
 
 /// The vendor's program sets mode and ramps.
 inline constexpr canopen::cia402::Options options = [] {

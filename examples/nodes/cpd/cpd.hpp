@@ -25,11 +25,11 @@ using canopen::cia402::State;
 /// Positions are increments, velocities turns per minute, ramps turns per minute and second.
 inline constexpr double turn = 16'384;
 inline constexpr std::int32_t highest_speed = 12'000;
-inline constexpr canopen::AxisData axis{.increments_per_turn = turn,
-                                        .velocity_unit = turn / 60,
-                                        .acceleration_unit = turn / 60,
-                                        .highest_velocity = highest_speed * turn / 60,
-                                        .highest_acceleration = 200'000 * turn / 60};
+inline constexpr canopen::cia402::AxisData axis{.increments_per_turn = turn,
+                                                .velocity_unit = turn / 60,
+                                                .acceleration_unit = turn / 60,
+                                                .highest_velocity = highest_speed * turn / 60,
+                                                .highest_acceleration = 200'000 * turn / 60};
 
 namespace mode {
 inline constexpr std::int8_t speed = -4;

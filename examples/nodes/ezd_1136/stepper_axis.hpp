@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <canopen/base/clock.hpp>
-#include <canopen/host/simulated_axis.hpp>
 #include <canopen/profile/cia402_axis.hpp>
+#include <canopen/profile/cia402_simulated_axis.hpp>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -43,7 +43,7 @@ struct StepperSettings {
 };
 
 /// Positions are pulses, velocities 0.01 turns per second, ramps turns per second squared.
-[[nodiscard]] constexpr canopen::AxisData axis_data(std::uint32_t pulses_per_turn) {
+[[nodiscard]] constexpr canopen::cia402::AxisData axis_data(std::uint32_t pulses_per_turn) {
   const auto pulses = static_cast<double>(pulses_per_turn);
   return {.increments_per_turn = pulses,
           .velocity_unit = pulses / 100,
@@ -55,11 +55,11 @@ struct StepperSettings {
 /// The trajectory is in commanded pulses. The actual values come from the encoder in closed loop, and from the
 /// trajectory in open loop. Torque is in 0.1 % of the rated torque, which gives the motor 1000 turns per
 /// second squared.
-class StepperAxis : public canopen::SimulatedAxis {
-  using Base = canopen::SimulatedAxis;
+class StepperAxis : public canopen::cia402::SimulatedAxis {
+  using Base = canopen::cia402::SimulatedAxis;
 
  public:
-  explicit StepperAxis(const canopen::AxisData& data) : Base{data}, turn_{data.increments_per_turn} {}
+  explicit StepperAxis(const canopen::cia402::AxisData& data) : Base{data}, turn_{data.increments_per_turn} {}
 
   // canopen::cia402::Axis
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <algorithm>
-#include <canopen/host/simulated_axis.hpp>
 #include <canopen/node.hpp>
 #include <canopen/profile/cia402.hpp>
+#include <canopen/profile/cia402_simulated_axis.hpp>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -17,8 +17,8 @@
 
 namespace nodes {
 
-using canopen::AxisData;
-using canopen::SimulatedAxis;
+using canopen::cia402::AxisData;
+using canopen::cia402::SimulatedAxis;
 
 [[nodiscard]] constexpr std::string_view to_text(canopen::cia402::State state) {
   using canopen::cia402::State;

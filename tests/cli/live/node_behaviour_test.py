@@ -18,7 +18,7 @@ import sys
 import time
 import unittest
 
-from node_bus import FAILED, FINE, NMT, PATIENCE, RESET_NODE, SOURCE_DIR, START, NodeOnBus, device
+from node_bus import FAILED, FINE, NMT, PATIENCE, RESET_NODE, SOURCE_DIR, START, WRONG_USAGE, NodeOnBus, device
 from sdo import Abort, SdoClient, Silence
 
 NODE = 5
@@ -186,6 +186,88 @@ class Commands(Behaviour):
         self.obeys("loop off")
         self.sdo.download(0x6200, 1, b"\x11")
         self.assertEqual(self.sdo.upload(0x6000, 1), b"\xa5")
+
+    # ---- device profiles ----
+
+    def walk_to_operation(self) -> None:
+        """The transitions 2, 3 and 4 of CiA 402, with the states of Table 30 as bits of the statusword."""
+        for command, state in ((0x06, 0x21), (0x07, 0x23), (0x0F, 0x27)):
+            self.sdo.download(CONTROLWORD, 0, u16(command))
+            self.expect_masked(STATUSWORD, 0x6F, state)
+
+    def expect_masked(self, index: int, mask: int, bits: int) -> None:
+        end = time.monotonic() + PATIENCE
+        while (found := int.from_bytes(self.sdo.upload(index, 0), "little") & mask) != bits and time.monotonic() < end:
+            time.sleep(0.02)
+        self.assertEqual(found, bits, f"{index:04X}h")
+
+    def begin_drive(self) -> None:
+        self.process, _ = self.node(SOURCE_DIR / "tests/fixtures/cia402_drive.eds", "--node-id", NODE, "--device-profile")
+        self.expect_frame(BOOT_UP, b"\0")
+        self.sdo = SdoClient(self.wire, NODE, PATIENCE)
+
+    def test_a_drive_moves_by_its_profile(self) -> None:
+        self.begin_drive()
+        self.expect_masked(STATUSWORD, 0x4F, 0x40)  # Switch On Disabled, without a command
+        self.sdo.download(0x6060, 0, b"\x01")
+        for index, value in ((0x6081, 10_000), (0x6083, 100_000), (0x6084, 100_000), (0x607A, 5_000)):
+            self.sdo.download(index, 0, i32(value))
+        self.walk_to_operation()
+        self.expect_upload(0x6061, b"\x01")
+        began = time.monotonic()
+        self.sdo.download(CONTROLWORD, 0, u16(0x1F))  # new set-point
+        self.expect_masked(STATUSWORD, 0x1000, 0x1000)  # set-point acknowledge
+        self.expect_upload(POSITION, i32(5_000))
+        # 5000 increments at 10000 per second, with ramps of 0.1 s: 0.6 s, the first and last requests in addition.
+        self.assertGreater(time.monotonic() - began, 0.55)
+        self.expect_masked(STATUSWORD, 0x0400, 0x0400)  # target reached
+        self.sdo.download(CONTROLWORD, 0, u16(0x02))
+        self.expect_masked(STATUSWORD, 0x4F, 0x40)
+
+    def test_a_drive_that_loses_its_master(self) -> None:
+        """NMT Stopped is a loss of communication: with 6007h = 1 a fault."""
+        self.begin_drive()
+        self.walk_to_operation()
+        self.sdo.download(0x6007, 0, u16(1))
+        self.wire.send(NMT, bytes([0x02, NODE]))
+        self.wire.send(NMT, bytes([0x80, NODE]))
+        self.expect_masked(STATUSWORD, 0x4F, 0x08)  # Fault
+        self.sdo.download(CONTROLWORD, 0, u16(0x80))  # fault reset
+        self.expect_masked(STATUSWORD, 0x4F, 0x40)
+
+    def test_a_drive_without_6060_follows_the_target_written_last(self) -> None:
+        self.begin("--device-profile")
+        self.walk_to_operation()
+        for target in (100, 400, -200):
+            self.sdo.download(0x607A, 0, i32(target))
+            self.expect_upload(POSITION, i32(target))
+        self.sdo.download(0x60FF, 0, i32(-300))
+        self.expect_upload(0x606C, i32(-300))
+
+    def test_an_encoder_moves_and_takes_a_preset(self) -> None:
+        process, _ = self.node(device("rk5c"), "--node-id", NODE, "--device-profile")
+        self.expect_frame(BOOT_UP, b"\0")
+        sdo = SdoClient(self.wire, NODE, PATIENCE)
+        seen = set()
+        end = time.monotonic() + PATIENCE
+        while len(seen) < 5 and time.monotonic() < end:
+            seen.add(sdo.upload(0x6020, 1))
+            time.sleep(0.05)
+        self.assertEqual(len(seen), 5)
+        self.assertNotEqual(int.from_bytes(sdo.upload(0x6030, 1), "little"), 0)
+        sdo.download(0x6010, 1, i32(1_000_000))
+        position = struct.unpack("<i", sdo.upload(0x6020, 1))[0]
+        self.assertLess(abs(position - 1_000_000), 4096)
+        sdo.download(0x6200, 0, u16(40))
+        self.assertEqual(sdo.upload(0x1800, 5)[:2], u16(40))
+        process.kill()
+
+    def test_a_profile_without_behaviour(self) -> None:
+        text = device("cpc-tc1").read_text(encoding="latin-1").replace("0x00420192", "0x004201A2")
+        (self.folder / "other.eds").write_text(text, encoding="latin-1")
+        self.assertIn("0x004201A2", text)
+        problem = self.refused(WRONG_USAGE, "other.eds", "--node-id", NODE, "--keep-going", "--device-profile")
+        self.assertIn("1000h states CiA 418", problem)
 
     def test_the_end_of_standard_input_does_not_end_the_node(self) -> None:
         self.begin()

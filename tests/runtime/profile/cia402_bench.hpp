@@ -16,11 +16,11 @@ namespace bench {
 using canopen::cia402::State;
 namespace od = cia402_drive::od;
 
-inline constexpr canopen::AxisData plain_axis{.increments_per_turn = 1'000,
-                                              .velocity_unit = 1,
-                                              .acceleration_unit = 1,
-                                              .highest_velocity = 1'000'000,
-                                              .highest_acceleration = 100'000'000};
+inline constexpr canopen::cia402::AxisData plain_axis{.increments_per_turn = 1'000,
+                                                      .velocity_unit = 1,
+                                                      .acceleration_unit = 1,
+                                                      .highest_velocity = 1'000'000,
+                                                      .highest_acceleration = 100'000'000};
 
 template <canopen::Bus B>
 class PlainDrive : public nodes::DriveNode<PlainDrive<B>, cia402_drive::Device, B, canopen::cia402::Options{}> {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <canopen/host/simulated_axis.hpp>
 #include <canopen/profile/cia402_node.hpp>
+#include <canopen/profile/cia402_simulated_axis.hpp>
 #include <chrono>
 #include <cstdint>
 #include <every_mode/device.hpp>
@@ -16,7 +16,7 @@ namespace bench {
 
 /// Positions in increments, velocities in increments per second; 0.1 % of the torque accelerates by 100 per second
 /// squared.
-struct Motor : canopen::SimulatedAxis {
+struct Motor : canopen::cia402::SimulatedAxis {
   Motor()
       : SimulatedAxis{{.increments_per_turn = 1'000,
                        .velocity_unit = 1,

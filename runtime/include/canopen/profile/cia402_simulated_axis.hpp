@@ -12,7 +12,7 @@
 #include "canopen/profile/cia402_axis.hpp"
 #include "canopen/profile/cia402_option_code.hpp"
 
-namespace canopen {
+namespace canopen::cia402 {
 
 /// The motor, and the units of the objects of its drive. Positions are in increments.
 struct AxisData {
@@ -41,7 +41,7 @@ class SimulatedAxis {
   /// The velocity at which a motion to a position begins and ends without a ramp, in increments per second.
   double jump_velocity = 0;
 
-  // cia402::Axis
+  // Axis
 
   void enable(bool on) {
     if (on == enabled_) return;
@@ -51,13 +51,13 @@ class SimulatedAxis {
     course_ = Course::stop;
     deceleration_ = data_.highest_acceleration;
   }
-  void move_to(std::int32_t position, const cia402::Profile& profile) {
+  void move_to(std::int32_t position, const Profile& profile) {
     course_ = Course::position;
     target_ = position + added_;
     take(profile);
     wanted_ = std::min(profile.velocity * data_.velocity_unit, data_.highest_velocity);
   }
-  void run_at(std::int32_t velocity, const cia402::Profile& profile) {
+  void run_at(std::int32_t velocity, const Profile& profile) {
     course_ = Course::velocity;
     take(profile);
     wanted_ = std::clamp(velocity * data_.velocity_unit, -data_.highest_velocity, data_.highest_velocity);
@@ -67,12 +67,12 @@ class SimulatedAxis {
     deceleration_ = ramp(deceleration);
   }
   /// The same, with the deceleration that the current limit of this braking allows.
-  void stop(std::uint32_t deceleration, cia402::Braking braking) {
+  void stop(std::uint32_t deceleration, Braking braking) {
     stop(deceleration);
-    if (braking == cia402::Braking::quick_stop_ramp && quick_stop_deceleration) {
+    if (braking == Braking::quick_stop_ramp && quick_stop_deceleration) {
       deceleration_ = ramp(*quick_stop_deceleration);
     }
-    if (braking == cia402::Braking::slow_down_ramp && highest_deceleration) {
+    if (braking == Braking::slow_down_ramp && highest_deceleration) {
       deceleration_ = std::min(deceleration_, ramp(*highest_deceleration));
     }
   }
@@ -88,7 +88,7 @@ class SimulatedAxis {
     return enabled_ && course_ == Course::torque ? torque_ : std::int16_t{0};
   }
   /// Edges of the probe inputs that `probe` has simulated, and index pulses.
-  [[nodiscard]] std::optional<std::int32_t> latched(const cia402::ProbeEdge& edge) {
+  [[nodiscard]] std::optional<std::int32_t> latched(const ProbeEdge& edge) {
     return std::exchange(edge.source <= 2 ? probed_[edge.source == 2][edge.positive] : turned_[edge.positive],
                          std::nullopt);
   }
@@ -149,9 +149,8 @@ class SimulatedAxis {
     return rounded(units > 0 ? std::ceil(units) : std::floor(units));
   }
   [[nodiscard]] std::uint32_t inputs() const { return (actuated() ^ inverted_) & ~ignored_; }
-  /// The switches that are actuated, as bits of cia402::input.
+  /// The switches that are actuated, as bits of input.
   [[nodiscard]] std::uint32_t actuated() const {
-    namespace input = cia402::input;
     const double place = sign_ * position_ + machine_;
     std::uint32_t bits = held_;
     if (negative_limit && place <= *negative_limit) bits |= input::negative_limit;
@@ -170,14 +169,14 @@ class SimulatedAxis {
   /// The highest deceleration of a stop at a ramp whose current is limited.
   std::optional<std::uint32_t> highest_deceleration;
 
-  /// Selects the switches that the drive ignores, and those whose signal it inverts, as bits of cia402::input.
+  /// Selects the switches that the drive ignores, and those whose signal it inverts, as bits of input.
   void evaluate(std::uint32_t ignored, std::uint32_t inverted) {
     ignored_ = ignored;
     inverted_ = inverted;
     watch_limit_switches(enabled_ && moving());
   }
   /// Returns the limit switches that have become active while the axis moved with power since the last call, as bits of
-  /// cia402::input.
+  /// input.
   [[nodiscard]] std::uint32_t take_trips() { return std::exchange(trips_, 0); }
 
   /// Reverses the direction in which the shaft turns for a positive velocity. The present position keeps its number.
@@ -239,7 +238,7 @@ class SimulatedAxis {
     const double wanted = value * data_.acceleration_unit;
     return value == 0 ? data_.highest_acceleration : std::min(wanted, data_.highest_acceleration);
   }
-  void take(const cia402::Profile& profile) {
+  void take(const Profile& profile) {
     acceleration_ = ramp(profile.acceleration);
     deceleration_ = ramp(profile.deceleration);
   }
@@ -249,7 +248,6 @@ class SimulatedAxis {
 
   /// Remembers the limit switches that have become active; `moved`: the axis moved with power before.
   void watch_limit_switches(bool moved) {
-    namespace input = cia402::input;
     const std::uint32_t active = inputs() & (input::negative_limit | input::positive_limit);
     if (moved) trips_ |= active & ~active_limits_;
     active_limits_ = active;
@@ -341,6 +339,6 @@ class SimulatedAxis {
   std::optional<std::int32_t> turned_[2];     ///< the same of the index pulse
 };
 
-static_assert(cia402::TorqueAxis<SimulatedAxis> && cia402::ProbedAxis<SimulatedAxis>);
+static_assert(TorqueAxis<SimulatedAxis> && ProbedAxis<SimulatedAxis>);
 
-}  // namespace canopen
+}  // namespace canopen::cia402
