@@ -81,7 +81,10 @@ std::string read_fault(std::span<const std::string> words, EntryFinder& names, N
     if (!fault.span_us) return fmt::format("\"{}\" is not a duration", printable(words.back()));
     words = words.first(words.size() - 2);
   }
-  return read_arguments(row->arguments, words, names, fault.arguments);
+  const std::string problem = read_arguments(row->arguments, words, names, fault.arguments);
+  if (problem.empty() && row->kind == NodeFaultKind::abort && fault.arguments.code == 0u)
+    return "0 is not an abort code";
+  return problem;
 }
 
 NodeFaults::NodeFaults(Node node) : node_{std::move(node)} {}

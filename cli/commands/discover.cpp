@@ -37,7 +37,7 @@ struct Settings : LogSettings {
   std::string output;
   std::string format = "text";
   std::optional<unsigned> bit_rate;
-  std::uint64_t span_us = usual_span_us;
+  std::optional<std::uint64_t> span_us;
 
   [[nodiscard]] bool is_bus() const { return is_bus_address(log); }
 };
@@ -46,7 +46,7 @@ struct Settings : LogSettings {
 void listen_to(LiveBus& bus, const Settings& settings, discover::BusSurvey& survey) {
   using namespace std::chrono;
   constexpr milliseconds look_again{100};
-  const auto end = steady_clock::now() + microseconds{settings.span_us};
+  const auto end = steady_clock::now() + microseconds{settings.span_us.value_or(usual_span_us)};
   ElapsedTime elapsed{bus.now()};
   while (!Interruption::noted()) {
     const auto left = duration_cast<milliseconds>(end - steady_clock::now());
@@ -113,6 +113,7 @@ int report(const Settings& settings, const discover::BusSurvey& survey, const Sh
 }
 
 int run_discover(const Settings& settings) {
+  if (settings.span_us && !settings.is_bus()) throw_requires("--for", "a bus; a log is read to its end");
   SheetFiles sheets;
   if (!settings.sheets.empty())
     sheets = read_sheet_files(expand_folders(settings.sheets, sheet_extensions, WrittenByEdsc::skipped));

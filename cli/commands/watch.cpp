@@ -48,7 +48,7 @@ constexpr std::string_view any_alarm = "any";
 struct Settings {
   std::string source;  ///< a bus, or the path of a log
   std::string network;
-  std::string log_format = "auto";
+  std::string log_format = automatic_format;
   std::string interface;
   std::string format = "text";
   std::string command_line;
@@ -245,7 +245,14 @@ int run_watch(const Settings& settings) {
   if (settings.list_alarms) return list_alarms(settings);
   if (settings.source.empty()) throw_required("SOURCE");
   if (settings.span_us && !is_bus_address(settings.source)) throw_requires("--for", "a bus; a log is read to its end");
+  if (is_bus_address(settings.source) && settings.log_format != automatic_format)
+    throw_requires("--log-format", "a log");
+  if (is_bus_address(settings.source) && !settings.interface.empty()) throw_requires("--interface", "a log");
   for (const std::string& id : settings.exit_on) {
+    if (id == any_alarm && std::ranges::all_of(watch::alarm_rows, [&](const Rule& rule) {
+          return std::ranges::find(settings.silence, rule.id) != settings.silence.end();
+        }))
+      throw_invalid("--exit-on", "no alarm is reported, because of --silence");
     if (std::ranges::find(settings.silence, id) == settings.silence.end()) continue;
     throw_invalid("--exit-on", "\"" + id + "\" is not reported, because of --silence");
   }

@@ -11,14 +11,9 @@
 #include "system/waiting_signals.hpp"
 
 namespace edsc {
-namespace {
-
-constexpr const char* automatic = "auto";
-
-}  // namespace
 
 void add_log_format_options(Command command, std::string& log_format, std::string& interface) {
-  std::vector<std::string> formats{automatic};
+  std::vector<std::string> formats{automatic_format};
   std::string help = "auto: by its content";
   for (const LogFormat* const row : log_formats) {
     formats.emplace_back(row->name);

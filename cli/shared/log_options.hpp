@@ -11,9 +11,12 @@
 
 namespace edsc {
 
+/// The value of --log-format without the option: the content of the log decides.
+inline constexpr const char* automatic_format = "auto";
+
 struct LogSettings : NodesSettings {
   std::string log = "-";
-  std::string log_format = "auto";
+  std::string log_format = automatic_format;
   std::string interface;
   ColorOption color;
 

@@ -15,6 +15,7 @@
 #include "format/dcf/configured_values.hpp"
 #include "format/spelling/key_table.hpp"
 #include "format/spelling/number_spelling.hpp"
+#include "format/spelling/spell_section.hpp"
 #include "values/read_value.hpp"
 #include "values/value_bytes.hpp"
 
@@ -204,10 +205,16 @@ class DcfMaker {
     return *document_.sections.insert(place, std::move(added));
   }
 
+  /// The canonical spelling depends on the DataType in the file; the device can have another type, that of CiA 301.
+  void set_parameter_value(DocumentSection& section, std::string text) {
+    set(section, "ParameterValue", std::move(text));
+    spell_section(section, sheet_, device_);
+  }
+
   void configure_as_given(DocumentSection& section, std::uint8_t sub_index) {
     const Entry* const entry = device_.find(section.kind.index, sub_index);
     const auto given = given_->values.find(entry);
-    if (given != given_->values.end()) return set(section, "ParameterValue", given->second);
+    if (given != given_->values.end()) return set_parameter_value(section, given->second);
     if (!sheet_.is_dcf || given_->known.contains(entry)) remove(section, "ParameterValue");
   }
 
@@ -230,7 +237,7 @@ class DcfMaker {
     }
     if (!has_value) source = find_entry(section, "DefaultValue");
     if (source == nullptr || source->value.empty()) return;
-    set(section, "ParameterValue", resolved(source->value, *entry));
+    set_parameter_value(section, resolved(source->value, *entry));
   }
 
   void configure_compact_values(DocumentSection& section) {

@@ -215,18 +215,22 @@ class SocketCan {
 
   // Filters
 
+  [[nodiscard]] static bool same_filter(const can_filter& a, const can_filter& b) {
+    return a.can_id == b.can_id && a.can_mask == b.can_mask;
+  }
+
   /// Sets the filters. They change rarely: the kernel is called only if they do.
   void accept(const can_filter* filters, std::size_t count) {
-    const auto same = [](const can_filter& a, const can_filter& b) {
-      return a.can_id == b.can_id && a.can_mask == b.can_mask;
-    };
-    if (std::equal(filters, filters + count, filters_.begin(), filters_.end(), same)) return;
+    if (std::equal(filters, filters + count, filters_.begin(), filters_.end(), same_filter)) return;
     filters_.assign(filters, filters + count);
     set_filters(socket_);
   }
 
   void accept_all() {
-    if (!filters_.empty()) accept(&socketcan::every_frame, 1);
+    if (filters_.empty() || same_filter(filters_.front(), socketcan::every_frame)) return;
+    filters_.clear();
+    filters_.push_back(socketcan::every_frame);
+    set_filters(socket_);
   }
 
   void set_filters(const Descriptor& socket) const {
