@@ -20,10 +20,8 @@
 #include "commands/node_commands.hpp"
 #include "device/behaving_node.hpp"
 #include "device/entry_text.hpp"
-#include "device/io_loop.hpp"
 #include "device/load_sheet.hpp"
 #include "device/node_host.hpp"
-#include "device/profile_behaviour.hpp"
 #include "device/value_overlay.hpp"
 #include "load/load_device.hpp"
 #include "lookup/find_entry.hpp"
@@ -34,6 +32,7 @@
 #include "shared/frame_log.hpp"
 #include "shared/live_device.hpp"
 #include "shared/live_options.hpp"
+#include "shared/node_behaviour.hpp"
 #include "shared/output.hpp"
 #include "shared/with_bus.hpp"
 #include "system/path.hpp"
@@ -55,7 +54,6 @@ constexpr const char* examples = R"(Examples:
 Commands on standard input set values, start generators and inject faults; "help" lists them.)";
 
 constexpr unsigned highest_node_id = 127;
-constexpr std::uint16_t io_module_profile = 401;
 
 struct Settings {
   std::string bus;
@@ -81,8 +79,7 @@ struct File {
   std::unique_ptr<LoadedDevice> loaded;
   std::shared_ptr<const Sheet> sheet;
   std::unique_ptr<EntryFinder> names;
-  BehaviourScript script;
-  std::uint16_t profile = 0;  ///< the device profile that its nodes follow; 0: none
+  NodeBehaviour behaviour;
 };
 
 struct PlannedNode {
@@ -124,22 +121,6 @@ void set_values(LoadedDevice& loaded, const std::vector<std::string>& texts) {
   loaded.device = with_values(*loaded.device, values, loaded.options, of_mapping);
 }
 
-/// Gives the nodes the behaviour of their device profile. Ends the command if there is none.
-void follow_profile(File& file, const std::string& path) {
-  const Entry* const type = file.loaded->device->find(0x1000, 0);
-  const bool is_known = type != nullptr && type->default_value;
-  const auto number = static_cast<std::uint16_t>(is_known ? type->default_value->bits : 0);
-  const std::vector<ValueCopy> wires = number == io_module_profile ? io_loop(*file.names) : std::vector<ValueCopy>{};
-  file.script.copies.insert(file.script.copies.end(), wires.begin(), wires.end());
-  file.profile = number;
-  if (wires.empty() && !has_profile_behaviour(number)) {
-    fail(fmt::format(
-        "{}: --device-profile is for modules of CiA 401 with inputs for their outputs, drives of CiA 402 and "
-        "encoders of CiA 406; 1000h states {}",
-        printable(path), number == 0 ? "no profile" : fmt::format("CiA {}", number)));
-  }
-}
-
 /// Ends the command if the file has errors, unless --keep-going is given.
 File load_file(const Settings& settings, const std::string& path) {
   Diagnostics diagnostics;
@@ -161,14 +142,15 @@ File load_file(const Settings& settings, const std::string& path) {
   if (!made.sheet) throw Exit{exit_input_has_errors};
   file.sheet = std::move(made.sheet);
   file.names = std::make_unique<EntryFinder>(file.loaded->named());
-  if (!settings.script.empty()) {
-    std::string problem;
-    if (!load_behaviour(settings.script, *file.names, settings.color, file.script, problem)) {
-      if (!problem.empty()) fail(problem);
-      throw Exit{exit_input_has_errors};
-    }
+  if (!settings.script.empty()) add_script(file.behaviour, settings.script, *file.names, settings.color);
+  const Device& device = *file.loaded->device;
+  if (settings.device_profile && !add_device_profile(file.behaviour, device, *file.names)) {
+    const unsigned profile = device_profile(device);
+    fail(fmt::format(
+        "{}: --device-profile is for modules of CiA 401 with inputs for their outputs, drives of CiA 402 and "
+        "encoders of CiA 406; 1000h states {}",
+        printable(path), profile == 0 ? "no profile" : fmt::format("CiA {}", profile)));
   }
-  if (settings.device_profile) follow_profile(file, path);
   return file;
 }
 
@@ -246,7 +228,7 @@ CommandedNode add_node(NodeHost& host, const PlannedNode& node, const Settings& 
   host.add(canopen::NodeId{static_cast<std::uint8_t>(node.node_id)},
            [&](canopen::SimulatedBus& port, canopen::SimulatedMemory& memory) {
              BehavingNodeSettings of_node{node.file->sheet, settings.memory, settings.seed + node.node_id,
-                                          settings.start, node.file->profile};
+                                          settings.start, node.file->behaviour.profile};
              auto made = std::make_unique<BehavingNode>(std::move(of_node), port, memory);
              added = made.get();
              return made;
@@ -254,7 +236,7 @@ CommandedNode add_node(NodeHost& host, const PlannedNode& node, const Settings& 
   added->behaviour().report = [node_id = node.node_id](const std::string& problem) {
     report_problem(node_id, problem);
   };
-  added->behaviour().add(node.file->script);
+  added->behaviour().add(node.file->behaviour.script);
   return {added, node.file->names.get()};
 }
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "device/behaviour_commands.hpp"
-#include "device/behaviour_script.hpp"
+#include "shared/node_behaviour.hpp"
 #include "shared/output.hpp"
 #include "system/available_input.hpp"
 #include "text/ascii.hpp"
@@ -23,16 +23,6 @@ constexpr std::size_t longest_line = 65536;
 std::string error_answer(const std::string& problem) { return "error: " + problem; }
 
 }  // namespace
-
-bool load_behaviour(const std::string& path, EntryFinder& names, const ColorOption& color, BehaviourScript& script,
-                    std::string& problem) {
-  const std::unique_ptr<SourceFile> source = read_source_file(path, problem);
-  if (!source) return false;
-  Diagnostics diagnostics;
-  script = read_behaviour_script(*source, names, diagnostics);
-  if (diagnostics.errors() > 0) print_findings(diagnostics, color);
-  return diagnostics.errors() == 0;
-}
 
 NodeCommands::NodeCommands(std::vector<CommandedNode> nodes, const ColorOption& color)
     : nodes_{std::move(nodes)}, color_{color} {}

@@ -19,10 +19,6 @@ struct CommandedNode {
   EntryFinder* names;
 };
 
-/// Reads the behaviour in a file. Prints the errors; returns false if it has one. `problem`: why it cannot be read.
-[[nodiscard]] bool load_behaviour(const std::string& path, EntryFinder& names, const ColorOption& color,
-                                  BehaviourScript& script, std::string& problem);
-
 /// Executes lines of standard input, and answers each with a line. The end of standard input does not end anything. A
 /// process in the background does not read a terminal.
 class NodeCommands {

@@ -108,6 +108,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--run",            0,   "COMMAND",   text,       "command line for the shell, run for each alarm"},
     {"--runtime",        0,   "DIR",       folder,     "include folder of the runtime (default: the folder of edsc)"},
     {"--script",         0,   "FILE",      file,       "behaviour of the nodes (JSON), by convention NAME.behaviour.json"},
+    {"--scripts",        0,   "",          flag,       "behaviour of each node: NAME.behaviour.json beside NAME.eds, if it exists"},
     {"--seed",           0,   "NUMBER",    number,     "seed of random choices; the same seed has the same result"},
     {"--segmented",      0,   "",          flag,       "do not use block transfer"},
     {"--serial",         0,   "NUMBER",    number,     "serial number, 1018h:04"},

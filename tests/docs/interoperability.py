@@ -19,6 +19,7 @@ from pathlib import Path
 
 SOURCE_DIR, BUILD_DIR = (Path(argument).resolve() for argument in sys.argv[1:3])
 PAGE = SOURCE_DIR / "docs/interoperability.md"
+DEBIAN = "12"  # whose versions the page has
 
 
 @dataclass(frozen=True)
@@ -122,8 +123,11 @@ def compare() -> int:
     cells = cells_of_page()
     if [(one[0], one[2], one[3]) for one in cells] != [(row.program, row.tried, f"`{row.test}`") for row in ROWS]:
         problems.append("docs/interoperability.md has other rows: interoperability.py --write")
+    is_of_the_page = Path("/etc/debian_version").read_text(encoding="utf-8").startswith(DEBIAN + ".")
+    if not is_of_the_page:
+        print(f"versions are not compared: those of the page are of Debian {DEBIAN}")
     for row, one in zip(ROWS, cells):
-        if (version := version_of(row.source)) and version != one[1]:
+        if is_of_the_page and (version := version_of(row.source)) and version != one[1]:
             problems.append(f"docs/interoperability.md: {row.program}: {one[1]}; the version is {version}")
         if not re.search(rf": {row.test}$", tests, re.MULTILINE):
             problems.append(f"docs/interoperability.md: there is no test {row.test}")

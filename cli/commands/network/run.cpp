@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <deque>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -16,6 +19,7 @@
 #include "device/node_host.hpp"
 #include "device/value_overlay.hpp"
 #include "load/load_device.hpp"
+#include "lookup/find_entry.hpp"
 #include "network/error_control.hpp"
 #include "network/node_configuration.hpp"
 #include "network/presence_watch.hpp"
@@ -28,9 +32,11 @@
 #include "shared/live_options.hpp"
 #include "shared/monitor_feed.hpp"
 #include "shared/monitor_server.hpp"
+#include "shared/node_behaviour.hpp"
 #include "shared/output.hpp"
 #include "shared/parse_number.hpp"
 #include "shared/with_bus.hpp"
+#include "system/path.hpp"
 #include "text/duration.hpp"
 #include "text/printable.hpp"
 
@@ -41,6 +47,7 @@ constexpr const char* examples = R"(Examples:
   edsc network run socketcan:vcan0 plant.json                    all nodes that are not on the bus, until Ctrl-C
   edsc network run socketcan:can0 plant.json --except axis1      never this one
   edsc network run socketcan:can0 plant.json --only axis1,axis2  no other
+  edsc network run socketcan:can0 plant.json --scripts --device-profile   with behaviour beyond the protocol
   edsc network run socketcan:can0 plant.json --log plant.log     record the frames of the bus
   edsc network run socketcan:can0 plant.json --web               the page of edsc monitor, with the simulated nodes marked)";
 
@@ -51,6 +58,8 @@ struct Settings {
   std::uint64_t absent_us = 1'000'000;
   std::string log;
   std::optional<ListenAddress> web;
+  bool scripts = false;
+  bool device_profile = false;
   bool quiet = false;
 };
 
@@ -113,6 +122,14 @@ std::shared_ptr<const Sheet> sheet_of(const NetworkNode& node, bool quiet) {
   return std::move(made.sheet);
 }
 
+/// NAME.behaviour.json beside NAME.eds, if it exists; else empty.
+std::string script_beside(const NetworkNode& node) {
+  std::filesystem::path path = to_native(input_files(*node.loaded).front());
+  path.replace_extension(".behaviour.json");
+  std::error_code error;
+  return std::filesystem::exists(path, error) ? from_native(path) : std::string{};
+}
+
 /// The page of the monitor with the frames of the bus, also those that this program sends.
 class PlantPage {
  public:
@@ -155,7 +172,7 @@ class PlantRun {
     if (settings.web) page_.emplace(settings, given, bus.now());
     if (!settings.log.empty()) log_.emplace(settings.log, interface_of(settings.bus));
     for (const NetworkNode* node : nodes) {
-      add(sheet_of(*node, settings.quiet), canopen::NodeId{node->node_id});
+      add(*node);
       const auto heartbeat_ms = static_cast<std::uint16_t>(heartbeat_time(node->device()));
       watch_.add(node->node_id, own_cob_ids(network, *node), canopen::from_milliseconds(heartbeat_ms));
       nodes_.push_back({node, Presence::unknown});
@@ -191,11 +208,24 @@ class PlantRun {
     Presence presence;  ///< as the simulation follows it
   };
 
-  void add(std::shared_ptr<const Sheet> sheet, canopen::NodeId node_id) {
-    host_.add(node_id, [&](canopen::SimulatedBus& port, canopen::SimulatedMemory& memory) {
-      return std::make_unique<BehavingNode>(BehavingNodeSettings{.sheet = std::move(sheet), .memory = {}}, port,
-                                            memory);
+  void add(const NetworkNode& node) {
+    EntryFinder& names = names_.emplace_back(node.loaded->named());
+    NodeBehaviour behaviour;
+    if (const std::string script = settings_.scripts ? script_beside(node) : ""; !script.empty())
+      add_script(behaviour, script, names, ColorOption{});
+    if (settings_.device_profile) static_cast<void>(add_device_profile(behaviour, node.device(), names));
+    BehavingNode* added = nullptr;
+    host_.add(canopen::NodeId{node.node_id}, [&](canopen::SimulatedBus& port, canopen::SimulatedMemory& memory) {
+      BehavingNodeSettings of_node{
+          .sheet = sheet_of(node, settings_.quiet), .memory = {}, .seed = node.node_id, .profile = behaviour.profile};
+      auto made = std::make_unique<BehavingNode>(std::move(of_node), port, memory);
+      added = made.get();
+      return made;
     });
+    added->behaviour().report = [&node](const std::string& problem) {
+      print_to_stderr("edsc: {}: {}\n", label(node), problem);
+    };
+    added->behaviour().add(behaviour.script);
   }
 
   void record(const canopen::Frame& frame, canopen::TimePoint at, canopen::TimePoint now) {
@@ -235,6 +265,7 @@ class PlantRun {
   std::optional<FrameLog> log_;
   std::optional<PlantPage> page_;
   std::vector<Node> nodes_;
+  std::deque<EntryFinder> names_;  ///< of the nodes
 };
 
 int run_plant(const Settings& settings) {
@@ -268,6 +299,8 @@ void add_network_run_options(Command command, int& exit_code) {
   command.add_option("--except", settings.except).one_value_each().excludes("--only");
   command.add_duration("--absent", 100'000, 60'000'000, [&settings](std::uint64_t us) { settings.absent_us = us; })
       .show_default(duration_text(settings.absent_us));
+  command.add_flag("--scripts", settings.scripts);
+  command.add_flag("--device-profile", settings.device_profile, "nodes of other profiles follow only the protocol");
   command.add_option("--log", settings.log);
   add_web_option(command, settings.web);
   command.add_flag("--quiet", settings.quiet);

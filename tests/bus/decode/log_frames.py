@@ -5,6 +5,7 @@ Frames have times in steps of 100 us from 0, which all formats can express.
 
 from __future__ import annotations
 
+import inspect
 import random
 import struct
 import subprocess
@@ -161,7 +162,10 @@ def scapy_capture(path: Path, log: list[Frame], writer_name: str) -> None:
             writer.write_packet(one.packet, sec=seconds, usec=microseconds)
         else:
             time = (one.time_us + 0.5) / 1e6  # it truncates
-            writer._write_packet(one.packet, sec=time, caplen=len(one.packet), wirelen=len(one.packet))
+            # Later versions have an interface for each link type.
+            has_link_type = "linktype" in inspect.signature(writer._write_packet).parameters
+            link_type = {"linktype": SOCKETCAN} if has_link_type else {}
+            writer._write_packet(one.packet, sec=time, caplen=len(one.packet), wirelen=len(one.packet), **link_type)
     writer.close()
 
 

@@ -184,6 +184,27 @@ class NetworkRun(Runs):
             lines.wait_for(self.line("second_drive", "the device left; simulated"))
             self.assertEqual(self.serial_number("second_drive"), 99)
 
+    def test_scripts_and_device_profiles(self) -> None:
+        """A script beside an EDS is for its nodes; the encoder moves, and the drives leave Not Ready To Switch On."""
+        (self.folder / "cpd.behaviour.json").write_text(json.dumps({"set": {"6081h": 777}}))
+        _, lines = self.run_plant("--scripts", "--device-profile")
+        lines.wait_for(*(self.line(name, "simulated") for name in NODES))
+        for name in ("drive", "second_drive"):
+            drive = self.sdo(name)
+            self.assertEqual(drive.upload(0x6081, 0), struct.pack("<I", 777))
+            self.assertEqual(struct.unpack("<H", drive.upload(0x6041, 0))[0] & 0x4F, 0x40)
+        encoder, seen, end = self.sdo("encoder"), set(), time.monotonic() + LATE
+        while len(seen) < 3 and time.monotonic() < end:
+            seen.add(encoder.upload(0x6020, 1))
+            time.sleep(0.05)
+        self.assertEqual(len(seen), 3)
+
+    def test_a_script_with_an_error(self) -> None:
+        (self.folder / "rk5c.behaviour.json").write_text('{"set": {"7777h": 1}}')
+        run = self.edsc("network", "run", self.address, "plant.json", "--scripts")
+        self.assertEqual(run.returncode, FAILED)
+        self.assertIn("rk5c.behaviour.json:1:", run.stderr)
+
     def test_a_quiet_node_remains_present(self) -> None:
         """It has no heartbeat and sends nothing by itself: it is asked, also while another client asks it."""
         self.run_node("cpd.eds", "--node-id", 5, "--set", "1017h=0")
