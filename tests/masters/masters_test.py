@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """A master without edsc's code tests the eight reference nodes, which run at the same time on one bus.
 
-    masters_test.py --nodes DIR [--edsc EDSC | --bus ADDRESS] [--node-canopen WORK_DIR] [--short] [--only NAME]
+    masters_test.py {--nodes DIR | --simulated} [--edsc EDSC | --bus ADDRESS] [--node-canopen WORK_DIR] [--short] [--only NAME]
 
+The nodes are programs in DIR, or `edsc node` runs all of them, which has only their EDS files.
 The bus is one of `edsc bus`, or the one at ADDRESS, such as socketcan:vcan0. The master is python-can with walk.py, or
 node-canopen, which npm installs in WORK_DIR. --short omits the long lists of SDO transfers. Prints each failure, and a line
 for each device. Exit code 77: skipped.
@@ -48,6 +49,7 @@ class Plant:
         self.nodes: dict[str, subprocess.Popen[str]] = {}
         self.names = [name for name in NODES if arguments.only in (None, name)]
         self.directory = arguments.nodes
+        self.edsc = arguments.edsc
         self.address = arguments.bus or self.serve(arguments.edsc)
 
     def __enter__(self) -> Plant:
@@ -65,11 +67,17 @@ class Plant:
         return bus.stdout.readline().strip()
 
     def power_on(self) -> None:
+        if self.directory is None:
+            nodes = [word for name in self.names for word in ("--node", f"{NODES[name]}={data_sheet_of(name)}")]
+            self.switch_on("edsc node", [self.edsc, "node", self.address, *nodes, "--quiet"])
+            return
         for name in self.names:
-            node = subprocess.Popen([self.directory / name, self.address, "--node-id", str(NODES[name])],
-                                    stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, preexec_fn=end_with_parent)
-            self.programs.append(node)
-            self.nodes[name] = node
+            self.switch_on(name, [self.directory / name, self.address, "--node-id", str(NODES[name])])
+
+    def switch_on(self, name: str, words: list[object]) -> None:
+        node = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, preexec_fn=end_with_parent)
+        self.programs.append(node)
+        self.nodes[name] = node
 
     def power_off(self) -> int:
         """Returns the number of nodes that ended with an error."""
@@ -131,7 +139,9 @@ def with_node_canopen(plant: Plant, work: Path) -> int:
 
 def main() -> int:
     parser = argparse.ArgumentParser()
-    parser.add_argument("--nodes", type=Path, required=True)
+    nodes = parser.add_mutually_exclusive_group(required=True)
+    nodes.add_argument("--nodes", type=Path)
+    nodes.add_argument("--simulated", action="store_true")
     parser.add_argument("--edsc", type=Path)
     parser.add_argument("--bus")
     parser.add_argument("--node-canopen", type=Path)
