@@ -37,6 +37,8 @@ ROWS = (
          (r"failed, (\d+) by exception", "with an exception in `tests/masters/exceptions.tsv`"))),
     Row("canopen of npm", "tests/masters/node_canopen/package-lock.json canopen", "its master with the eight reference devices",
         "masters_node_canopen", ((r": (\d+) checks ok", "checks passed"), (r"checks ok, (\d+) failed", "failed"))),
+    Row("canopen of npm", "tests/masters/node_canopen/package-lock.json canopen", "its master with the eight devices as nodes of `edsc node`",
+        "masters_node_canopen_simulated", ((r": (\d+) checks ok", "checks passed"), (r"checks ok, (\d+) failed", "failed"))),
     Row("canopen of npm", "tests/masters/node_canopen/package-lock.json canopen",
         "edsc's master boots its slave, and nine slaves in Python with behaviours of real plants", "foreign_slaves",
         ((r"(?m)^(?:\d+: )?ok (?= )()", "behaviours as expected"),)),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """edsc watch on logs of the plants of examples/networks: silent in normal operation, and an alarm for each planted fault.
 
-    watch_test.py SOURCE_DIR EDSC LOG_PROGRAMS [--seconds N] [unittest arguments]
+    watch_test.py SOURCE_DIR EDSC LOG_PROGRAMS [--seconds N] [--twelve-axes-seconds N] [unittest arguments]
 
 LOG_PROGRAMS is the folder of the programs that simulate the plants. The runtime's master and nodes write the logs; the expected
 alarms are those of the table below, by the meaning of the planted frames in CiA 301 and in the network file.
@@ -9,6 +9,7 @@ alarms are those of the table below, by the meaning of the planted frames in CiA
 
 from __future__ import annotations
 
+import argparse
 import json
 import re
 import subprocess
@@ -21,9 +22,14 @@ from typing import NamedTuple
 
 import jsonschema
 
-SOURCE_DIR, EDSC, PROGRAMS = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve(), Path(sys.argv[3]).resolve()
+SOURCE_DIR, EDSC, PROGRAMS = (Path(argument).resolve() for argument in sys.argv[1:4])
 # Ten hours; the twelve axes send 2,800 frames in a second, and get a twentieth of the time.
-SECONDS = int(sys.argv[sys.argv.index("--seconds") + 1]) if "--seconds" in sys.argv else 36_000
+parser = argparse.ArgumentParser()
+parser.add_argument("--seconds", type=int, default=36_000)
+parser.add_argument("--twelve-axes-seconds", type=int)
+options, OTHER_ARGUMENTS = parser.parse_known_args(sys.argv[4:])
+SECONDS = options.seconds
+TWELVE_AXES_SECONDS = options.twelve_axes_seconds or SECONDS // 20
 LINE = re.compile(r"\((\d+)\.(\d+)\) can0 ([0-9A-F]+)#([0-9A-FR]*)")
 SCHEMA = json.loads((SOURCE_DIR / "docs/schema/watch.schema.json").read_text())
 SECOND = 1_000_000
@@ -195,7 +201,7 @@ class Watch(unittest.TestCase):
 
     def test_is_silent_in_normal_operation(self) -> None:
         """The programs also have EMCY messages, reads of a tool, aborted transfers, and PDOs that the recorder has lost."""
-        for plant, seconds in (("four_modules", SECONDS), ("eight_devices", SECONDS), ("twelve_axes", SECONDS // 20)):
+        for plant, seconds in (("four_modules", SECONDS), ("eight_devices", SECONDS), ("twelve_axes", TWELVE_AXES_SECONDS)):
             with self.subTest(plant):
                 program = subprocess.Popen([PROGRAMS / f"{plant}_log", str(seconds)], stdout=subprocess.PIPE)
                 result = subprocess.run([EDSC, "watch", "-", "--network", plant_file(plant)], stdin=program.stdout,
@@ -270,8 +276,4 @@ class Watch(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    arguments = sys.argv[4:]
-    if "--seconds" in arguments:
-        at = arguments.index("--seconds")
-        del arguments[at:at + 2]
-    unittest.main(argv=[sys.argv[0], *arguments])
+    unittest.main(argv=[sys.argv[0], *OTHER_ARGUMENTS])
