@@ -156,7 +156,7 @@ class NetworkSimulation final : private StationLog {
       if (row != nullptr) planned.push_back(row);
     }
     for (const auto& [priority, row] : statistics_.sorted()) {
-      const auto is_same = [&row = row](const FrameRow* one) { return one->frame == row.frame; };
+      const auto is_same = [&frame = row.frame](const FrameRow* one) { return one->frame == frame; };
       if (row.count == 0 || std::ranges::any_of(planned, is_same)) continue;
       std::printf("frame %" PRIu32 " %d %d %d ", row.frame.id, int{row.frame.extended}, int{row.frame.remote},
                   node_of(row.sender));
