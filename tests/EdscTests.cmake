@@ -26,18 +26,17 @@ function(edsc_add_test_run name)
 endfunction()
 
 # edsc_precompile_test_headers(NAME FLAG...): the headers of most GoogleTest programs, which take a quarter of the time of a
-# test, are compiled once for all programs with the same flags. A folder adds others by EDSC_MORE_TEST_HEADERS.
+# test, are compiled once for all programs with the same flags.
 function(edsc_precompile_test_headers name)
-  string(MAKE_C_IDENTIFIER "edsc_test_headers${ARGN}${EDSC_MORE_TEST_HEADERS}" headers)
+  string(MAKE_C_IDENTIFIER "edsc_test_headers${ARGN}" headers)
   if(NOT TARGET ${headers})
     set(empty ${CMAKE_BINARY_DIR}/${headers}.cpp)
     file(WRITE ${empty} "")
     add_library(${headers} OBJECT ${empty})
     target_compile_features(${headers} PRIVATE cxx_std_20)
     target_compile_options(${headers} PRIVATE ${ARGN})
-    target_link_libraries(${headers} PRIVATE GTest::gtest edsc::runtime)
-    target_precompile_headers(${headers} PRIVATE <gtest/gtest.h> <chrono> <deque> <optional> <string> <vector>
-                                                 ${EDSC_MORE_TEST_HEADERS})
+    target_link_libraries(${headers} PRIVATE GTest::gtest)
+    target_precompile_headers(${headers} PRIVATE <gtest/gtest.h> <chrono> <deque> <optional> <string> <vector>)
   endif()
   target_precompile_headers(${name} REUSE_FROM ${headers})
 endfunction()
