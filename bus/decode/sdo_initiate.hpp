@@ -15,7 +15,7 @@ struct SdoInitiate {
 };
 
 /// Returns what the request of a client initiates; nothing for the other frames of a transfer. A segment of a block
-/// download may look like an initiate request: only its transfer can tell.
+/// download can have the bytes of an initiate request: only the state of the transfer distinguishes them.
 [[nodiscard]] constexpr std::optional<SdoInitiate> sdo_initiate(const canopen::Frame& request) {
   namespace sdo = canopen::sdo;
   if (request.size < 8) return std::nullopt;

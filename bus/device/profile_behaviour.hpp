@@ -31,6 +31,7 @@ class ProfileBehaviour {
   [[nodiscard]] virtual std::optional<canopen::TimePoint> next_deadline() const = 0;
 };
 
+/// Whether `make_profile_behaviour` has one for this device profile.
 [[nodiscard]] bool has_profile_behaviour(std::uint16_t profile);
 
 /// Makes the behaviour of a device profile, the low word of 1000h; null if there is none. The target must outlive it.

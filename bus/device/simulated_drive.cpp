@@ -20,7 +20,7 @@ namespace edsc {
 namespace {
 
 /// The device of the profile: it has each object; NodeOfDrive has the default value of one that is missing. Each SYNC
-/// begins a period of interpolation, since 1006h is not compared with 60C2h; touch probes are left out.
+/// begins a period of interpolation, since 1006h is not compared with 60C2h. The device has no touch probes.
 struct DriveDictionary {
   std::array<canopen::AcceptedRange, 0> accepted{};
 
@@ -52,8 +52,6 @@ class NodeOfDrive {
     return integer_of<typename Object::type>(target_, Object::index, Object::sub_index).value_or(otherwise);
   }
 
-  /// Of a drive without 6060h.
-  std::int8_t mode = canopen::cia402::mode::cyclic_synchronous_position;
   template <class Object>
   [[nodiscard]] canopen::AbortCode set(typename Object::type value) const {
     set_integer(target_, Object::index, Object::sub_index, value);
@@ -65,6 +63,9 @@ class NodeOfDrive {
   }
   void emergency_over(canopen::ErrorRegister bits) const { target_.emergency_over(bits); }
   void hold_error(canopen::ErrorRegister bits) const { target_.hold_error(bits); }
+
+  /// Of a drive without 6060h.
+  std::int8_t mode = canopen::cia402::mode::cyclic_synchronous_position;
 
  private:
   BehaviourTarget& target_;

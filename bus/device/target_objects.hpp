@@ -1,7 +1,6 @@
 /// The objects of a node as numbers, whose sizes and presence its EDS decides.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <type_traits>
@@ -17,12 +16,12 @@ template <class Type>
 [[nodiscard]] std::optional<Type> integer_of(BehaviourTarget& target, std::uint16_t index, std::uint8_t sub_index) {
   const std::optional<std::vector<std::uint8_t>> bytes = target.get(index, sub_index);
   if (!bytes || bytes->empty() || bytes->size() > sizeof(std::uint64_t)) return std::nullopt;
-  std::uint64_t bits = number_of(*bytes);
+  const std::uint64_t bits = number_of(*bytes);
   if constexpr (std::is_signed_v<Type>) {
-    const unsigned unused = 64 - 8 * static_cast<unsigned>(bytes->size());
-    return static_cast<Type>(static_cast<std::int64_t>(bits << unused) >> unused);
+    return static_cast<Type>(sign_extended(bits, 8 * static_cast<unsigned>(bytes->size())));
+  } else {
+    return static_cast<Type>(bits);
   }
-  return static_cast<Type>(bits);
 }
 
 /// Sets an integer, if the device has it and its value differs: a new value can cause a TPDO.
@@ -30,12 +29,7 @@ template <class Type>
 void set_integer(BehaviourTarget& target, std::uint16_t index, std::uint8_t sub_index, Type value) {
   const std::optional<std::vector<std::uint8_t>> present = target.get(index, sub_index);
   if (!present || present->empty() || present->size() > sizeof(std::uint64_t)) return;
-  std::vector<std::uint8_t> bytes(present->size());
-  std::uint64_t bits = static_cast<std::uint64_t>(static_cast<std::int64_t>(value));
-  for (std::uint8_t& byte : bytes) {
-    byte = static_cast<std::uint8_t>(bits);
-    bits >>= 8;
-  }
+  const auto bytes = bytes_of(static_cast<std::uint64_t>(static_cast<std::int64_t>(value)), present->size());
   if (bytes != *present) static_cast<void>(target.set(index, sub_index, bytes));
 }
 

@@ -17,9 +17,12 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+from support.debian import is_debian  # noqa: E402
+
 SOURCE_DIR, BUILD_DIR = (Path(argument).resolve() for argument in sys.argv[1:3])
 PAGE = SOURCE_DIR / "docs/interoperability.md"
-DEBIAN = "12"  # whose versions the page has
+DEBIAN = 12  # whose versions the page has
 
 
 @dataclass(frozen=True)
@@ -125,7 +128,7 @@ def compare() -> int:
     cells = cells_of_page()
     if [(one[0], one[2], one[3]) for one in cells] != [(row.program, row.tried, f"`{row.test}`") for row in ROWS]:
         problems.append("docs/interoperability.md has other rows: interoperability.py --write")
-    is_of_the_page = Path("/etc/debian_version").read_text(encoding="utf-8").startswith(DEBIAN + ".")
+    is_of_the_page = is_debian(DEBIAN)
     if not is_of_the_page:
         print(f"versions are not compared: those of the page are of Debian {DEBIAN}")
     for row, one in zip(ROWS, cells):

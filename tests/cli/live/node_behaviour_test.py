@@ -201,8 +201,8 @@ class Commands(Behaviour):
             time.sleep(0.02)
         self.assertEqual(found, bits, f"{index:04X}h")
 
-    def begin_drive(self) -> None:
-        self.process, _ = self.node(SOURCE_DIR / "tests/fixtures/cia402_drive.eds", "--node-id", NODE, "--device-profile")
+    def begin_drive(self, name: str = "cia402_drive") -> None:
+        self.process, _ = self.node(SOURCE_DIR / f"tests/fixtures/{name}.eds", "--node-id", NODE, "--device-profile")
         self.expect_frame(BOOT_UP, b"\0")
         self.sdo = SdoClient(self.wire, NODE, PATIENCE)
 
@@ -223,6 +223,54 @@ class Commands(Behaviour):
         self.expect_masked(STATUSWORD, 0x0400, 0x0400)  # target reached
         self.sdo.download(CONTROLWORD, 0, u16(0x02))
         self.expect_masked(STATUSWORD, 0x4F, 0x40)
+
+    def test_a_drive_has_each_mode_of_the_standard(self) -> None:
+        """CiA 402-2: what a target means, by its actual value. Modes are changed in Operation Enabled."""
+        self.begin_drive("every_mode")
+        for index in (0x6081, 0x6083, 0x6084):
+            self.sdo.download(index, 0, i32(1_000_000))
+        self.walk_to_operation()
+
+        def mode(number: int) -> None:
+            self.sdo.download(CONTROLWORD, 0, u16(0x0F))
+            for index, size in ((0x6042, 2), (0x60FF, 4), (0x6071, 2)):
+                self.sdo.download(index, 0, bytes(size))
+            self.sdo.download(0x6060, 0, bytes([number]))
+            self.expect_upload(0x6061, bytes([number]))
+
+        mode(2)  # velocity, with the ramp enabled, unlocked and following 6042h
+        self.sdo.download(0x6046, 2, i32(10_000))
+        self.sdo.download(CONTROLWORD, 0, u16(0x7F))
+        self.sdo.download(0x6042, 0, u16(300))
+        self.expect_upload(0x6044, u16(300))
+        mode(3)  # profile velocity
+        self.sdo.download(0x60FF, 0, i32(-500))
+        self.expect_upload(0x606C, i32(-500))
+        mode(9)  # cyclic synchronous velocity
+        self.sdo.download(0x60FF, 0, i32(700))
+        self.expect_upload(0x606C, i32(700))
+        for number in (4, 10):  # profile torque, cyclic synchronous torque
+            mode(number)
+            self.sdo.download(0x6071, 0, u16(50))
+            self.expect_upload(0x6077, u16(50))
+        mode(6)  # homing, method 37: the present position becomes 607Ch
+        self.sdo.download(0x607C, 0, i32(4_321))
+        self.sdo.download(0x6098, 0, b"\x25")
+        self.sdo.download(CONTROLWORD, 0, u16(0x1F))
+        self.expect_masked(STATUSWORD, 0x3000, 0x1000)  # homing attained, without an error
+        mode(1)  # profile position
+        self.sdo.download(0x607A, 0, i32(5_000))
+        self.sdo.download(CONTROLWORD, 0, u16(0x1F))
+        self.expect_upload(POSITION, i32(5_000))
+        mode(8)  # cyclic synchronous position
+        self.sdo.download(0x607A, 0, i32(5_200))
+        self.expect_upload(POSITION, i32(5_200))
+        mode(7)  # interpolated position, with a buffer that 60C4h:06 enables
+        self.sdo.download(0x60C4, 6, b"\x01")
+        self.sdo.download(CONTROLWORD, 0, u16(0x1F))
+        self.expect_masked(STATUSWORD, 0x1000, 0x1000)
+        self.sdo.download(0x60C1, 1, i32(5_300))
+        self.expect_upload(POSITION, i32(5_300))
 
     def test_a_drive_that_loses_its_master(self) -> None:
         """NMT Stopped is a loss of communication: with 6007h = 1 a fault."""
