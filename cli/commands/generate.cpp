@@ -84,6 +84,7 @@ std::vector<std::string> target_names() {
 /// templates.
 void check_template_names(const std::string& folder, const std::vector<Template>& templates) {
   std::vector<std::string> known;
+  known.reserve(templates.size());
   for (const Template& built_in : templates) known.push_back(std::string{built_in.file_name} + ".mustache");
   for (const fs::directory_entry& file : fs::directory_iterator{to_native(folder)}) {
     const std::string name = from_native(file.path().filename());

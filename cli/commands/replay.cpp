@@ -117,8 +117,8 @@ replay::NodeSet nodes_of(const Settings& settings, const GivenNodes& given,
   }
   nodes = replay::answering_nodes(frames);
   if (settings.target.empty()) {
-    for (std::uint8_t node_id = 1; node_id < nodes.size(); ++node_id) {
-      if (!given.devices.contains(node_id)) nodes.reset(node_id);
+    for (std::size_t node_id = 1; node_id < nodes.size(); ++node_id) {
+      if (!given.devices.contains(static_cast<std::uint8_t>(node_id))) nodes.reset(node_id);
     }
   }
   if (nodes.none()) {

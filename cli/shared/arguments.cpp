@@ -230,9 +230,14 @@ class Reader {
     levels_.push_back({*found});
   }
 
+  static std::vector<std::string> names_of(const std::vector<const CLI::App*>& commands) {
+    std::vector<std::string> names(commands.size());
+    std::ranges::transform(commands, names.begin(), &CLI::App::get_name);
+    return names;
+  }
+
   [[noreturn]] void fail_unknown_command(const std::string& word, const std::vector<const CLI::App*>& commands) const {
-    std::vector<std::string> names;
-    for (const CLI::App* const one : commands) names.push_back(one->get_name());
+    const std::vector<std::string> names = names_of(commands);
     fail(fmt::format("unknown command {}{}{}", quote(word), of_command(), did_you_mean(word, names)));
   }
 
@@ -274,8 +279,7 @@ class Reader {
       assemble();
       return;
     }
-    std::vector<std::string> names;
-    for (const CLI::App* const one : commands) names.push_back(one->get_name());
+    const std::vector<std::string> names = names_of(commands);
     fail(fmt::format("{} needs a command: {}", command_name(), fmt::join(names, ", ")));
   }
 

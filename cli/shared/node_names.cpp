@@ -49,8 +49,8 @@ std::optional<std::uint8_t> parse_node_id(const std::string& text) {
   if (network.empty()) {
     throw_invalid(argument, problem + "; the name of a node requires --network FILE or EDSC_NETWORK");
   }
-  std::vector<std::string> names;
-  for (const NamedNode& node : nodes) names.push_back(node.name);
+  std::vector<std::string> names(nodes.size());
+  std::ranges::transform(nodes, names.begin(), &NamedNode::name);
   throw_invalid(argument, fmt::format("{} and not a node of {}{}", problem, network, did_you_mean(text, names)));
 }
 

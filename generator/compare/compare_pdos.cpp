@@ -33,7 +33,8 @@ struct LayoutEntry : MappingValue {
 std::vector<LayoutEntry> layout_of(const Pdo& pdo) {
   std::vector<LayoutEntry> layout;
   for (const PdoEntry& entry : pdo.entries) {
-    layout.push_back({entry, entry.object != nullptr ? entry.object->type : entry.dummy});
+    const MappingValue& mapping = entry;
+    layout.push_back({mapping, entry.object != nullptr ? entry.object->type : entry.dummy});
   }
   return layout;
 }

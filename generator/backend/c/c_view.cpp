@@ -98,7 +98,7 @@ constexpr std::string_view keywords[] = {
     "long", "register", "restrict", "return",   "short", "signed",   "sizeof",   "static",  "struct", "switch",
     "true", "typedef",  "union",    "unsigned", "void",  "volatile", "while"};
 
-std::string member_name(std::string name) {
+std::string member_name(const std::string& name) {
   return std::ranges::find(keywords, name) != std::end(keywords) ? name + "_" : name;
 }
 

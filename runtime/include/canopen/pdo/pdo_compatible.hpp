@@ -44,9 +44,8 @@ template <class Unit, class Scale, class Offset, class OtherUnit, class OtherSca
 [[nodiscard]] constexpr bool has_same_raw_numbers() {
   if constexpr (std::is_same_v<Unit, OtherUnit>) {
     return std::is_same_v<Scale, OtherScale> && std::is_same_v<Offset, OtherOffset>;
-  } else if constexpr (Unit::row.dimension != OtherUnit::row.dimension) {
-    return false;
-  } else if constexpr (!is_exact_conversion(Unit::row, OtherUnit::row)) {
+  } else if constexpr (Unit::row.dimension != OtherUnit::row.dimension ||
+                       !is_exact_conversion(Unit::row, OtherUnit::row)) {
     return false;
   } else {
     constexpr Fraction scale{Scale::num, Scale::den}, offset{Offset::num, Offset::den};

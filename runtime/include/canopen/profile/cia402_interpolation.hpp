@@ -16,11 +16,11 @@ namespace canopen::cia402 {
 /// Returns the interpolation time period 60C2h, at most 2 s; 1 ms without it.
 template <class DriveParameters, class Node>
 [[nodiscard]] Duration interpolation_period(const Node& node) {
-  const std::int32_t index = DriveParameters::template value<object::InterpolationTimeIndex>(node, -3);
+  const int index{DriveParameters::template value<object::InterpolationTimeIndex>(node, -3)};
   std::uint32_t period = DriveParameters::template value<object::InterpolationTimeUnits>(node, 1);
   constexpr std::uint32_t longest = 2'000'000;
-  for (std::int32_t i = -6; i < index && period < longest; ++i) period *= 10;
-  for (std::int32_t i = index; i < -6; ++i) period /= 10;
+  for (int i = -6; i < index && period < longest; ++i) period *= 10;
+  for (int i = index; i < -6; ++i) period /= 10;
   return Duration{period < longest ? period : longest};
 }
 
