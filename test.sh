@@ -11,7 +11,7 @@ help() {
   sources   each source and public header compiles alone and passes clang-tidy; each gate detects a planted fault
   quick     the gates; the generated code, the short tests of the command line, the conformance test of the reference
             devices; the unit and trace tests (about 3 minutes after a build)
-  test      a release build with all tests but those of the other gears
+  test      a build with -O1 and all tests but those of the other gears
   asan      the GoogleTest programs (unit and trace tests) and a short run of each fuzz target with AddressSanitizer
             and the checks of UBSan that compile fast
   firmware  the images of the reference devices for Cortex-M under QEMU
@@ -19,8 +19,8 @@ help() {
   long      before a release: odr; the packages of the static programs for x86-64 and Arm, what the programs write in an empty
             root folder compared with the release build, and the packages of builds in two folders; edsc.exe under wine with
             all files of the repository; a cold demo; projects that compile edsc; each header of the runtime alone; `edsc node`
-            with each file of the corpus; ten hours of each plant under `edsc watch`; the programs of asan with all checks of
-            UBSan, each fuzz target for a minute
+            with each file of the corpus; ten hours of each plant under `edsc watch`; each wrong program with both compilers;
+            the programs of asan with all checks of UBSan, each fuzz target for a minute
 
 Without a gear: gates, test, asan, firmware. The last two use the program edsc of the release build, and build it there
 if it is missing. They are built while tests of the release build wait; the output is in build/ahead.log. The time of each test is printed at the end of a gear, slowest first.

@@ -9,6 +9,7 @@ against the published table; here, generated devices must not exceed them.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -45,6 +46,11 @@ PLANT = {
 
 
 class Simulation(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.programs = Path(tempfile.mkdtemp(prefix="edsc-simulate-"))
+        cls.addClassCleanup(shutil.rmtree, cls.programs)
+
     def setUp(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="edsc-simulate-"))
         self.addCleanup(shutil.rmtree, self.folder)
@@ -59,8 +65,12 @@ class Simulation(unittest.TestCase):
         return subprocess.run([EDSC, "network", "simulate", path, *arguments], capture_output=True, text=True, timeout=1500,
                               cwd=self.folder, env={**os.environ, "CXX": compiler})
 
+    def program_of(self, path: Path) -> Path:
+        """The folder for the program of this network: those of a class of tests that simulate the same one compile it once."""
+        return self.programs / hashlib.sha256(path.read_bytes()).hexdigest()
+
     def simulate(self, path: Path, *arguments: str, exit_code: int = FINE) -> dict:
-        result = self.run_edsc(path, *arguments, "--format", "json", "-o", str(self.folder / "program"))
+        result = self.run_edsc(path, *arguments, "--format", "json", "-o", str(self.program_of(path)))
         self.assertEqual(result.returncode, exit_code, result.stderr)
         found = json.loads(result.stdout)
         jsonschema.validate(found, SCHEMA)
@@ -224,7 +234,7 @@ class Usage(Simulation):
     def test_the_program_remains_in_the_named_folder(self) -> None:
         path = self.write(PLANT)
         self.simulate(path, "--for", "1s")
-        program = self.folder / "program/simulate"
+        program = self.program_of(path) / "simulate"
         lines = subprocess.run([program, "1000000", "1"], capture_output=True, text=True, check=True).stdout.splitlines()
         self.assertEqual(lines[-1], "end")
         self.assertTrue(any(re.match(r"message \d+ 50 ", line) for line in lines), lines)  # every 20 ms for 1 s
