@@ -41,6 +41,35 @@ function(edsc_precompile_test_headers name)
   target_precompile_headers(${name} REUSE_FROM ${headers})
 endfunction()
 
+# edsc_join_sources(VARIABLE NAME): replaces the sources *_test.cpp in a list by joined ones, eight in each.
+function(edsc_join_sources variable name)
+  set(tests ${${variable}})
+  list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
+  list(LENGTH tests count)
+  if(count LESS 3)
+    return()
+  endif()
+  set(sources ${${variable}})
+  list(REMOVE_ITEM sources ${tests})
+  math(EXPR files "(${count} + 7) / 8")
+  math(EXPR size "(${count} + ${files} - 1) / ${files}")
+  set(script ${EDSC_TESTS_DIR}/support/joined_sources.py)
+  foreach(file RANGE 1 ${files})
+    math(EXPR first "(${file} - 1) * ${size}")
+    list(SUBLIST tests ${first} ${size} group)
+    list(TRANSFORM group PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+    set(joined ${CMAKE_CURRENT_BINARY_DIR}/${name}_joined_${file}.cpp)
+    add_custom_command(
+      OUTPUT ${joined}
+      COMMAND ${Python3_EXECUTABLE} ${script} ${joined} ${group}
+      DEPENDS ${script} ${group}
+      COMMENT "Joining tests of ${name}"
+      VERBATIM)
+    list(APPEND sources ${joined})
+  endforeach()
+  set(${variable} ${sources} PARENT_SCOPE)
+endfunction()
+
 # edsc_add_gtest(NAME SOURCES file... [LIBRARIES target...] [LONG] [NO_COVERAGE] [AS_ON_A_DEVICE]): a GoogleTest program. Its
 # includes are relative to tests/.
 # AS_ON_A_DEVICE: no exceptions, no RTTI, no warnings.
@@ -50,6 +79,9 @@ function(edsc_add_gtest name)
   set(long)
   if(arg_LONG)
     set(long LONG)
+  endif()
+  if(EDSC_SANITIZE AND arg_AS_ON_A_DEVICE)
+    edsc_join_sources(arg_SOURCES ${name})
   endif()
   edsc_add_test_program(${name} ${long} ${arg_SOURCES})
   target_include_directories(${name} PRIVATE ${EDSC_TESTS_DIR})
