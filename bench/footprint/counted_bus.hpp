@@ -15,6 +15,8 @@ class CountedBus {
     return true;
   }
   [[nodiscard]] std::uint32_t sent() const { return sent_; }
+  /// Returns the first byte of the last frame, the command of an SDO response.
+  [[nodiscard]] std::uint8_t last_command() const { return static_cast<std::uint8_t>(words_[0]); }
 
  private:
   volatile std::uint32_t id_ = 0;

@@ -1,5 +1,6 @@
 /// The SDO server alone, to measure its size, and with COUNT its instructions.
 #include "../cortex_m/startup.hpp"
+#include "transfers.hpp"
 #ifdef COUNT
 #include "../cortex_m/count.hpp"
 #endif
@@ -13,8 +14,6 @@
 #include <span>
 
 namespace {
-
-using Bytes = std::array<std::uint8_t, 8>;
 
 constinit canopen::ObjectStore<device::Device> store;
 constinit canopen::SdoServer<device::Device> server;
@@ -51,16 +50,16 @@ Mailbox mailbox;
   mailbox.words[1] = words[1];
 }
 
-void exchange(const Bytes& request) {
+std::uint8_t exchange(const Bytes& request) {
   ask(request);
   while (server.has_reply()) {
     transmit(server.reply());
     server.reply_sent(Hooks{}, canopen::TimePoint{});
   }
+  return server.reply()[0];
 }
 
 #ifdef COUNT
-constexpr std::uint32_t domain_bytes = 8192;
 std::uint8_t memory[domain_bytes];
 
 void bind_domain() {
@@ -68,49 +67,6 @@ void bind_domain() {
   store.set<device::od::blob_8k>(domain);
 }
 
-Bytes with_index(std::uint8_t command, std::uint16_t index, std::uint8_t fourth = 0, std::uint8_t fifth = 0) {
-  return {command, static_cast<std::uint8_t>(index), static_cast<std::uint8_t>(index >> 8), 0, fourth, fifth, 0, 0};
-}
-
-void upload_segments() {
-  exchange(with_index(0x40, device::od::blob_8k::index));
-  std::uint8_t command = 0x60;
-  do {
-    exchange({command});
-    command ^= 0x10;
-  } while ((server.reply()[0] & 1) == 0);
-}
-
-void download_segments() {
-  exchange(with_index(0x20, device::od::blob_8k::index));
-  std::uint8_t command = 0x00;
-  for (std::uint32_t sent = 0; sent < domain_bytes; sent += 7) {
-    const std::uint32_t left = domain_bytes - sent;
-    const auto end = static_cast<std::uint8_t>(left <= 7 ? ((7 - left) << 1) | 1 : 0);
-    exchange({static_cast<std::uint8_t>(command | end), 1, 2, 3, 4, 5, 6, 7});
-    command ^= 0x10;
-  }
-}
-
-void upload_blocks() {
-  exchange(with_index(0xA4, device::od::blob_8k::index, 127));
-  exchange({0xA3});
-  while (server.reply()[0] != 0xC1 + ((7 - domain_bytes % 7) % 7 << 2))
-    exchange({0xA2, static_cast<std::uint8_t>(server.reply()[0] & 0x7F), 127});
-  exchange({0xA1});
-}
-
-void download_blocks() {
-  exchange(with_index(0xC4, device::od::blob_8k::index));
-  std::uint8_t sequence = 0;
-  for (std::uint32_t sent = 0; sent < domain_bytes; sent += 7) {
-    ++sequence;
-    const auto end = static_cast<std::uint8_t>(domain_bytes - sent <= 7 ? 0x80 : 0);
-    exchange({static_cast<std::uint8_t>(sequence | end), 1, 2, 3, 4, 5, 6, 7});
-    if (sequence == 127) sequence = 0;
-  }
-  exchange({static_cast<std::uint8_t>(0xC1 | ((7 - domain_bytes % 7) % 7 << 2)), 0, 0});
-}
 #endif
 
 }  // namespace
@@ -123,12 +79,12 @@ void program() {
   bind_domain();
   print_mean("expedited-upload", [](std::uint32_t) { exchange({0x40, 0x17, 0x10, 0, 0, 0, 0, 0}); });
   print_mean("expedited-download", [](std::uint32_t) { exchange({0x2B, 0x17, 0x10, 0, 0xE8, 3, 0, 0}); });
-  print("segmented-upload-per-byte", count(upload_segments), domain_bytes);
-  print("segmented-download-per-byte", count(download_segments), domain_bytes);
+  print("segmented-upload-per-byte", count([] { upload_segments(exchange); }), domain_bytes);
+  print("segmented-download-per-byte", count([] { download_segments(exchange); }), domain_bytes);
   if constexpr (device::Device::options.sdo_block_transfer) {
-    print("block-upload-per-byte", count(upload_blocks), domain_bytes);
+    print("block-upload-per-byte", count([] { upload_blocks(exchange); }), domain_bytes);
     bind_domain();
-    print("block-download-per-byte", count(download_blocks), domain_bytes);
+    print("block-download-per-byte", count([] { download_blocks(exchange); }), domain_bytes);
   }
   end_program();
 #else

@@ -39,6 +39,7 @@ void program() {
   node.on_time(start);
   print_sending("on-time", 0, [](std::uint32_t) { node.on_time(later); });
   print_sending("rpdo", 0, [](std::uint32_t) { receive(0x305, 8, 1, 2); });
+  print_sending("foreign", 0, [](std::uint32_t) { receive(0x1A3, 8, 1, 2); });                   // a TPDO of node 35
   print_sending("upload", 1, [](std::uint32_t) { receive(0x605, 8, 0x0060'8440); });             // 6084h
   print_sending("download", 1, [](std::uint32_t i) { receive(0x605, 8, 0x0060'8423, i + 1); });  // with a new value
   print_sending("sync-cycle", 4, [](std::uint32_t i) {

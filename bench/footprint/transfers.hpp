@@ -1,0 +1,61 @@
+/// SDO transfers of a DOMAIN of 8192 bytes, as a client requests them. `exchange(request)` passes a request to the
+/// server, and returns the command byte of its last response.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <device/device.hpp>
+
+using Bytes = std::array<std::uint8_t, 8>;
+
+constexpr std::uint32_t domain_bytes = 8192;
+constexpr std::uint32_t segment_bytes = 7;
+constexpr std::uint8_t largest_block = 127;
+
+inline Bytes initiate(std::uint8_t command, std::uint8_t segments = 0) {
+  constexpr std::uint16_t index = device::od::blob_8k::index;
+  return {command, index & 0xFF, index >> 8, 0, segments, 0, 0, 0};
+}
+
+template <class Exchange>
+void upload_segments(Exchange exchange) {
+  exchange(initiate(0x40));
+  std::uint8_t command = 0x60;
+  while ((exchange({command}) & 1) == 0) command ^= 0x10;
+}
+
+template <class Exchange>
+void download_segments(Exchange exchange) {
+  exchange(initiate(0x20));
+  std::uint8_t command = 0x00;
+  for (std::uint32_t sent = 0; sent < domain_bytes; sent += segment_bytes) {
+    const std::uint32_t left = domain_bytes - sent;
+    const auto end = static_cast<std::uint8_t>(left <= segment_bytes ? ((segment_bytes - left) << 1) | 1 : 0);
+    exchange({static_cast<std::uint8_t>(command | end), 1, 2, 3, 4, 5, 6, 7});
+    command ^= 0x10;
+  }
+}
+
+constexpr std::uint8_t unused_bytes = (segment_bytes - domain_bytes % segment_bytes) % segment_bytes;
+
+template <class Exchange>
+void upload_blocks(Exchange exchange) {
+  exchange(initiate(0xA4, largest_block));
+  std::uint8_t reply = exchange({0xA3});
+  while (reply != 0xC1 + (unused_bytes << 2))
+    reply = exchange({0xA2, static_cast<std::uint8_t>(reply & 0x7F), largest_block});
+  exchange({0xA1});
+}
+
+template <class Exchange>
+void download_blocks(Exchange exchange) {
+  exchange(initiate(0xC4));
+  std::uint8_t sequence = 0;
+  for (std::uint32_t sent = 0; sent < domain_bytes; sent += segment_bytes) {
+    ++sequence;
+    const auto end = static_cast<std::uint8_t>(domain_bytes - sent <= segment_bytes ? 0x80 : 0);
+    exchange({static_cast<std::uint8_t>(sequence | end), 1, 2, 3, 4, 5, 6, 7});
+    if (sequence == largest_block) sequence = 0;
+  }
+  exchange({static_cast<std::uint8_t>(0xC1 | unused_bytes << 2), 0, 0});
+}
