@@ -504,7 +504,8 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   NmtState state_ = NmtState::initialisation;
   bool attention_ = false;  ///< something may have become due since the last check
   [[no_unique_address]] IdleTimeOf<service::PostedValues<Device, Handlers...>::exists> idle_{};
-  [[no_unique_address]] HandlerCalls<calls_handlers> handler_calls_{};
+  [[no_unique_address]] HandlerCalls<calls_handlers, HandlerTypes::has_write_handlers, HandlerTypes::has_read_handlers>
+      handler_calls_{};
   [[no_unique_address]] Services services_{};
   ObjectStore<Device> store_{};
 };

@@ -54,10 +54,10 @@ class CobId {
   std::uint32_t value_ = invalid_bit;
 };
 
-/// Returns the number in up to four bytes, low byte first.
-[[nodiscard, gnu::noinline]] inline std::uint32_t number_in(std::span<const std::uint8_t> bytes) {
+/// Returns the number in up to four bytes, low byte first. A span would be passed in memory on some processors.
+[[nodiscard, gnu::noinline]] inline std::uint32_t number_at(const std::uint8_t* bytes, std::size_t size) {
   std::uint32_t value = 0;
-  for (std::size_t i = bytes.size(); i-- != 0;) value = value << 8 | bytes[i];
+  for (std::size_t i = size; i-- != 0;) value = value << 8 | bytes[i];
   return value;
 }
 
@@ -66,6 +66,9 @@ class CobId {
 [[nodiscard]] inline CobId written_cob_id(CobId before, std::uint32_t writable, std::span<std::uint8_t> bytes) {
   std::uint32_t after = number_in(bytes);
   if (writable != 0xFFFF'FFFF) {
+[[nodiscard, gnu::always_inline]] inline std::uint32_t number_in(std::span<const std::uint8_t> bytes) {
+  return number_at(bytes.data(), bytes.size());
+}
     after = (after & writable) | (before.value() & ~writable);
     std::memcpy(bytes.data(), &after, sizeof after);
   }

@@ -10,15 +10,16 @@ namespace canopen {
 
 /// Records what a read or write handler does with its node: an NMT command is executed after the response of the SDO
 /// server, and a value that the handler sets itself replaces the received one.
-/// `exist`: whether the node has such handlers; if not, this class is empty.
-template <bool exist>
+/// `exist`: whether the node has handlers that are called for accesses; if not, this class is empty. `write`, `supply`:
+/// whether any is called before an object is written, or supplies objects of TPDOs.
+template <bool exist, bool write, bool supply>
 class HandlerCalls {
  public:
   /// Calls the handlers of an object by `ask`. `written` is the key of the object if it is written, otherwise 0.
   template <class Ask>
   [[nodiscard]] auto ask([[maybe_unused]] std::uint32_t written, Ask&& ask) {
     if constexpr (exist) {
-      state_.has_set = false;
+      if constexpr (write) state_.has_set = false;
       const Call<false> call{state_, written};
       return ask();
     } else {
@@ -28,27 +29,27 @@ class HandlerCalls {
 
   /// Calls the read handlers of an object for a TPDO.
   template <class Ask>
-  void ask_for_tpdo(std::uint32_t key, Ask&& ask) requires(exist) {
+  void ask_for_tpdo(std::uint32_t key, Ask&& ask) requires(supply) {
     const Call<true> call{state_, key};
     ask();
   }
 
   /// Whether an object is set by its own read handler for a TPDO.
   [[nodiscard]] bool is_supplied([[maybe_unused]] std::uint32_t key) const {
-    if constexpr (exist) return state_.for_tpdo && state_.key == key;
+    if constexpr (supply) return state_.for_tpdo && state_.key == key;
     return false;
   }
 
   /// Records that an object is set, possibly by its own write handler.
   void object_is_set([[maybe_unused]] std::uint32_t key) {
-    if constexpr (exist) {
+    if constexpr (write) {
       if (state_.active && state_.key == key) state_.has_set = true;
     }
   }
 
   /// Whether the write handler that has just been called has set the object itself.
   [[nodiscard]] bool set_by_handler() const {
-    if constexpr (exist) return state_.has_set;
+    if constexpr (write) return state_.has_set;
     return false;
   }
 
@@ -70,21 +71,24 @@ class HandlerCalls {
   }
 
  private:
-  struct State {
-    std::uint32_t key;      ///< of the object that is being written, or read for a TPDO
+  struct NoState {};
+  struct Called {
     bool active;            ///< a handler is being called
-    bool for_tpdo;          ///< it is a read handler, for a TPDO
-    bool has_set;           ///< it has set that object itself
     std::uint8_t deferred;  ///< the NMT command that it has requested; 0: none
   };
-  struct NoState {};
+  struct CalledForObject : Called {
+    bool for_tpdo;      ///< it is a read handler, for a TPDO
+    bool has_set;       ///< it has set that object itself
+    std::uint32_t key;  ///< of the object that is being written, or read for a TPDO
+  };
+  using State = std::conditional_t<write || supply, CalledForObject, std::conditional_t<exist, Called, NoState>>;
 
   /// A call of handlers, which also ends if one of them throws an exception, as on a host.
   template <bool for_tpdo>
   class Call {
    public:
-    Call(State& state, std::uint32_t key) : state_{state} {
-      state_.key = key;
+    Call(State& state, [[maybe_unused]] std::uint32_t key) : state_{state} {
+      if constexpr (write || supply) state_.key = key;
       state_.active = true;
       if constexpr (for_tpdo) state_.for_tpdo = true;
     }
@@ -99,7 +103,7 @@ class HandlerCalls {
     State& state_;
   };
 
-  [[no_unique_address]] std::conditional_t<exist, State, NoState> state_{};
+  [[no_unique_address]] State state_{};
 };
 
 }  // namespace canopen

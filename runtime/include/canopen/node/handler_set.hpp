@@ -60,11 +60,14 @@ class HandlerSet {
 
   /// Whether any handler is called after an object has been written, or before it is read.
   static constexpr bool has_written_handlers = ((Handled<Handlers>::AfterWrite::size != 0) || ...) || takes_any_object;
+  /// Whether any handler is called before an object is written.
+  static constexpr bool has_write_handlers = ((Handled<Handlers>::BeforeWrite::size != 0) || ...) || takes_any_object;
   /// Whether any handler supplies objects; one of all objects is called for SDO only.
   static constexpr bool has_read_handlers = ((Handled<Handlers>::Read::size != 0) || ...);
+  /// Whether any handler is called before an SDO server reads an object.
+  static constexpr bool has_upload_handlers = has_read_handlers || takes_any_object;
   /// Whether any handler is called when an object is read or written over the bus.
-  static constexpr bool has_access_handlers =
-      has_written_handlers || has_read_handlers || ((Handled<Handlers>::BeforeWrite::size != 0) || ...);
+  static constexpr bool has_access_handlers = has_written_handlers || has_read_handlers || has_write_handlers;
 
   /// Whether the object with this key has a handler that is called before it is written.
   [[nodiscard]] static constexpr bool handles([[maybe_unused]] std::uint32_t key) {

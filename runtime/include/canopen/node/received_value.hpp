@@ -30,8 +30,11 @@ template <class Host>
       with_sheet<Device>(host.store(), is_in_enumeration)) {
     if (const AbortCode code = host.check_write(index, sub_index, bytes); code != ok) return code;
   }
-  const std::uint32_t key = object_key(index, sub_index);
-  return host.handler_calls().ask(key, [&] { return host.handlers().before_write(host.node(), key, bytes); });
+  if constexpr (Host::Handlers::has_write_handlers) {
+    const std::uint32_t key = object_key(index, sub_index);
+    return host.handler_calls().ask(key, [&] { return host.handlers().before_write(host.node(), key, bytes); });
+  }
+  return ok;
 }
 
 /// Calls the handlers that use an object after it has been written. A command that they request is executed after the

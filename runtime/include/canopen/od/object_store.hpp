@@ -11,6 +11,7 @@
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/bytes.hpp"
+#include "canopen/base/optimization.hpp"
 #include "canopen/can/node_id.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/entry_access.hpp"
@@ -96,7 +97,7 @@ class ObjectStore {
     }
     bind_again(bound);
     if (options_of<Device>(*this).reset_emergency != 0) restore(history);
-    add_node_id(Device::node_id_relative_communication());
+    add_node_id<&Device::node_id_relative_communication>();
   }
 
   /// Sets 2000h..FFFFh to their default values, with the node-ID added where the EDS says so.
@@ -109,7 +110,7 @@ class ObjectStore {
       Device::reset_application(values_);
     }
     bind_again(bound);
-    add_node_id(Device::node_id_relative_application());
+    add_node_id<&Device::node_id_relative_application>();
   }
 
   [[nodiscard]] NodeId node_id() const { return node_id_; }
@@ -229,18 +230,41 @@ class ObjectStore {
            std::ranges::all_of(Device::node_id_relative_application(), is_word);
   }();
 
-  void add_node_id(std::span<const NodeIdRelative> rows) {
-    for (const NodeIdRelative& row : rows) {
-      if constexpr (adds_to_words) {
-        std::uint8_t* const at = std::assume_aligned<4>(ram() + row.offset);
-        std::uint32_t value;
-        std::memcpy(&value, at, sizeof value);
-        value += node_id_.value();
-        std::memcpy(at, &value, sizeof value);
-      } else {
-        add_node_id(ram() + row.offset, row.size);
+  /// Whether a byte holds the position of each of these words, which takes a quarter of the flash of the rows.
+  template <auto Rows>
+  static constexpr bool are_near_words = adds_to_words&& std::ranges::all_of(Rows(), [](const NodeIdRelative& row) {
+    return row.offset / 4 <= 0xFF;
+  });
+
+  /// `Rows` returns the values to which the node-ID is added.
+  template <auto Rows>
+  void add_node_id() {
+    if constexpr (!Rows().empty() && prefers_size && are_near_words<Rows>) {
+      static constexpr auto words = [] {
+        std::array<std::uint8_t, Rows().size()> positions{};
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+          positions[i] = static_cast<std::uint8_t>(Rows()[i].offset / 4);
+        }
+        return positions;
+      }();
+      for (const std::uint8_t word : words) add_node_id_to_word(ram() + 4 * word);
+    } else {
+      for (const NodeIdRelative& row : Rows()) {
+        if constexpr (adds_to_words) {
+          add_node_id_to_word(ram() + row.offset);
+        } else {
+          add_node_id(ram() + row.offset, row.size);
+        }
       }
     }
+  }
+
+  void add_node_id_to_word(std::uint8_t* word) {
+    std::uint8_t* const at = std::assume_aligned<4>(word);
+    std::uint32_t value;
+    std::memcpy(&value, at, sizeof value);
+    value += node_id_.value();
+    std::memcpy(at, &value, sizeof value);
   }
 
   void add_node_id(std::uint8_t* byte, std::size_t size) {

@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "canopen/base/bit_copy.hpp"
+#include "canopen/base/bytes.hpp"
 #include "canopen/can/frame.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object_store.hpp"
@@ -38,6 +39,8 @@ inline void copy_value(std::uint8_t* to, const std::uint8_t* from, unsigned byte
       from += 2;
     }
     if ((bytes & 1) != 0) *to = *from;
+  } else if constexpr (prefers_size) {
+    bytes_detail::copy_by_loop(to, from, bytes);
   } else {
     do *to++ = *from++;
     while (--bytes != 0);

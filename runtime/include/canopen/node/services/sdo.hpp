@@ -17,7 +17,7 @@
 namespace canopen::service {
 
 /// The functions of a node that its servers call.
-template <class Host, class... Handlers>
+template <class Host, class... Parts>
 struct SdoHooks {
   using Device = typename Host::Device;
 
@@ -27,14 +27,17 @@ struct SdoHooks {
   [[nodiscard]] EntryAccess<Device> entries() { return host.entries(); }
   [[nodiscard]] AbortCode before_read(std::uint16_t index, std::uint8_t sub_index) {
     if (const AbortCode code = host.before_read(index, sub_index); code != ok) return code;
-    const std::uint32_t key = object_key(index, sub_index);
-    return host.handler_calls().ask(0, [&] { return host.handlers().before_read(host.node(), key); });
+    if constexpr (Host::Handlers::has_upload_handlers) {
+      const std::uint32_t key = object_key(index, sub_index);
+      return host.handler_calls().ask(0, [&] { return host.handlers().before_read(host.node(), key); });
+    }
+    return ok;
   }
   [[nodiscard]] AbortCode before_write(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
     const AbortCode code = canopen::before_write(host, index, sub_index, bytes);
-    if constexpr (StoredValues<Device, Handlers...>::exists) {
+    if constexpr (StoredValues<Device, Parts...>::exists) {
       if (code == ok && !host.handler_calls().set_by_handler())
-        StoredValues<Device, Handlers...>::before_change(host, index, sub_index, bytes);
+        StoredValues<Device, Parts...>::before_change(host, index, sub_index, bytes);
     }
     return code;
   }
@@ -62,12 +65,12 @@ struct SdoHooks {
   }
 
   /// Whether the request started to store parameters in steps.
-  [[nodiscard]] bool started_command() requires(StoredValues<Device, Handlers...>::is_stepped) {
-    return host.template service<StoredValues<Device, Handlers...>>().take_started();
+  [[nodiscard]] bool started_command() requires(StoredValues<Device, Parts...>::is_stepped) {
+    return host.template service<StoredValues<Device, Parts...>>().take_started();
   }
 
   // DOMAINs that the application streams
-  using Streams = DomainHandlerSet<Handlers...>;
+  using Streams = DomainHandlerSet<Parts...>;
   [[nodiscard]] bool streams_upload(std::uint16_t index, std::uint8_t sub_index) const requires(Streams::any) {
     return Streams::streams_upload(object_key(index, sub_index));
   }
