@@ -1,0 +1,114 @@
+/// Default values in flash that a reset copies to RAM. Most of their bytes are zero: an image for size leaves these
+/// out.
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "canopen/base/bytes.hpp"
+#include "canopen/base/optimization.hpp"
+#include "canopen/od/dictionary.hpp"
+
+namespace canopen {
+
+/// The default values of a part of the values of a device, as bytes: `Preset` is the address of the constant, `Offset`
+/// that of the part in the values. Bytes between the values are zero.
+template <class Device, auto Preset, std::size_t Offset>
+class PresetBytes {
+  using Part = std::remove_cvref_t<decltype(*Preset)>;
+
+  template <class Visit>
+  static constexpr void for_each_value(Visit&& visit) {
+    Device::dictionary.for_each_entry([&](std::uint16_t, std::uint8_t, entry::Word word) {
+      const std::size_t at = entry::offset_of(word) - Offset;
+      if (entry::place_of(word) == entry::Place::ram && at < size) visit(at, word);
+    });
+  }
+
+ public:
+  static constexpr std::size_t size = sizeof(Part);
+
+  /// Whether all values are numbers. Bytes of strings after their ends are indeterminate for a compiler.
+  [[nodiscard]] static constexpr bool are_numbers() {
+    bool all = true;
+    for_each_value([&](std::size_t, entry::Word word) { all = all && entry::wire_bytes(word) != 0; });
+    return all;
+  }
+
+  [[nodiscard]] static constexpr std::array<std::uint8_t, size> bytes() {
+    const auto values = std::bit_cast<std::array<std::uint8_t, size>>(*Preset);
+    std::array<std::uint8_t, size> known{};
+    for_each_value([&](std::size_t at, entry::Word word) {
+      const std::size_t stored = std::bit_ceil(std::size_t{entry::wire_bytes(word)});
+      for (std::size_t i = at; i < at + stored; ++i) known[i] = values[i];
+    });
+    return known;
+  }
+};
+
+namespace preset_detail {
+
+/// Each eight bytes are a byte with a bit for each that is not zero, and these.
+template <class Preset>
+struct Packed {
+  static constexpr std::size_t size = [] {
+    std::size_t count = (Preset::size + 7) / 8;
+    for (const std::uint8_t byte : Preset::bytes()) count += byte != 0 ? 1u : 0u;
+    return count;
+  }();
+
+  static constexpr std::array<std::uint8_t, size> bytes = [] {
+    std::array<std::uint8_t, size> packed{};
+    constexpr auto all = Preset::bytes();
+    std::size_t at = 0;
+    for (std::size_t first = 0; first < all.size(); first += 8) {
+      std::uint8_t& mask = packed[at++];
+      for (std::size_t i = first; i < first + 8 && i < all.size(); ++i) {
+        if (all[i] == 0) continue;
+        mask = static_cast<std::uint8_t>(mask | 1u << (i - first));
+        packed[at++] = all[i];
+      }
+    }
+    return packed;
+  }();
+};
+
+[[gnu::noinline]] inline void unpack(std::uint8_t* to, std::size_t size, const std::uint8_t* packed) {
+  unsigned mask = 1;
+  for (const std::uint8_t* const end = to + size; to != end; ++to) {
+    if (mask == 1) mask = *packed++ | 0x100u;
+    *to = (mask & 1) != 0 ? *packed++ : std::uint8_t{0};
+    mask >>= 1;
+  }
+}
+
+inline constexpr std::size_t unpack_code = 44;          ///< bytes of `unpack` on a Cortex-M0+
+inline constexpr std::size_t most_packed_bytes = 4096;  ///< a compiler takes longer for more
+
+template <class Preset>
+[[nodiscard]] constexpr bool is_shorter_packed() {
+  if constexpr (Preset::size <= most_packed_bytes && Preset::are_numbers()) {
+    return Packed<Preset>::size + unpack_code < Preset::size;
+  } else {
+    return false;
+  }
+}
+
+}  // namespace preset_detail
+
+/// Sets a part of the values of a device to its default values.
+template <class Device, auto Preset, std::size_t Offset>
+void set_preset(std::remove_cvref_t<decltype(*Preset)>& values) {
+  using Bytes = PresetBytes<Device, Preset, Offset>;
+  if constexpr (prefers_size && preset_detail::is_shorter_packed<Bytes>()) {
+    preset_detail::unpack(reinterpret_cast<std::uint8_t*>(&values), sizeof values,
+                          preset_detail::Packed<Bytes>::bytes.data());
+  } else {
+    copy_bytes(&values, Preset, sizeof values);
+  }
+}
+
+}  // namespace canopen
