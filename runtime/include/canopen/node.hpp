@@ -138,7 +138,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// Processes elapsed time. Call it at `next_deadline()`, when the bus has room again, and at least every half hour.
   void on_time(TimePoint now) {
     now_ = now;
-    if (!attention_ && idle_.lasts(now)) return;
+    if (!attention_ && !needs_each_call() && idle_.lasts(now)) return;
     const bool was_idle = idle_.has_begun();
     services_.on_time_without_node_id(host());
     if (state_ == NmtState::initialisation) return serve_without_node_id();
@@ -485,6 +485,12 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// What the bus had no room for remains due.
   [[gnu::noinline]] void keep_attention() {
     attention_ = true;
+  /// Whether a service of an image for size needs more than a check in each slot of time (node/idle_time.hpp).
+  [[nodiscard]] bool needs_each_call() const {
+    if constexpr (prefers_size) return services_.needs_each_call();
+    return false;
+  }
+
     services_.keep_deadlines(host());
   }
 

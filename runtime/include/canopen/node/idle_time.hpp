@@ -45,7 +45,27 @@ class IdleTime {
   State state_ = State::unknown;
 };
 
-/// The same for an image for size, which does not need the deadlines of all services: `on_time` always checks them.
+/// The same for an image for size, which does not need the deadlines of all services: they are checked once in each
+/// slot of 128 microseconds. Times of CANopen objects are multiples of 100 microseconds, except those of SYNC.
+class TimeSlots {
+ public:
+  static void end() {}
+  /// Whether this slot has been checked.
+  [[nodiscard]] bool lasts(TimePoint now) {
+    const auto slot = static_cast<std::uint16_t>(now.since_start().count() >> 7);
+    if (slot == checked_) return true;
+    checked_ = slot;
+    return false;
+  }
+  [[nodiscard]] static constexpr bool has_begun() { return false; }
+  static void begin() {}
+  static void begin(TimePoint, std::optional<TimePoint>) {}
+
+ private:
+  std::uint16_t checked_ = 0;
+};
+
+/// The same for a node that must check at each call.
 class NoIdleTime {
  public:
   static void end() {}
@@ -59,6 +79,7 @@ class NoIdleTime {
 
 /// A value can be posted to a mailbox at any time: a node with mailboxes asks its services at each call.
 template <bool has_mailboxes>
-using IdleTimeOf = std::conditional_t<prefers_size || has_mailboxes, node_detail::NoIdleTime, node_detail::IdleTime>;
+using IdleTimeOf = std::conditional_t<has_mailboxes, node_detail::NoIdleTime,
+                                      std::conditional_t<prefers_size, node_detail::TimeSlots, node_detail::IdleTime>>;
 
 }  // namespace canopen

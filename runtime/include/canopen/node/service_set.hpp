@@ -93,6 +93,9 @@ struct ServiceDefaults {
 
   /// Returns the errors that are present.
   static constexpr ServiceErrors errors() { return {}; }
+  /// Whether `on_time` and `serve` must be called each time: what is due then may not wait for a tenth of a
+  /// millisecond.
+  static constexpr bool needs_each_call() { return false; }
 
   // Objects
 
@@ -248,6 +251,7 @@ class ServiceSet : private service_detail::Present<Services>... {
     return check_first<Services...>(host, index, sub_index, bytes);
   }
   template <class Host>
+  [[nodiscard]] bool needs_each_call() const { return (present<Services>().needs_each_call() || ...); }
   void after_write(Host& host, std::uint16_t index, std::uint8_t sub_index) {
     (present<Services>().after_write(host, index, sub_index), ...);
   }

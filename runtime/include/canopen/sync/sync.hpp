@@ -106,6 +106,7 @@ class SyncProducer {
   }
 
   void stop() { running_ = false; }
+  [[nodiscard]] bool runs() const { return running_; }
 
   /// Sends a SYNC that is due; a producer consumes its own. Returns false if none is due or the bus had no room.
   template <Bus BusType>

@@ -69,6 +69,14 @@ class Sync : public ServiceDefaults<Sync<Device>> {
   [[nodiscard]] bool window_over(TimePoint now) const { return window_.over(now); }
 
   static constexpr bool checks(std::uint16_t index, std::uint8_t) {
+  /// The period 1006h and the window 1007h are in microseconds.
+  [[nodiscard]] bool needs_each_call() const {
+    if constexpr (Producer::exists) {
+      if (producer_.runs()) return true;
+    }
+    return SyncWindow<Device>::exists;
+  }
+
     return index == 0x1005 || index == 0x1006 || (Consumer::has_overflow && index == 0x1019);
   }
   template <class Host>
