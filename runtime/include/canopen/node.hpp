@@ -131,7 +131,10 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
     services_.on_frame_without_node_id(host(), frame);
     if (state_ == NmtState::initialisation) return serve_without_node_id();
     if (attention_) serve();
-    if (frame.remote || !services_.on_frequent_frame(host(), frame, cob_id_of(frame))) on_other_frame(frame);
+    const std::uint32_t cob_id = cob_id_of(frame);
+    const bool taken =
+        !frame.remote && (services_.on_frequent_frame(host(), frame, cob_id) || !services_.may_take(host(), cob_id));
+    if (!taken) on_other_frame(frame);
     if (attention_) serve();
   }
 

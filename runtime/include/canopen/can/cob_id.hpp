@@ -31,6 +31,12 @@ inline constexpr std::uint16_t sdo_request = 0x600;   ///< client to server
 inline constexpr std::uint16_t error_control = 0x700;
 }  // namespace function_code
 
+/// Whether the pre-defined connection set assigns an 11-bit CAN-ID to a PDO.
+[[nodiscard]] constexpr bool is_pdo_can_id(std::uint32_t can_id) {
+  constexpr std::uint32_t first = function_code::tpdo1 + 1;
+  return can_id - first < function_code::sdo_response - first;
+}
+
 /// A COB-ID as in the communication parameters: a CAN-ID and three flags (CiA 301, 7.5.2.x).
 class CobId {
  public:

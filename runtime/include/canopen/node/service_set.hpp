@@ -56,6 +56,13 @@ struct ServiceDefaults {
   static bool on_frequent_frame(Host&, const Frame&, [[maybe_unused]] std::uint32_t cob_id) {
     return false;
   }
+  /// Whether `on_frame` takes a frame with this CAN-ID, which is one that the pre-defined connection set assigns to
+  /// PDOs and is none of `on_frequent_frame`. A frame that no service takes is ignored at once: most frames of a bus
+  /// are for other nodes.
+  template <class Host>
+  static constexpr bool may_take(const Host&, [[maybe_unused]] std::uint32_t cob_id) {
+    return false;
+  }
   /// Not called for a remote frame.
   template <class Host>
   static bool on_frame(Host&, const Frame&, [[maybe_unused]] std::uint32_t cob_id) {
@@ -185,6 +192,11 @@ class ServiceSet : private service_detail::Present<Services>... {
   template <class Host>
   [[nodiscard]] bool on_frequent_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
     return (present<Services>().on_frequent_frame(host, frame, cob_id) || ...);
+  }
+  /// Whether the CAN-ID of a frame that is not a frequent one may be that of any service.
+  template <class Host>
+  [[nodiscard]] bool may_take(const Host& host, std::uint32_t cob_id) const {
+    return !is_pdo_can_id(cob_id) || (present<Services>().may_take(host, cob_id) || ...);
   }
   /// Passes each frame to the services that work without node-ID; others may process it as well.
   template <class Host>

@@ -18,6 +18,10 @@ class EmergencyConsumer : public ServiceDefaults<EmergencyConsumer<Device>> {
   static constexpr bool exists = Consumer::exists;
 
   template <class Host>
+  static constexpr bool may_take(const Host&, std::uint32_t) {
+    return true;
+  }
+  template <class Host>
   static bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
     const std::optional<ConsumedEmergency> emergency = Consumer::take(host.entries(), frame);
     if (!emergency) return false;

@@ -29,6 +29,10 @@ class Mpdos : public ServiceDefaults<Mpdos<Device>> {
   }
 
   template <class Host>
+  static constexpr bool may_take(const Host&, std::uint32_t) {
+    return true;
+  }
+  template <class Host>
   bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
     if (serves_pdo(host.state())) mpdos_.on_frame(host.entries(), frame, host.node_id(), RpdoHooks<Host>{host});
     return false;

@@ -102,10 +102,12 @@ class Rpdos : public ServiceDefaults<Rpdos<Device>> {
   template <class Host>
   bool on_frequent_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
     if constexpr (MpdoService<Device>::exists) return false;
-    constexpr std::uint32_t first = function_code::tpdo1 + 1;
-    constexpr std::uint32_t can_ids = function_code::sdo_response - first;
-    if (cob_id - first >= can_ids || !serves_pdo(host.state())) return false;
+    if (!is_pdo_can_id(cob_id) || !serves_pdo(host.state())) return false;
     return rpdos_.on_frame(frame, cob_id, RpdoHooks<Host>{host});
+  }
+  template <class Host>
+  static constexpr bool may_take(const Host&, std::uint32_t) {
+    return MpdoService<Device>::exists;
   }
   /// An MPDO can have the same COB-ID.
   template <class Host>

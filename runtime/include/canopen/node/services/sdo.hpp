@@ -110,6 +110,10 @@ class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
   bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
     if (!serves_sdo(host.state()) || !servers_.on_frame(host.store(), frame, Hooks<Host>{host}, host.now()))
       return false;
+  template <class Host>
+  static constexpr bool may_take(const Host&, std::uint32_t) {
+    return SdoServers<Device>::count > 1;
+  }
     host.attend();
     return true;
   }

@@ -32,6 +32,10 @@ class Sync : public ServiceDefaults<Sync<Device>> {
   }
 
   template <class Host>
+  static bool may_take(const Host& host, std::uint32_t cob_id) {
+    return Consumer::takes(host.store(), cob_id);
+  }
+  template <class Host>
   bool on_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
     if (!Consumer::takes(host.store(), cob_id)) return false;
     receive(host, Consumer::sync_of(host.store(), frame));

@@ -20,6 +20,10 @@ class Time : public ServiceDefaults<Time<Device>> {
   static constexpr bool exists = TimeStamp<Device>::exists;
 
   template <class Host>
+  static constexpr bool may_take(const Host&, std::uint32_t) {
+    return true;
+  }
+  template <class Host>
   static bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
     const std::optional<TimeOfDay> time = TimeStamp<Device>::take(host.store(), frame);
     if (!time) return false;
