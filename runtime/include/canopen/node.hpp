@@ -453,10 +453,10 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
 
   /// Notifies the services that an object has been written, with a new or the same value.
   void after_write(std::uint16_t index, std::uint8_t sub_index, bool new_value) {
-    attention_ = true;
+    const bool concerns_services = new_value || may_concern_services(index);
+    if (new_value || is_communication_index(index)) attention_ = true;
     if (may_concern_services(index)) services_.after_write(host(), index, sub_index);
-    if (serves_pdo(state_) && (new_value || may_concern_services(index)))
-      services_.after_operational_write(host(), index, sub_index, new_value);
+    if (serves_pdo(state_) && concerns_services) services_.after_operational_write(host(), index, sub_index, new_value);
   }
   template <DictionaryObject Object>
   void on_new_value() {
@@ -485,15 +485,15 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
     return false;
   }
 
-  /// What the bus had no room for remains due.
-  [[gnu::noinline]] void keep_attention() {
-    attention_ = true;
   /// Whether a service of an image for size needs more than a check in each slot of time (node/idle_time.hpp).
   [[nodiscard]] bool needs_each_call() const {
     if constexpr (prefers_size) return services_.needs_each_call();
     return false;
   }
 
+  /// What the bus had no room for remains due.
+  [[gnu::noinline]] void keep_attention() {
+    attention_ = true;
     services_.keep_deadlines(host());
   }
 

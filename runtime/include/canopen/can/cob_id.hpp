@@ -66,15 +66,15 @@ class CobId {
   for (std::size_t i = size; i-- != 0;) value = value << 8 | bytes[i];
   return value;
 }
+[[nodiscard, gnu::always_inline]] inline std::uint32_t number_in(std::span<const std::uint8_t> bytes) {
+  return number_at(bytes.data(), bytes.size());
+}
 
 /// Returns the COB-ID that results from writing these four bytes if the bits outside of `writable` keep their value.
 /// `bytes` is changed accordingly.
 [[nodiscard]] inline CobId written_cob_id(CobId before, std::uint32_t writable, std::span<std::uint8_t> bytes) {
   std::uint32_t after = number_in(bytes);
   if (writable != 0xFFFF'FFFF) {
-[[nodiscard, gnu::always_inline]] inline std::uint32_t number_in(std::span<const std::uint8_t> bytes) {
-  return number_at(bytes.data(), bytes.size());
-}
     after = (after & writable) | (before.value() & ~writable);
     std::memcpy(bytes.data(), &after, sizeof after);
   }

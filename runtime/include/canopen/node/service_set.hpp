@@ -93,6 +93,9 @@ struct ServiceDefaults {
   /// Keeps the deadlines that `serve` leaves as they are while the bus has no room.
   template <class Host>
   static void keep_deadlines(Host&) {}
+  /// Whether `on_time` and `serve` must be called each time: what is due then may not wait for a tenth of a
+  /// millisecond.
+  static constexpr bool needs_each_call() { return false; }
   /// Whether the node may not send anything now.
   static constexpr bool silent() { return false; }
 
@@ -100,9 +103,6 @@ struct ServiceDefaults {
 
   /// Returns the errors that are present.
   static constexpr ServiceErrors errors() { return {}; }
-  /// Whether `on_time` and `serve` must be called each time: what is due then may not wait for a tenth of a
-  /// millisecond.
-  static constexpr bool needs_each_call() { return false; }
 
   // Objects
 
@@ -251,6 +251,7 @@ class ServiceSet : private service_detail::Present<Services>... {
     (consider<Services>(next, host, all), ...);
     return next;
   }
+  [[nodiscard]] bool needs_each_call() const { return (present<Services>().needs_each_call() || ...); }
   [[nodiscard]] bool silent() const { return (present<Services>().silent() || ...); }
 
   [[nodiscard]] ServiceErrors errors() const {
@@ -263,7 +264,6 @@ class ServiceSet : private service_detail::Present<Services>... {
     return check_first<Services...>(host, index, sub_index, bytes);
   }
   template <class Host>
-  [[nodiscard]] bool needs_each_call() const { return (present<Services>().needs_each_call() || ...); }
   void after_write(Host& host, std::uint16_t index, std::uint8_t sub_index) {
     (present<Services>().after_write(host, index, sub_index), ...);
   }

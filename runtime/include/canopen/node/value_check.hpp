@@ -14,9 +14,7 @@ namespace canopen {
 
 /// Whether services are asked about a write to an object. None has one of the application; for size, all are asked, and
 /// compare the index anyway.
-[[nodiscard]] constexpr bool may_concern_services(std::uint16_t index) {
-  return prefers_size || is_communication_index(index);
-}
+[[nodiscard]] constexpr bool may_concern_services(std::uint16_t index) { return is_communication_index(index); }
 
 /// Whether `set` of the application can reject a value of the object's type: the object has limits, uses fewer bits
 /// than its type, or is a parameter of a service.

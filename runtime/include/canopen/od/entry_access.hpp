@@ -241,6 +241,20 @@ class EntryAccess : public EntryDirectory<Device> {
     return true;
   }
 
+  /// Whether each value in RAM but those of DOMAINs is a number whose bytes are stored as they are transferred.
+  static constexpr bool has_plain_numbers = !kinds.padded && !kinds.strings_in_ram && !kinds.booleans;
+
+  /// Stores the bytes of such a number. Returns whether they differ from the present ones.
+  [[nodiscard]] bool replace(entry::Word word, std::span<const std::uint8_t> bytes) const requires(has_plain_numbers) {
+    std::uint8_t* own = ram(word);
+    unsigned changed = 0;
+    for (const std::uint8_t byte : bytes) {
+      changed |= *own ^ unsigned { byte };
+      *own++ = byte;
+    }
+    return changed != 0;
+  }
+
   /// Stores bytes that `check` has accepted in an entry in RAM.
   void write(entry::Word word, std::span<const std::uint8_t> bytes) const {
     std::uint8_t* where = ram(word);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "canopen/base/optimization.hpp"
 #include "canopen/base/result.hpp"
 #include "canopen/node/received_value.hpp"
 #include "canopen/node/service_set.hpp"
@@ -51,6 +52,9 @@ struct SdoHooks {
     if constexpr (MpdoService<Device>::sends_source) {
       // Also of interest: a new value of a list of objects that are sent.
       if (mappable) new_value = !entries().holds(word, bytes);
+    } else if constexpr (!prefers_size && Tpdos<Device>::exists && EntryAccess<Device>::has_plain_numbers) {
+      new_value = mappable && entries().replace(word, bytes);
+      return !mappable;
     } else if constexpr (Tpdos<Device>::exists) {
       new_value = mappable && !entries().holds(word, bytes);
     }
@@ -107,13 +111,18 @@ class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
   }
 
   template <class Host>
-  bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
-    if (!serves_sdo(host.state()) || !servers_.on_frame(host.store(), frame, Hooks<Host>{host}, host.now()))
-      return false;
-  template <class Host>
   static constexpr bool may_take(const Host&, std::uint32_t) {
     return SdoServers<Device>::count > 1;
   }
+  template <class Host>
+  bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
+    if (!serves_sdo(host.state()) || !servers_.on_frame(host.store(), frame, Hooks<Host>{host}, host.now()))
+      return false;
+    // If nothing else is due, the response does not wait until all services have been asked what they have to send.
+    if constexpr (!StoredValues<Device, Handlers...>::is_stepped) {
+      if (host.may_send_at_once() && servers_.serve(host.store(), host.bus(), Hooks<Host>{host}, host.now()))
+        return true;
+    }
     host.attend();
     return true;
   }

@@ -69,10 +69,6 @@ class Sync : public ServiceDefaults<Sync<Device>> {
     return next;
   }
 
-  /// Whether the synchronous window has elapsed.
-  [[nodiscard]] bool window_over(TimePoint now) const { return window_.over(now); }
-
-  static constexpr bool checks(std::uint16_t index, std::uint8_t) {
   /// The period 1006h and the window 1007h are in microseconds.
   [[nodiscard]] bool needs_each_call() const {
     if constexpr (Producer::exists) {
@@ -81,6 +77,10 @@ class Sync : public ServiceDefaults<Sync<Device>> {
     return SyncWindow<Device>::exists;
   }
 
+  /// Whether the synchronous window has elapsed.
+  [[nodiscard]] bool window_over(TimePoint now) const { return window_.over(now); }
+
+  static constexpr bool checks(std::uint16_t index, std::uint8_t) {
     return index == 0x1005 || index == 0x1006 || (Consumer::has_overflow && index == 0x1019);
   }
   template <class Host>
