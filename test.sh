@@ -11,7 +11,7 @@ help() {
   sources   each source and public header compiles alone and passes clang-tidy; each gate detects a planted fault
   quick     the gates; the generated code, the short tests of the command line, the conformance test of the reference
             devices; the unit and trace tests (about 3 minutes after a build)
-  test      a build with -O1 and all tests but those of the other gears
+  test      a release build with all tests but those of the other gears
   asan      the GoogleTest programs (unit and trace tests) and a short run of each fuzz target with AddressSanitizer
             and the checks of UBSan that compile fast
   firmware  the images of the reference devices for Cortex-M under QEMU
