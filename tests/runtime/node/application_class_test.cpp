@@ -290,7 +290,7 @@ struct Nowhere {
 struct OneWriteHandler {
   void operator()(std::uint8_t) const {}
 };
-static_assert(sizeof(bench::NodeOf<every_service::Device, Nowhere, Stateless>) ==
+static_assert(sizeof(bench::NodeOf<every_service::Device, Nowhere, Stateless>) <=
               sizeof(bench::NodeOf<every_service::Device, Nowhere, canopen::WriteHandler<od::byte, OneWriteHandler>>));
 
 TEST(WrittenHandler, IsCalledAfterTheValueIsStored) {
