@@ -2,14 +2,14 @@
 """Measures a device on a Cortex-M: flash and RAM of a complete node, of each service and of the dictionary, and the
 instructions of its frequent operations, compared with other stacks.
 
-    measure.py EDSC RUNTIME_INCLUDE [--page | --functions]
+    measure.py EDSC RUNTIME_INCLUDE [--page | --tables | --functions]
 
 Bytes are those of images for a Cortex-M0+ at -Os with link-time optimisation, as edsc_add_firmware builds them, without those of
 an empty program: NMT slave, boot-up, heartbeat, SDO server, EMCY with a history, SYNC and 4 + 4 PDOs for ref.eds, and an
-application (drive.hpp). Instructions are those of a Cortex-M4 at -O2, counted exactly by QEMU, including the loop that calls and
-the store of the frame. A `!` marks a missed mark.
+application (drive.hpp). Instructions are those of a Cortex-M4 at -O2 and of a Cortex-M0+ at -Os, counted exactly by QEMU, including
+the loop that calls and the store of the frame. A `!` marks a missed mark.
 
-`--page` prints docs/footprint.md. `--functions` lists the contents of the images.
+`--page` prints docs/footprint.md, `--tables` its tables of whole devices and whole frames. `--functions` lists the contents of the images.
 """
 
 from __future__ import annotations
@@ -34,7 +34,8 @@ import sheets  # noqa: E402
 import twins  # noqa: E402
 
 SMALL = ("-mcpu=cortex-m0plus", "-Os", "-flto=auto")
-FAST = ("-mcpu=cortex-m4", "-O2", "-flto=auto", "-DCOUNT")
+# Builds whose instructions are counted. QEMU runs both on a Cortex-M4.
+COUNTED = {"M4 -O2": ("-mcpu=cortex-m4", "-O2", "-flto=auto", "-DCOUNT"), "M0+ -Os": (*SMALL, "-DCOUNT")}
 
 
 @dataclass(frozen=True)
@@ -94,14 +95,17 @@ BLOCK_SERVER = Variant("bench100", block_transfer=True)
 
 
 @dataclass(frozen=True)
-class Row:
-    """A figure of a whole device or of a whole frame, in bytes or instructions, its mark and the best other stack's figure."""
+class Figure:
+    """A measured value, its mark and the best other stack's value, which was measured once (`quoted`)."""
 
-    what: str
     value: float
-    mark: float
+    mark: float | None = None
     peer: float | None = None
     peer_name: str = ""
+
+    @property
+    def mark_text(self) -> str:
+        return "-" if self.mark is None else f"{self.mark:g}"
 
     @property
     def peer_text(self) -> str:
@@ -110,6 +114,26 @@ class Row:
     @property
     def ratio_text(self) -> str:
         return "-" if self.peer is None else f"{self.value / self.peer:.2f}"
+
+    @property
+    def missed_text(self) -> str:
+        return " !" if self.mark is not None and self.value > self.mark else ""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A figure of a whole device, in bytes."""
+
+    what: str
+    figure: Figure
+
+
+@dataclass(frozen=True)
+class FrameRow:
+    """The instructions of a whole frame, by the name of a build in COUNTED."""
+
+    what: str
+    figures: dict[str, Figure]
 
 
 @dataclass(frozen=True)
@@ -140,7 +164,7 @@ class Bench:
         return made
 
     def build(self, program: str, variant: Variant, flags: Sequence[str]) -> Path:
-        made = self.folder / f"{program}_{variant.name}_{flags[0].rsplit('-', 1)[1]}.elf"
+        made = self.folder / f"{program}_{variant.name}_{flags[0].rsplit('-', 1)[1]}{'_counted' if '-DCOUNT' in flags else ''}.elf"
         if not made.exists():
             subprocess.run([*COMPILER, *flags, f"-I{self.runtime}", f"-I{self.headers(variant)}", HERE / f"{program}.cpp",
                             "-o", made], check=True)
@@ -167,8 +191,8 @@ class Bench:
         text = (self.headers(variant) / "device/description.hpp").read_text(encoding="utf-8")
         return len(re.findall(r"(?m)^ +\{0x[0-9A-F]{4}, 0x[0-9A-F]{2}, ", text))
 
-    def instructions(self, program: str, variant: Variant) -> dict[str, float]:
-        made = self.build(program, variant, FAST)
+    def instructions(self, program: str, variant: Variant, build: str = "M4 -O2") -> dict[str, float]:
+        made = self.build(program, variant, COUNTED[build])
         printed = subprocess.run(["qemu-system-arm", "-M", "mps2-an386", "-icount", "shift=0", "-semihosting",
                                   "-nographic", "-kernel", made], check=False, capture_output=True, text=True, timeout=120,
                                  stdin=subprocess.DEVNULL).stderr
@@ -220,13 +244,13 @@ def sizes(bench: Bench) -> list[Row]:
     static, dynamic, block = (bench.cost("node", variant) for variant in (STATIC, DYNAMIC, BLOCK))
     node = "CANopenNode"
     return [
-        Row("flash, static mapping", static.flash, 5600, 11808, node),
-        Row("flash, dynamic mapping", dynamic.flash, 6700, 14424, node),
-        Row("flash, dynamic mapping, block transfer with CRC", block.flash, 7800, 16772, node),
-        Row("RAM, static mapping", static.ram, 540, 1016, "modm-canopen, expedited SDO only"),
-        Row("RAM, dynamic mapping", dynamic.ram, 700, 3196, "canopen-stack"),
-        Row("dictionary, flash for each entry", bench.bytes_per_entry("ref"), 4.0, 13.4, "canopen-stack"),
-        Row("dictionary of a servo drive, with limits, for each entry", bench.bytes_per_entry("../eds/cpc-tc1"), 4.5),
+        Row("flash, static mapping", Figure(static.flash, 5600, 11808, node)),
+        Row("flash, dynamic mapping", Figure(dynamic.flash, 6900, 14424, node)),
+        Row("flash, dynamic mapping, block transfer with CRC", Figure(block.flash, 8200, 16772, node)),
+        Row("RAM, static mapping", Figure(static.ram, 548, 1016, "modm-canopen, expedited SDO only")),
+        Row("RAM, dynamic mapping", Figure(dynamic.ram, 800, 3196, "canopen-stack")),
+        Row("dictionary, flash for each entry", Figure(bench.bytes_per_entry("ref"), 4.0, 13.4, "canopen-stack")),
+        Row("dictionary of a servo drive, with limits, for each entry", Figure(bench.bytes_per_entry("../eds/cpc-tc1"), 4.5)),
     ]
 
 
@@ -278,16 +302,30 @@ def objects(bench: Bench) -> list[tuple[str, Size]]:
     ]
 
 
-def whole_frames(bench: Bench) -> list[Row]:
+# What is measured: program, its name there, kind of mapping or block transfer; then mark and best other stack for each build.
+FRAMES = [
+    ("expedited SDO upload, static mapping", "whole_frame", "upload", "static", (200, 321), (370, 400)),
+    ("expedited SDO upload, dynamic mapping", "whole_frame", "upload", "dynamic", (200, 321), (370, 400)),
+    ("expedited SDO download of a new value, static mapping", "whole_frame", "download", "static", (270, 310), (381, 381)),
+    ("expedited SDO download of a new value, dynamic mapping", "whole_frame", "download", "dynamic", (300, 310), (420, 381)),
+    ("segmented SDO upload, per byte", "long_transfers", "segmented-upload", "block", (20, 36), (None, None)),
+    ("segmented SDO download, per byte", "long_transfers", "segmented-download", "block", (22, 36), (None, None)),
+    ("SDO block upload with CRC, per byte", "long_transfers", "block-upload", "block", (None, None), (None, None)),
+    ("SDO block download with CRC, per byte", "long_transfers", "block-download", "block", (None, None), (None, None)),
+    ("4 RPDOs, SYNC, 4 TPDOs, static mapping", "whole_frame", "sync-cycle", "static", (680, 1651), (1300, 2297)),
+    ("4 RPDOs, SYNC, 4 TPDOs, dynamic mapping", "whole_frame", "sync-cycle", "dynamic", (950, 1651), (2200, 2297)),
+    ("RPDO for the next SYNC", "whole_frame", "rpdo", "static", (50, 294), (None, None)),
+    ("a TPDO of another node", "whole_frame", "foreign", "static", (60, None), (110, None)),
+    ("`on_time` with nothing due", "whole_frame", "on-time", "static", (13, 32), (20, 34)),
+]
+FRAME_VARIANTS = {"static": Variant("bench100", static_mapping=True), "dynamic": Variant("bench100"), "block": BLOCK_SERVER}
+
+
+def whole_frames(bench: Bench) -> list[FrameRow]:
     """Instructions from the frame that a node receives to those that it sends."""
-    static, dynamic = (bench.instructions("whole_frame", Variant("bench100", static_mapping=fixed)) for fixed in (True, False))
-    rows = [("expedited SDO upload", "upload", (220, 230), 321, "canopen-stack"),
-            ("expedited SDO download of a new value", "download", (290, 310), 310, ""),
-            ("4 RPDOs, SYNC, 4 TPDOs", "sync-cycle", (510, 800), 1651, "CANopenNode")]
-    found = [Row(f"{what}, {mapping} mapping", of[name], mark, peer, peer_name) for what, name, marks, peer, peer_name in rows
-             for mapping, of, mark in (("static", static, marks[0]), ("dynamic", dynamic, marks[1]))]
-    return found + [Row("RPDO for the next SYNC", static["rpdo"], 50, 294),
-                    Row("`on_time` with nothing due", static["on-time"], 30, 32)]
+    return [FrameRow(what, {build: Figure(bench.instructions(program, FRAME_VARIANTS[variant], build)[name], *mark_and_peer)
+                            for build, mark_and_peer in zip(COUNTED, of_builds, strict=True)})
+            for what, program, name, variant, *of_builds in FRAMES]
 
 
 def parts(bench: Bench) -> list[tuple[str, float]]:
@@ -308,11 +346,10 @@ def parts(bench: Bench) -> list[tuple[str, float]]:
     ]
 
 
-def print_rows(title: str, rows: Iterable[Row]) -> None:
+def print_figures(title: str, rows: Iterable[tuple[str, Figure]]) -> None:
     print(f"{title:<57}{'edsc':>8}{'mark':>8}{'':3}ratio to the best other stack")
-    for row in rows:
-        missed = "" if row.value <= row.mark else " !"
-        print(f"{row.what:<57}{row.value:8g}{row.mark:8g}{missed:3}{row.ratio_text:>5}  {row.peer_text}")
+    for what, figure in rows:
+        print(f"{what:<57}{figure.value:8g}{figure.mark_text:>8}{figure.missed_text:3}{figure.ratio_text:>5}  {figure.peer_text}")
 
 
 def table(*columns: str, rows: Iterable[Sequence[object]]) -> str:
@@ -320,17 +357,24 @@ def table(*columns: str, rows: Iterable[Sequence[object]]) -> str:
     return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)
 
 
+def tables(bench: Bench) -> dict[str, str]:
+    """The tables of whole devices and whole frames, by their names in page.md."""
+    return {"sizes": table("bytes", "edsc", "mark", "best other stack", "ratio", rows=[
+                (row.what, f"{row.figure.value:g}", row.figure.mark_text, row.figure.peer_text, row.figure.ratio_text)
+                for row in sizes(bench)]),
+            "whole_frames": table("instructions", *(head for build in COUNTED for head in (build, "mark", "best other stack")), rows=[
+                (row.what, *(text for figure in row.figures.values()
+                             for text in (f"{figure.value:g}", figure.mark_text, figure.peer_text)))
+                for row in whole_frames(bench)])}
+
+
 def page(bench: Bench) -> str:
     """docs/footprint.md."""
-    def beside_marks(unit: str, rows: Iterable[Row]) -> str:
-        return table(unit, "edsc", "mark", "best other stack", "ratio", rows=[
-            (row.what, f"{row.value:g}", f"{row.mark:g}", row.peer_text, row.ratio_text) for row in rows])
-
     def with_bytes(unit: str, rows: Iterable[tuple[str, Size]]) -> str:
         return table(unit, "flash", "RAM", rows=[(what, size.flash, size.ram) for what, size in rows])
 
     return (HERE / "page.md").read_text(encoding="utf-8").format(
-        sizes=beside_marks("bytes", sizes(bench)), whole_frames=beside_marks("instructions", whole_frames(bench)),
+        **tables(bench),
         parts=table("instructions", "edsc", rows=[(what, f"{count:g}") for what, count in parts(bench)]),
         services=with_bytes("service", services(bench)), objects=with_bytes("object", objects(bench)),
         twins="\n".join(twins.table(bench.edsc, bench.runtime)))
@@ -341,6 +385,7 @@ def main() -> None:
     parser.add_argument("edsc", type=Path)
     parser.add_argument("runtime", type=Path)
     parser.add_argument("--page", action="store_true", help="print docs/footprint.md")
+    parser.add_argument("--tables", action="store_true", help="print its first two tables")
     parser.add_argument("--functions", action="store_true", help="list the contents of the images")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
@@ -348,8 +393,13 @@ def main() -> None:
         if arguments.page:
             print(page(bench), end="")
             return
-        print_rows("bytes, Cortex-M0+ -Os", sizes(bench))
-        print_rows("instructions from frame to frame, Cortex-M4 -O2", whole_frames(bench))
+        if arguments.tables:
+            print("\n\n".join(tables(bench).values()))
+            return
+        print_figures("bytes, Cortex-M0+ -Os", [(row.what, row.figure) for row in sizes(bench)])
+        frames = whole_frames(bench)
+        for build in COUNTED:
+            print_figures(f"instructions from frame to frame, Cortex-{build}", [(row.what, row.figures[build]) for row in frames])
         for what, count in parts(bench):
             print(f"{what:<57}{count:8g}")
         if arguments.functions:

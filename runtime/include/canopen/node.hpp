@@ -141,7 +141,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// Processes elapsed time. Call it at `next_deadline()`, when the bus has room again, and at least every half hour.
   void on_time(TimePoint now) {
     now_ = now;
-    if (!attention_ && !needs_each_call() && idle_.lasts(now)) return;
+    if (!attention_ && !needs_exact_time() && idle_.lasts(now)) return;
     const bool was_idle = idle_.has_begun();
     services_.on_time_without_node_id(host());
     if (state_ == NmtState::initialisation) return serve_without_node_id();
@@ -339,6 +339,13 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   using Sdo = service::Sdo<Device, Handlers...>;
   static constexpr bool calls_handlers = HandlerTypes::has_access_handlers || DomainHandlerSet<Handlers...>::any;
 
+  /// Whether `on_time` has something to check at each call: a value can be posted to a mailbox at any time. An image
+  /// for size does not wait for the next slot of time with periodic functions, and while parameters are stored in
+  /// steps.
+  static constexpr bool checks_each_call =
+      service::PostedValues<Device, Handlers...>::exists ||
+      (prefers_size && (service::Periodic<Device, Handlers...>::exists || StoredValues::is_stepped));
+
   [[nodiscard]] Host& host() { return *this; }
   [[nodiscard]] auto& emergencies() { return services_.template get<service::Emergency<Device>>(); }
 
@@ -485,9 +492,10 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
     return false;
   }
 
-  /// Whether a service of an image for size needs more than a check in each slot of time (node/idle_time.hpp).
-  [[nodiscard]] bool needs_each_call() const {
-    if constexpr (prefers_size) return services_.needs_each_call();
+  /// Whether an image for size may not wait for the next slot of time (node/idle_time.hpp).
+  [[nodiscard]] bool needs_exact_time() const {
+    if constexpr (prefers_size && service::Sync<Device>::exists)
+      return services_.template get<service::Sync<Device>>().needs_exact_time();
     return false;
   }
 
@@ -512,7 +520,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   NodeId node_id_{};
   NmtState state_ = NmtState::initialisation;
   bool attention_ = false;  ///< something may have become due since the last check
-  [[no_unique_address]] IdleTimeOf<service::PostedValues<Device, Handlers...>::exists> idle_{};
+  [[no_unique_address]] IdleTimeOf<checks_each_call> idle_{};
   [[no_unique_address]] HandlerCalls<calls_handlers, HandlerTypes::has_write_handlers, HandlerTypes::has_read_handlers>
       handler_calls_{};
   [[no_unique_address]] Services services_{};

@@ -77,9 +77,8 @@ class NoIdleTime {
 
 }  // namespace node_detail
 
-/// A value can be posted to a mailbox at any time: a node with mailboxes asks its services at each call.
-template <bool has_mailboxes>
-using IdleTimeOf = std::conditional_t<has_mailboxes, node_detail::NoIdleTime,
+template <bool checks_each_call>
+using IdleTimeOf = std::conditional_t<checks_each_call, node_detail::NoIdleTime,
                                       std::conditional_t<prefers_size, node_detail::TimeSlots, node_detail::IdleTime>>;
 
 }  // namespace canopen

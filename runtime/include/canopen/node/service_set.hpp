@@ -93,9 +93,6 @@ struct ServiceDefaults {
   /// Keeps the deadlines that `serve` leaves as they are while the bus has no room.
   template <class Host>
   static void keep_deadlines(Host&) {}
-  /// Whether `on_time` and `serve` must be called each time: what is due then may not wait for a tenth of a
-  /// millisecond.
-  static constexpr bool needs_each_call() { return false; }
   /// Whether the node may not send anything now.
   static constexpr bool silent() { return false; }
 
@@ -251,7 +248,6 @@ class ServiceSet : private service_detail::Present<Services>... {
     (consider<Services>(next, host, all), ...);
     return next;
   }
-  [[nodiscard]] bool needs_each_call() const { return (present<Services>().needs_each_call() || ...); }
   [[nodiscard]] bool silent() const { return (present<Services>().silent() || ...); }
 
   [[nodiscard]] ServiceErrors errors() const {

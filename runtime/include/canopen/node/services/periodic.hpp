@@ -42,8 +42,6 @@ class Periodic : public ServiceDefaults<Periodic<Device, Handlers...>> {
     });
   }
 
-  static constexpr bool needs_each_call() { return true; }
-
   template <class Host>
   std::optional<TimePoint> deadline(Host&) const {
     if (!runs_) return std::nullopt;

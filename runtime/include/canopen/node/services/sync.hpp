@@ -69,8 +69,8 @@ class Sync : public ServiceDefaults<Sync<Device>> {
     return next;
   }
 
-  /// The period 1006h and the window 1007h are in microseconds.
-  [[nodiscard]] bool needs_each_call() const {
+  /// Whether the node sends SYNC, or has a synchronous window: their times are in microseconds.
+  [[nodiscard]] bool needs_exact_time() const {
     if constexpr (Producer::exists) {
       if (producer_.runs()) return true;
     }

@@ -96,7 +96,6 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
     }
     return std::nullopt;
   }
-  static constexpr bool needs_each_call() { return is_stepped; }
   /// Whether the last command has started to write an image; once.
   [[nodiscard]] bool take_started() requires(is_stepped) { return std::exchange(progress_.started, false); }
   /// Returns the result when an image has been written; once.
