@@ -9,6 +9,7 @@
 #include <canopen/can/cob_id_check.hpp>
 #include <canopen/lss/lss_options.hpp>
 #include <canopen/od/device_options.hpp>
+#include <canopen/od/preset.hpp>
 #include <canopen/pdo/pdo_list.hpp>
 #include <span>
 #include "dictionary.hpp"
@@ -87,7 +88,7 @@ struct Device {
   }
 
   static void reset_communication([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.communication_preset, &::cpc_tc1::communication_preset, sizeof values.communication_preset);
+    canopen::set_preset<Device, &::cpc_tc1::communication_preset, offsetof(Values, communication_preset)>(values.communication_preset);
     canopen::clear_bytes(&values.communication_cleared, sizeof values.communication_cleared);
   }
   static void reset_application([[maybe_unused]] Values& values) {

@@ -8,6 +8,7 @@
 #include <canopen/base/bytes.hpp>
 #include <canopen/can/cob_id_check.hpp>
 #include <canopen/od/device_options.hpp>
+#include <canopen/od/preset.hpp>
 #include <canopen/pdo/pdo_list.hpp>
 
 #include "dictionary.hpp"
@@ -70,11 +71,11 @@ struct Device {
   static constexpr std::array<std::uint8_t, 5> emergency_info([[maybe_unused]] std::uint16_t code) { return {}; }
 
   static void reset_communication([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.communication_preset, &::ezd_1136::communication_preset, sizeof values.communication_preset);
+    canopen::set_preset<Device, &::ezd_1136::communication_preset, offsetof(Values, communication_preset)>(values.communication_preset);
     canopen::clear_bytes(&values.communication_cleared, sizeof values.communication_cleared);
   }
   static void reset_application([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.application_preset, &::ezd_1136::application_preset, sizeof values.application_preset);
+    canopen::set_preset<Device, &::ezd_1136::application_preset, offsetof(Values, application_preset)>(values.application_preset);
     canopen::clear_bytes(&values.application_cleared, sizeof values.application_cleared);
   }
 

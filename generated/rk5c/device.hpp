@@ -9,6 +9,7 @@
 #include <canopen/can/cob_id_check.hpp>
 #include <canopen/lss/lss_options.hpp>
 #include <canopen/od/device_options.hpp>
+#include <canopen/od/preset.hpp>
 #include <canopen/pdo/pdo_list.hpp>
 
 #include "dictionary.hpp"
@@ -83,11 +84,11 @@ struct Device {
   }
 
   static void reset_communication([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.communication_preset, &::rk5c::communication_preset, sizeof values.communication_preset);
+    canopen::set_preset<Device, &::rk5c::communication_preset, offsetof(Values, communication_preset)>(values.communication_preset);
     canopen::clear_bytes(&values.communication_cleared, sizeof values.communication_cleared);
   }
   static void reset_application([[maybe_unused]] Values& values) {
-    canopen::copy_bytes(&values.application_preset, &::rk5c::application_preset, sizeof values.application_preset);
+    canopen::set_preset<Device, &::rk5c::application_preset, offsetof(Values, application_preset)>(values.application_preset);
     canopen::clear_bytes(&values.application_cleared, sizeof values.application_cleared);
   }
 

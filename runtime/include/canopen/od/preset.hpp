@@ -86,11 +86,11 @@ struct Packed {
 }
 
 inline constexpr std::size_t unpack_code = 44;          ///< bytes of `unpack` on a Cortex-M0+
-inline constexpr std::size_t most_packed_bytes = 4096;  ///< a compiler takes longer for more
+inline constexpr std::size_t max_packed_bytes = 4096;  ///< a compiler takes longer for more
 
 template <class Preset>
 [[nodiscard]] constexpr bool is_shorter_packed() {
-  if constexpr (Preset::size <= most_packed_bytes && Preset::are_numbers()) {
+  if constexpr (Preset::size <= max_packed_bytes && Preset::are_numbers()) {
     return Packed<Preset>::size + unpack_code < Preset::size;
   } else {
     return false;
