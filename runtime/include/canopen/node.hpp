@@ -139,6 +139,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   }
 
   /// Processes elapsed time. Call it at `next_deadline()`, when the bus has room again, and at least every half hour.
+  /// In an image for size, heartbeats, timeouts and events may be up to 128 us late (node/idle_time.hpp).
   void on_time(TimePoint now) {
     now_ = now;
     if (!attention_ && !needs_exact_time() && idle_.lasts(now)) return;
