@@ -109,4 +109,24 @@ TEST(IdleTime, DoesNotLastUntilTimeWraps) {
   EXPECT_EQ(device.pass(0s), "185 07 00 00 00 00 00");
 }
 
+canopen::TimePoint at(std::uint32_t microseconds) { return canopen::TimePoint{canopen::Duration{microseconds}}; }
+
+TEST(TimeSlots, AreCheckedOnceEach) {
+  canopen::node_detail::TimeSlots slots;
+  EXPECT_FALSE(slots.lasts(at(200)));
+  EXPECT_TRUE(slots.lasts(at(200)));
+  EXPECT_TRUE(slots.lasts(at(255)));
+  EXPECT_FALSE(slots.lasts(at(256)));
+  EXPECT_TRUE(slots.lasts(at(256)));
+  EXPECT_FALSE(slots.lasts(at(100))) << "the clock has overflowed";
+}
+
+/// A timer of 16 bits that overflows is a usual time to call a node.
+TEST(TimeSlots, AreCheckedByCallsWithAnyPeriodUpToSeconds) {
+  for (const std::uint32_t period : {128u, 1'000u, 31'250u, 32'768u, 65'536u, 1'000'000u, 1'048'576u, 4'194'304u}) {
+    canopen::node_detail::TimeSlots slots;
+    for (std::uint32_t call = 1; call <= 1000; ++call) EXPECT_FALSE(slots.lasts(at(call * period))) << period;
+  }
+}
+
 }  // namespace

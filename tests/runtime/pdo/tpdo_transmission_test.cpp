@@ -39,6 +39,15 @@ TEST(TpdoType1, IsSentAtEverySync) {
   EXPECT_EQ(device.ask(sync), "385 34 12");
 }
 
+/// Frames with such a CAN-ID are for other nodes, unless a COB-ID of this one has it.
+TEST(TpdoType1, IsSentAtASyncWithTheCanIdOfAPdo) {
+  Running device;
+  EXPECT_EQ(device.ask("605 23 05 10 00 90 01 00 00"), "585 60 05 10 00 00 00 00 00");
+  EXPECT_EQ(device.ask("190"), "385 00 00");
+  EXPECT_EQ(device.ask("191"), "");
+  EXPECT_EQ(device.ask(sync), "");
+}
+
 TEST(TpdoType3, IsSentAtEveryThirdSync) {
   Running device;
   device.ask("605 2F 02 18 02 03 00 00 00");

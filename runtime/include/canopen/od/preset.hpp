@@ -85,7 +85,7 @@ struct Packed {
   }
 }
 
-inline constexpr std::size_t unpack_code = 44;          ///< bytes of `unpack` on a Cortex-M0+
+inline constexpr std::size_t unpack_code = 44;         ///< bytes of `unpack` on a Cortex-M0+
 inline constexpr std::size_t max_packed_bytes = 4096;  ///< a compiler takes longer for more
 
 template <class Preset>
