@@ -189,6 +189,22 @@ TEST(SyncWindow, LetsRpdosInUntilItsEnd) {
   EXPECT_EQ(device.node.get<od::output>(), 1);
 }
 
+TEST(SyncWindow, EndsWhenItIsDisabled) {
+  Bench device;
+  write(device, "605 23 07 10 00 E8 03 00 00");  // 1 ms
+  device.ask(bench::start);
+  device.ask("080");
+  device.pass(2ms);
+  device.ask("205 07");
+  device.ask("080");
+  EXPECT_EQ(device.node.get<od::output>(), 0) << "the window is over";
+  device.pass(2ms);
+  write(device, "605 23 07 10 00 00 00 00 00");
+  device.ask("205 07");
+  device.ask("080");
+  EXPECT_EQ(device.node.get<od::output>(), 7);
+}
+
 TEST(HighResolutionTimeStamp, IsTheTimeOfTheLastSync) {
   Bench device;
   device.pass(1234us);

@@ -159,6 +159,11 @@ class SyncWindow {
     }
   }
 
+  /// Handles a new value of 1007h: without a window none is open any more. Another length is that of the next SYNC.
+  void length_changed([[maybe_unused]] const ObjectStore<Device>& store) {
+    if constexpr (exists) window_.limited = window_.limited && store.template number<0x1007, 0>() != 0;
+  }
+
   /// Whether the window of the last SYNC has elapsed. It remains so until the next SYNC.
   [[nodiscard]] bool over([[maybe_unused]] TimePoint now) const {
     if constexpr (exists) {

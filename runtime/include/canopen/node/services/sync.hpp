@@ -93,6 +93,7 @@ class Sync : public ServiceDefaults<Sync<Device>> {
       if ((index == 0x1005 || index == 0x1006) && serves_sync(host.state()))
         producer_.start(host.store(), host.now(), false);
     }
+    if (index == 0x1007) window_.length_changed(host.store());
   }
 
  private:
