@@ -54,6 +54,7 @@ DYNAMIC_DIFFERENCES: tuple[tuple[str, str, str], ...] = (
     ("mapped_strings.eds", "3.5", "the same"),
     ("mapped_strings.eds", "9.3", "the same"),
     ("301.eds", "5.6", "1003h:00 is UNSIGNED32, and a note says that no service uses it"),
+    ("Easy-ak_v1.30.eds", "5.6", "the same"),
 )
 MAIN = """#include <canopen/host/simulated_device.hpp>
 

@@ -136,6 +136,8 @@ void disabled(Dut& dut) {
 void at_sync(Dut& dut) {
   with_rpdo(dut, [&dut](TestedRpdo& rpdo) {
     (void)stop_sync(dut);
+    if (!rpdo.end_sync_window())
+      dut.not_applicable("1007h:00 limits the time after a SYNC in which an RPDO is received");
     dut.need_writable(rpdo.index(), type_parameter);
     constexpr std::uint64_t each_sync = 1;
     const SdoOutcome outcome = dut.download(rpdo.index(), type_parameter, each_sync);
@@ -177,7 +179,9 @@ void inhibit_time_fixed_while_valid(Dut& dut) {
   dut.enter(NmtState::pre_operational);
   for (const Pdo* pdo : dut.pdos(PdoDirection::transmit)) {
     const std::uint16_t index = pdo->communication->index;
-    if (!dut.is_writable(index, inhibit_parameter)) continue;
+    // If its COB-ID cannot be written, the TPDO is always valid: an EDS with a writable inhibit time means that it
+    // changes.
+    if (!dut.is_writable(index, inhibit_parameter) || !dut.is_writable(index, cob_id_parameter)) continue;
     const auto cob_id = static_cast<std::uint32_t>(dut.read_number(index, cob_id_parameter));
     if (!canopen::is_usable(cob_id & ~CobId::no_rtr_bit)) continue;
     const std::uint64_t present = dut.read_number(index, inhibit_parameter);
@@ -187,7 +191,7 @@ void inhibit_time_fixed_while_valid(Dut& dut) {
         dut, index, inhibit_parameter, other, present, in_use,
         fmt::format("another inhibit time to {} while the PDO is valid", label(index, inhibit_parameter)));
   }
-  dut.not_applicable("no valid TPDO has a writable inhibit time");
+  dut.not_applicable("no valid TPDO has a writable COB-ID and a writable inhibit time");
 }
 
 constexpr CaseRow rpdo_rows[] = {

@@ -5,6 +5,7 @@
 #include <canopen/can/cob_id.hpp>
 
 #include "conform/cases/pdo/tpdo.hpp"
+#include "conform/cases/shared/setup.hpp"
 
 namespace edsc::conform {
 namespace {
@@ -77,6 +78,7 @@ bool TestedRpdo::use(const Pdo& pdo, bool with_synchronous) {
   }
   compared_ = pack(mapping_, masks);
   if (compared_ == 0) return false;
+  if (synchronous_ && !end_sync_window()) return false;
   for (const MappingValue& mapped : mapping_) {
     if (!mapped.is_dummy()) dut_.remember(mapped.index, mapped.sub_index);
   }
@@ -103,6 +105,13 @@ void TestedRpdo::send_present() {
   dut_.send(make_frame(cob_id_, edsc::bytes_of(pack(mapping_, present_), size())));
   send_sync();
   dut_.pass_time(to_apply);
+}
+
+bool TestedRpdo::end_sync_window() {
+  if (!dut_.has(sync_window) || !dut_.is_readable(sync_window) || dut_.read_number(sync_window) == 0) return true;
+  if (!dut_.is_writable(sync_window) || !dut_.download(sync_window, 0, 0).done()) return false;
+  send_sync();  // a window that has begun ends with the next one
+  return true;
 }
 
 void TestedRpdo::send_sync() {

@@ -31,6 +31,9 @@ class TestedRpdo {
   void send_frame(unsigned bytes);
   /// Sends the values that the objects had at first, and a SYNC.
   void send_present();
+  /// Sets 1007h to 0: a device with a synchronous window takes a synchronous RPDO only for this time after a SYNC
+  /// (CiA 301, 7.5.2.7). Returns whether the device has no window now.
+  bool end_sync_window();
   /// Sends a SYNC. Does nothing if the EDS does not have 1005h.
   void send_sync();
 
