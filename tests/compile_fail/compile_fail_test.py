@@ -23,8 +23,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from support.compilers import (CLANG, GCC, SKIPPED, Compiler, compile_only, in_parallel, precompiled,  # noqa: E402
                                those_installed)
-from support.debian import is_debian  # noqa: E402
-from support.messages import messages_of_cases, without_lists  # noqa: E402
+from support.messages import MOST_LINES, messages_of_cases, without_lists  # noqa: E402
 
 EXPECTATION = re.compile(r"^// expect: (.+)$", re.MULTILINE)
 CUT_OFF = re.compile(r"^// \.\*", re.MULTILINE)  # of a line that was wrapped
@@ -32,9 +31,7 @@ INCLUDE = re.compile(r"^#include .+$", re.MULTILINE)
 MESSAGE = re.compile(r"^\S+:\d+:(\d+:)? |^\S+: In ")
 READ_MESSAGES = 12
 CASES_IN_A_UNIT = 8
-# The lines that all messages of a case may have, without the lists of including files. LONGER: why a case may have more.
-# Later compilers than those of Debian 12 show the source of each place that they name.
-MOST_LINES = 12 if is_debian(12) else 18
+# Why the messages of a case may have more lines than MOST_LINES, without the lists of including files.
 LONGER = {
     "application_deduced_result": "a deduced result needs the body of the function, before the node is complete",
     "application_every_0_ms": "the compilers continue after the wrong type of a parameter, which they then do not know",

@@ -5,7 +5,7 @@
 
 Each row of WAYS is a statement that passes a value, and each row of KINDS is a wrong value for an object. None of them
 compiles as a statement: the compiler rejects the value, or it has a result that must be used. The message has at most 12
-lines and the name of the object. A value that is right compiles.
+lines, with the compilers of Debian 13 at most 18, and the name of the object. A value that is right compiles.
 """
 
 from __future__ import annotations
@@ -17,9 +17,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from support.compilers import CLANG, GCC, SKIPPED, Compiler, in_parallel, precompiled, those_installed  # noqa: E402
-from support.messages import messages_of_cases  # noqa: E402
+from support.messages import MOST_LINES, messages_of_cases  # noqa: E402
 
-MOST_LINES = 12
 UNUSED_IS_FINE = ("-Wno-unused-variable", "-Wno-unused-but-set-variable", "-Wno-unused-parameter")
 COMMON_HEADERS = """#include <canopen/sdo/remote_node.hpp>
 #include <canopen/node.hpp>

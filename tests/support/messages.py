@@ -8,6 +8,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from support.compilers import Compiler, compile_only
+from support.debian import is_debian
+
+# The lines that the messages of a mistake may have. Later compilers than those of Debian 12 show the source of each place.
+MOST_LINES = 12 if is_debian(12) else 18
 
 # Lines before the line of a message: where it is, and how the compiler came there.
 BEFORE_A_MESSAGE = re.compile(r"^In file included from |^ +from \S+:\d+|^\S+: (In|At) |"
