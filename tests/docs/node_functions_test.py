@@ -29,7 +29,7 @@ CLASSES = {"Node": "Node", "ObjectValues": "Node", "ObjectSetters": "Node", "Loc
 # Of the runtime itself: not called by an application.
 INTERNAL_CLASSES = {"AcceptedFrame", "Composition", "DomainHandlerSet", "EventHandler", "HandlerCalls", "HandlerSet", "ServiceDefaults", "ServiceHost",
                     "ServiceSet"}
-INTERNAL = {"before_write", "check_limits", "checked_handlers", "is_communication_index", "may_concern_services", "notify_written",
+INTERNAL = {"before_write", "check_limits", "checked_handlers", "is_communication_index", "notify_written",
             "take_received"}
 ROW = re.compile(r"^\| ((?:`[^`]+`(?:, )?)+) \|", re.MULTILINE)
 

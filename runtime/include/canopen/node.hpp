@@ -461,9 +461,9 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
 
   /// Notifies the services that an object has been written, with a new or the same value.
   void after_write(std::uint16_t index, std::uint8_t sub_index, bool new_value) {
-    const bool concerns_services = new_value || may_concern_services(index);
-    if (new_value || is_communication_index(index)) attention_ = true;
-    if (may_concern_services(index)) services_.after_write(host(), index, sub_index);
+    const bool concerns_services = new_value || is_communication_index(index);
+    if (new_value || is_communication_index(index)) attention_ = true;  // not by the variable: 12 bytes less
+    if (is_communication_index(index)) services_.after_write(host(), index, sub_index);
     if (serves_pdo(state_) && concerns_services) services_.after_operational_write(host(), index, sub_index, new_value);
   }
   template <DictionaryObject Object>

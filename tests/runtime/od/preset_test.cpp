@@ -9,6 +9,7 @@
 #include <sync_device/device.hpp>
 
 #include "canopen/od/preset.hpp"
+#include "canopen/od/value.hpp"
 
 namespace {
 
@@ -45,6 +46,32 @@ TEST(Preset, HasTheValuesOfASync) {
   using Values = sync_device::Values;
   expect_default_values<sync_device::Device, &sync_device::communication_preset,
                         offsetof(Values, communication_preset)>();
+}
+
+/// Values with unused bytes behind them, and one that is extended to the type in which it is stored.
+struct Times {
+  struct Part {
+    canopen::TimeOfDay time;
+    std::int32_t of_24_bits;
+    std::uint64_t of_40_bits;
+  };
+  struct Entries {
+    template <class Visit>
+    constexpr void for_each_entry(Visit&& visit) const {
+      using namespace canopen::entry;
+      visit(0x2000, 0, ram | time48 | offsetof(Part, time));
+      visit(0x2001, 0, ram | i24 | offsetof(Part, of_24_bits));
+      visit(0x2002, 0, ram | u40 | offsetof(Part, of_40_bits));
+    }
+  };
+  static constexpr Entries dictionary{};
+};
+constexpr Times::Part times{{0x01020304, 5}, -2, 0x1122334455};
+
+TEST(Preset, HasTimesAndExtendedNumbers) {
+  expect_default_values<Times, &times, 0>();
+  const auto bytes = canopen::PresetBytes<Times, &times, 0>::bytes();
+  EXPECT_EQ(bytes[offsetof(Times::Part, of_24_bits) + 3], 0xFF) << "the sign";
 }
 
 TEST(Preset, IsShorterForADynamicMapping) {

@@ -26,7 +26,7 @@ template <class Host>
   const auto is_in_enumeration = [&](const auto&... of_node) {
     return is_closed<Device>(index, sub_index, of_node...);
   };
-  if (may_concern_services(index) || service::DriveModes<Device>::checks(index, sub_index) ||
+  if (is_communication_index(index) || service::DriveModes<Device>::checks(index, sub_index) ||
       with_sheet<Device>(host.store(), is_in_enumeration)) {
     if (const AbortCode code = host.check_write(index, sub_index, bytes); code != ok) return code;
   }

@@ -5,16 +5,11 @@
 #include <type_traits>
 
 #include "canopen/base/abort_code.hpp"
-#include "canopen/base/optimization.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/typed_value.hpp"
 #include "canopen/od/value_for.hpp"
 
 namespace canopen {
-
-/// Whether services are asked about a write to an object. None has one of the application; for size, all are asked, and
-/// compare the index anyway.
-[[nodiscard]] constexpr bool may_concern_services(std::uint16_t index) { return is_communication_index(index); }
 
 /// Whether `set` of the application can reject a value of the object's type: the object has limits, uses fewer bits
 /// than its type, or is a parameter of a service.

@@ -42,8 +42,12 @@ class PresetBytes {
     const auto values = std::bit_cast<std::array<std::uint8_t, size>>(*Preset);
     std::array<std::uint8_t, size> known{};
     for_each_value([&](std::size_t at, entry::Word word) {
-      const std::size_t stored = std::bit_ceil(std::size_t{entry::wire_bytes(word)});
-      for (std::size_t i = at; i < at + stored; ++i) known[i] = values[i];
+      const std::size_t bytes = entry::wire_bytes(word);
+      // A signed number of 24 bits, for example, is extended to 32 bits. The bytes after a time of day are
+      // indeterminate.
+      const bool is_extended = entry::class_of(word) == entry::Class::signed_integer;
+      const std::size_t end = at + (is_extended ? std::bit_ceil(bytes) : bytes);
+      for (std::size_t i = at; i < end; ++i) known[i] = values[i];
     });
     return known;
   }

@@ -159,7 +159,7 @@ class SyncWindow {
     }
   }
 
-  /// Handles a new value of 1007h: without a window none is open any more. Another length is that of the next SYNC.
+  /// Handles a new value of 1007h: 0 ends the window of the last SYNC. Another length applies from the next SYNC on.
   void length_changed([[maybe_unused]] const ObjectStore<Device>& store) {
     if constexpr (exists) window_.limited = window_.limited && store.template number<0x1007, 0>() != 0;
   }
