@@ -170,6 +170,11 @@ class JsonPlaceScanner {
 
 JsonFile::JsonFile(const SourceFile& source) : source_{source} {
   constexpr bool with_comments = true;
+  // The parser takes a NUL for the end of the text, and does not read what follows.
+  if (const std::size_t nul = source.text().find('\0'); nul != std::string_view::npos) {
+    faults_.push_back({position_at(source, nul), "not JSON: NUL character", {}});
+    return;
+  }
   try {
     root_ = Json::parse(source.text(), nullptr, true, with_comments);
   } catch (const Json::parse_error& problem) {

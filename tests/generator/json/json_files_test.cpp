@@ -54,5 +54,13 @@ TEST(JsonFiles, SuggestASimilarMember) {
             (Messages{"unknown member \"signal\"; did you mean \"signals\"?"}));
 }
 
+/// The parser of JSON takes a NUL for the end of the text: what follows it had been no part of the value.
+TEST(JsonFiles, HaveNoNul) {
+  using namespace std::string_literals;
+  EXPECT_EQ(findings(options_findings("{\"settable\": []}\n\0e"s)), (Findings{error_at(2, 1, "options-syntax")}));
+  EXPECT_EQ(findings(network_findings("{" + nodes + "}\0\"x\""s)), (Findings{error_at(1, 66, "network-syntax")}));
+  EXPECT_EQ(messages(options_findings("{} // \0"s)), (Messages{"not JSON: NUL character"}));
+}
+
 }  // namespace
 }  // namespace edsc
