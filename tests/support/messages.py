@@ -80,7 +80,8 @@ def messages_of_cases(compiler: Compiler, cases: Sequence[tuple[str, str]], fold
                       flags: Iterable[str]) -> dict[str, list[str]]:
     """Compiles the texts of the cases as one file; returns the lines of the messages of each name, and those of none for "".
 
-    A specialization of a template reports its error once: cases that use the same one belong into different calls.
+    A specialization of a template reports its error once: cases that use the same one belong into different calls. If a message
+    names the file of no case, as some of g++ 14 do, each case is compiled alone.
     """
     folder.mkdir()
     unit = ""
@@ -97,7 +98,12 @@ def messages_of_cases(compiler: Compiler, cases: Sequence[tuple[str, str]], fold
         printed.add(error)
     for error in errors:
         place = re.search(rf"{re.escape(str(folder))}/case_(\d+)\.cpp", "\n".join(error))
-        messages[cases[int(place[1])][0] if place else ""] += printed.complete(error)
+        name = cases[int(place[1])][0] if place else cases[0][0] if len(cases) == 1 else ""
+        messages[name] += printed.complete(error)
+    if messages[""] and len(cases) > 1:
+        alone = [messages_of_cases(compiler, [case], folder / f"alone_{number}", include, flags)
+                 for number, case in enumerate(cases)]
+        return {"": [line for each in alone for line in each[""]], **{name: each[name] for each in alone for name in each if name}}
     if (run.returncode == 0) != (run.stderr == ""):
         messages[""].append(f"{compiler.name} returned {run.returncode}")
     return messages

@@ -151,20 +151,12 @@ class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
   static constexpr bool may_take(const Host&, std::uint32_t) {
     return count > 1;
   }
-  /// Accepts a request to one of the servers. One whose length is not eight bytes is ignored.
   template <class Host>
   bool on_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
-    if (!serves_sdo(host.state())) return false;
-    Store& store = host.store();
-    for (std::size_t i = 0; i < count; ++i) {
-      if (cob_id_of_server(i, request_sub_index, store) != cob_id) continue;
-      if (i != 0 && cob_id_of_server(i, response_sub_index, store) == CobId::invalid_bit) continue;
-      if (frame.size == 8) answer(host, i, frame.data);
-      // If nothing else is due, the response does not wait until all services have been asked what they have to send.
-      if (is_stepped || !host.may_send_at_once() || !send_replies(host)) host.attend();
-      return true;
-    }
-    return false;
+    if (!serves_sdo(host.state()) || !take(host, frame, cob_id)) return false;
+    // If nothing else is due, the response does not wait until all services have been asked what they have to send.
+    if (is_stepped || !host.may_send_at_once() || !send_replies(host)) host.attend();
+    return true;
   }
   template <class Host>
   void on_time(Host& host) {
@@ -236,18 +228,27 @@ class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
     return is_usable(cob_id) ? cob_id & CobId::identifier : CobId::invalid_bit;
   }
 
+  /// Accepts a request to one of the servers; returns false if it is none. One whose length is not eight bytes is
+  /// ignored.
   template <class Host>
-  void answer(Host& host, std::size_t i, const sdo::Data& request) {
-    SdoServer<Device>& server = servers_[i];
-    if constexpr (count > 1) {
-      if (!server.takes_segments()) take_domain_from_others(host.store(), i, request);
+  [[nodiscard]] bool take(Host& host, const Frame& frame, std::uint32_t cob_id) {
+    Store& store = host.store();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (cob_id_of_server(i, request_sub_index, store) != cob_id) continue;
+      if (i != 0 && cob_id_of_server(i, response_sub_index, store) == CobId::invalid_bit) continue;
+      if (frame.size != 8) return true;
+      if constexpr (count > 1) {
+        if (!servers_[i].takes_segments()) take_domain_from_others(store, i, frame.data);
+      }
+      if constexpr (is_stepped) servers_[i].discard_held_reply();
+      Hooks<Host> hooks{host};
+      servers_[i].on_request(frame.data, hooks, host.now());
+      if constexpr (is_stepped) {
+        if (hooks.started_command()) servers_[i].hold_reply();
+      }
+      return true;
     }
-    if constexpr (is_stepped) server.discard_held_reply();
-    Hooks<Host> hooks{host};
-    server.on_request(request, hooks, host.now());
-    if constexpr (is_stepped) {
-      if (hooks.started_command()) server.hold_reply();
-    }
+    return false;
   }
 
   /// Sends pending responses. Returns false if the bus had no room; they remain pending.
