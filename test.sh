@@ -31,7 +31,7 @@ HELP
 # Seconds on two processors: of a build from nothing, and of the tests.
 declare -A build_seconds=([gates]=0 [sources]=0 [quick]=700 [unit]=500 [odr]=300 [test]=700 [asan]=500 [firmware]=300 [static]=400
                           [static-arm64]=400 [long]=0 [sanitize]=900)
-declare -A test_seconds=([gates]=100 [sources]=1500 [quick]=60 [unit]=60 [odr]=0 [test]=1500 [asan]=350 [firmware]=100 [static]=0
+declare -A test_seconds=([gates]=100 [sources]=1500 [quick]=60 [unit]=60 [odr]=0 [test]=1000 [asan]=350 [firmware]=100 [static]=0
                          [static-arm64]=0 [long]=3000 [sanitize]=1250)
 
 build_of() {
