@@ -12,7 +12,6 @@
 #include "change/change.hpp"
 #include "change/open_sheet.hpp"
 #include "change/text_edit.hpp"
-#include "device/options/options.hpp"
 
 namespace edsc {
 
@@ -44,9 +43,9 @@ struct AppliedChanges {
 };
 
 /// Applies changes, each to the result of the ones before it. Bytes outside of the edited lines remain. A canonical
-/// file remains canonical. `options` must outlive the result.
+/// file remains canonical.
 [[nodiscard]] AppliedChanges apply_changes(const OpenSheet& before, std::span<const SheetChange> changes,
-                                           const ChangeSettings& settings, const Options& options);
+                                           const ChangeSettings& settings);
 
 /// The file after, and before, the edits.
 [[nodiscard]] std::string with_edits(std::string_view before, std::span<const ByteEdit> edits);
