@@ -23,6 +23,7 @@ UNUSED_IS_FINE = ("-Wno-unused-variable", "-Wno-unused-but-set-variable", "-Wno-
 COMMON_HEADERS = """#include <canopen/sdo/remote_node.hpp>
 #include <canopen/node.hpp>
 #include <canopen/node/locked.hpp>
+#include <canopen/node/mailbox.hpp>
 #include <canopen/master.hpp>
 #include <canopen/plant/plant.hpp>
 #include <every_type/device.hpp>
