@@ -105,13 +105,19 @@ struct RpdoEntry {
 /// Whether each object can be mapped into a PDO of this direction.
 template <class... Objects, std::size_t... Position>
 [[nodiscard]] constexpr auto check_tpdo(std::index_sequence<Position...> /*entries*/) {
-  return canopen::first_failure(
-      VerdictOf<TpdoMappable<Objects>, TpdoEntry<EntryNumber<Position + 1>, LabelOf<Objects>, Objects>>{}...);
+  if constexpr ((TpdoMappable<Objects> && ...))
+    return canopen::first_failure();
+  else
+    return canopen::first_failure(
+        VerdictOf<TpdoMappable<Objects>, TpdoEntry<EntryNumber<Position + 1>, LabelOf<Objects>, Objects>>{}...);
 }
 template <class... Objects, std::size_t... Position>
 [[nodiscard]] constexpr auto check_rpdo(std::index_sequence<Position...> /*entries*/) {
-  return canopen::first_failure(
-      VerdictOf<RpdoMappable<Objects>, RpdoEntry<EntryNumber<Position + 1>, LabelOf<Objects>, Objects>>{}...);
+  if constexpr ((RpdoMappable<Objects> && ...))
+    return canopen::first_failure();
+  else
+    return canopen::first_failure(
+        VerdictOf<RpdoMappable<Objects>, RpdoEntry<EntryNumber<Position + 1>, LabelOf<Objects>, Objects>>{}...);
 }
 
 /// First bit of each entry, and the end of the last one.
@@ -134,8 +140,11 @@ template <class Number, class Object, unsigned Begin, bool IsReported>
 }
 template <class... Objects, std::size_t... Position>
 [[nodiscard]] constexpr auto check_room(std::index_sequence<Position...> /*entries*/) {
-  return canopen::first_failure(check_entry_room<EntryNumber<Position + 1>, Objects, offsets_of<Objects...>[Position],
-                                                 sizeof...(Objects) <= 64>()...);
+  if constexpr (((Objects::bits > 0) && ...) && offsets_of<Objects...>.back() <= 64)
+    return canopen::first_failure();
+  else
+    return canopen::first_failure(check_entry_room<EntryNumber<Position + 1>, Objects, offsets_of<Objects...>[Position],
+                                                   sizeof...(Objects) <= 64>()...);
 }
 
 }  // namespace pdo_detail

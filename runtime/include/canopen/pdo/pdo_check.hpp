@@ -51,28 +51,41 @@ enum class EntryFault : std::uint8_t {
   granularity,
 };
 
-/// A layout with a direction has checked it, and each layout its length.
-template <const Dictionary& DeviceDictionary, class Pdo, class Layout, class Object, unsigned Granularity>
-[[nodiscard]] constexpr EntryFault fault_of() {
-  constexpr entry::Word word = DeviceDictionary.find(Object::index, Object::sub_index);
-  constexpr bool is_directed = requires { Layout::has_direction; };
+/// A layout with a direction has checked it, and each layout its length. Not a template of the PDO, so that the
+/// compiler instantiates it once for each object.
+template <class Object, bool IsDirected>
+[[nodiscard]] constexpr EntryFault fault_of(const Dictionary& dictionary, bool receive, unsigned granularity) {
   if constexpr (is_dummy<Object>) {
-    if (!Pdo::receive) return EntryFault::dummy_in_a_tpdo;
+    if (!receive) return EntryFault::dummy_in_a_tpdo;
     if (Object::index <= 0x0008 && Object::bits != dummy_bits[Object::index > 0x0008 ? 0 : Object::index])
       return EntryFault::dummy_of_another_length;
   } else {
+    const entry::Word word = dictionary.find(Object::index, Object::sub_index);
     if (word == Dictionary::no_object) return EntryFault::no_object;
     if (word == Dictionary::no_sub_index) return EntryFault::no_sub_index;
     const bool maps_nothing = (word & (entry::tpdo | entry::rpdo)) == 0;
-    const bool maps_here = (word & (Pdo::receive ? entry::rpdo : entry::tpdo)) != 0;
+    const bool maps_here = (word & (receive ? entry::rpdo : entry::tpdo)) != 0;
     if (maps_nothing)
-      return is_directed && Object::mappable == Mappable::no ? EntryFault::none : EntryFault::not_mappable;
-    if (!maps_here) return Pdo::receive ? EntryFault::not_in_an_rpdo : EntryFault::not_in_a_tpdo;
+      return IsDirected && Object::mappable == Mappable::no ? EntryFault::none : EntryFault::not_mappable;
+    if (!maps_here) return receive ? EntryFault::not_in_an_rpdo : EntryFault::not_in_a_tpdo;
     if (entry::is_domain(word)) return EntryFault::no_fixed_length;
     if (Object::bits == 0) return EntryFault::none;
     if (!length_fits<Object>(word)) return EntryFault::other_length;
   }
-  return Object::bits % Granularity != 0 ? EntryFault::granularity : EntryFault::none;
+  return Object::bits % granularity != 0 ? EntryFault::granularity : EntryFault::none;
+}
+
+template <class Layout>
+inline constexpr bool is_directed = requires {
+  Layout::has_direction;
+};
+
+/// Whether no entry of a layout has a fault.
+template <bool IsDirected, class... Objects>
+[[nodiscard]] constexpr bool entries_are_right(const PdoLayout<Objects...>* /*layout*/,
+                                               [[maybe_unused]] const Dictionary& dictionary,
+                                               [[maybe_unused]] bool receive, [[maybe_unused]] unsigned granularity) {
+  return ((fault_of<Objects, IsDirected>(dictionary, receive, granularity) == EntryFault::none) && ...);
 }
 
 template <const Dictionary& DeviceDictionary, class Pdo, class Number, class Label, class Object, EntryFault Fault>
@@ -109,14 +122,19 @@ struct CheckedCobId {
 
 template <const Dictionary& DeviceDictionary, class Pdo, class Number, class Layout, class Object, unsigned Granularity>
 [[nodiscard]] constexpr auto check_entry() {
-  constexpr EntryFault fault = fault_of<DeviceDictionary, Pdo, Layout, Object, Granularity>();
+  constexpr EntryFault fault = fault_of<Object, is_directed<Layout>>(DeviceDictionary, Pdo::receive, Granularity);
   return VerdictOf<fault == EntryFault::none,
                    CheckedEntry<DeviceDictionary, Pdo, Number, LabelOf<Object>, Object, fault>>{};
 }
+/// Looks at single entries only if one has a fault: most of the compile time of a device with many PDOs was theirs.
 template <const Dictionary& DeviceDictionary, class Pdo, class Layout, unsigned Granularity, std::size_t... Position>
 [[nodiscard]] constexpr auto check_entries(std::index_sequence<Position...> /*entries*/) {
-  return canopen::first_failure(check_entry<DeviceDictionary, Pdo, EntryNumber<Position + 1>, Layout,
-                                            typename Layout::template Entry<Position>, Granularity>()...);
+  if constexpr (entries_are_right<is_directed<Layout>>(static_cast<const Layout*>(nullptr), DeviceDictionary,
+                                                       Pdo::receive, Granularity))
+    return canopen::first_failure();
+  else
+    return canopen::first_failure(check_entry<DeviceDictionary, Pdo, EntryNumber<Position + 1>, Layout,
+                                              typename Layout::template Entry<Position>, Granularity>()...);
 }
 
 template <const Dictionary& DeviceDictionary, class Pdo, class Layout, PdoParameters Communication,
