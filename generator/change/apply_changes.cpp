@@ -54,11 +54,19 @@ std::vector<Diagnostic> new_errors(const OpenSheet& after, const OpenSheet& befo
   return errors_only_in(after, *open_sheet(before.source->name(), before.bytes, before.options, SheetChecks::all));
 }
 
-/// The text with the canonical form of a file that had it before.
-std::shared_ptr<const SourceFile> canonical(std::shared_ptr<const SourceFile> changed, const OpenSheet& before) {
-  const auto open = open_sheet(changed->name(), std::string{changed->text()}, before.options, SheetChecks::reading);
-  if (!open->device) return changed;
-  return std::make_shared<SourceFile>(changed->name(), canonical_text(*open), Packing::none, changed->choices());
+/// Sets the edits that make a text of the file, and the file after. Returns false with a problem.
+bool set_result(const OpenSheet& before, const SourceFile& changed, bool allow_utf8, AppliedChanges& applied) {
+  applied.edits = line_edits(*before.source, changed);
+  EditedBytes edited = edited_bytes(before.bytes, before.source->encoding(), applied.edits, allow_utf8);
+  if (!edited.error.empty()) {
+    applied = {};
+    applied.problem = std::move(edited.error);
+    applied.is_rejected = true;
+    return false;
+  }
+  applied.bytes = std::move(edited.changes);
+  applied.after = open_sheet(before.source->name(), std::move(edited.bytes), before.options, SheetChecks::all);
+  return true;
 }
 
 }  // namespace
@@ -69,25 +77,21 @@ AppliedChanges apply_changes(const OpenSheet& before, std::span<const SheetChang
   ChangeApplier applier(before.source);
   for (const SheetChange& change : changes) applier.apply(change);
   if (settings.stamp) stamp(*settings.stamp, before, applier);
-  std::shared_ptr<const SourceFile> changed = applier.finish();
+  const std::shared_ptr<const SourceFile> changed = applier.finish();
   applied.problem = applier.problem();
   applied.objections = applier.objections();
   applied.is_rejected = !applied.problem.empty() || (!applied.objections.empty() && !settings.force);
   if (!applied.problem.empty()) return applied;
 
-  if (changed != before.source && is_canonical(before)) changed = canonical(changed, before);
-  applied.edits = line_edits(*before.source, *changed);
-  EditedBytes edited = edited_bytes(before.bytes, before.source->encoding(), applied.edits, settings.utf8);
-  if (!edited.error.empty()) {
-    applied = {};
-    applied.problem = std::move(edited.error);
-    applied.is_rejected = true;
-    return applied;
+  if (!set_result(before, *changed, settings.utf8, applied)) return applied;
+  if (applied.after->device && is_canonical(before)) {
+    const std::string text = canonical_text(*applied.after);
+    if (text != applied.after->source->text()) {
+      const SourceFile canonical{changed->name(), text, Packing::none, applied.after->source->choices()};
+      if (!set_result(before, canonical, settings.utf8, applied)) return applied;
+    }
   }
-  applied.bytes = std::move(edited.changes);
-  auto after = open_sheet(before.source->name(), std::move(edited.bytes), before.options, SheetChecks::all);
-  applied.new_errors = new_errors(*after, before);
-  applied.after = std::move(after);
+  applied.new_errors = new_errors(*applied.after, before);
   applied.is_rejected = applied.is_rejected || (!applied.new_errors.empty() && !settings.force);
   if (applied.is_rejected) {
     applied.edits.clear();
