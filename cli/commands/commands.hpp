@@ -12,6 +12,9 @@ AddOptions add_generate_options;
 AddOptions add_check_options;
 AddOptions add_dump_options;
 AddOptions add_format_options;
+AddOptions add_merge_options;
+AddOptions add_new_options;
+AddOptions add_object_options;
 AddOptions add_overlay_options;
 AddOptions add_overlay_from_bus_options;
 AddOptions add_diff_options;
@@ -65,6 +68,9 @@ inline constexpr CommandRow commands[] = {
     {"EDS files", "dump", "print the resolved device as JSON", add_dump_options},
     {"EDS files", "format", "write an EDS or DCF in canonical form; make DCFs; convert XDD and XDC",
      add_format_options},
+    {"EDS files", "new", "write an EDS for a new device", add_new_options},
+    {"EDS files", "object", "add, change, map and remove objects of an EDS or DCF", add_object_options},
+    {"EDS files", "merge", "merge two versions of an EDS or DCF, as a merge driver of git", add_merge_options},
     {"EDS files", "overlay", "correct an EDS that you may not change: apply, derive and rebase overlays",
      add_overlay_options},
     {"EDS files", "diff", "compare two EDS files; report breaking changes", add_diff_options},

@@ -105,6 +105,11 @@ void SheetEdit::remove_entry(const IniEntry& entry) {
   touched_.insert(entry.line);
 }
 
+void SheetEdit::rename_entry(const IniEntry& entry, std::string_view key) {
+  replace_key(entry, key);
+  touched_.insert(entry.line);
+}
+
 void SheetEdit::add_entry(const TextSection& section, std::string_view key, std::vector<NewLine> lines) {
   added_entries_.push_back({&section, std::string{key}, std::move(lines)});
 }
@@ -141,7 +146,9 @@ void SheetEdit::rename_section(const TextSection& section, std::string_view name
     if (&other == &section || !is_object_section(other.name.kind) || other.name.index != section.name.index) continue;
     SectionName moved = other.name;
     moved.index = after.index;
-    rename(other, moved, spell_section_name(moved));
+    const bool keeps_rest = parse_hex(other.title.substr(0, 4), 4) == other.name.index && name.size() == 4;
+    rename(other, moved,
+           keeps_rest ? std::string{name} + std::string{other.title.substr(4)} : spell_section_name(moved));
   }
 }
 
@@ -259,7 +266,7 @@ void SheetEdit::renew_list(SectionKind list, const std::set<std::uint16_t>& remo
   }
   bool is_numbered = true;
   for (std::size_t i = 0; i < rows.size(); ++i) is_numbered = is_numbered && rows[i].number == i + 1;
-  const bool is_sorted = is_numbered && std::ranges::is_sorted(rows, {}, &Row::index);
+  const bool is_sorted = !appends_to_lists_ && is_numbered && std::ranges::is_sorted(rows, {}, &Row::index);
 
   std::set<std::uint16_t> missing = added;
   for (const Row& row : rows) missing.erase(static_cast<std::uint16_t>(row.index));

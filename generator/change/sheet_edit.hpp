@@ -27,6 +27,9 @@ class SheetEdit {
  public:
   explicit SheetEdit(const SheetText& text) : text_(text) {}
 
+  /// New objects are added at the end of a list, also of an ascending one.
+  void append_to_lists() { appends_to_lists_ = true; }
+
   /// A comment after a number remains, unless `with_comment`.
   void set_value(const IniEntry& entry, std::string_view value, const ValueOrigin& origin, bool with_comment = false);
   /// Adds lines before the first one.
@@ -34,6 +37,8 @@ class SheetEdit {
   /// Adds comments before an entry.
   void add_comments(const IniEntry& entry, std::vector<NewLine> comments);
   void remove_entry(const IniEntry& entry);
+  /// Renames a key. Its value remains.
+  void rename_entry(const IniEntry& entry, std::string_view key);
   /// The entry remains as it is, also if other changes would adapt it.
   void keep_entry(const IniEntry& entry) { touched_.insert(entry.line); }
   /// Adds a key at its place in the canonical order of the section. `lines` are comments before it and its line.
@@ -105,6 +110,7 @@ class SheetEdit {
   std::set<std::uint32_t> touched_;
   std::set<std::size_t> removed_;  ///< places of sections
   bool has_removed_lines_ = false;
+  bool appends_to_lists_ = false;
   std::map<std::size_t, SectionName> renamed_;
   std::vector<AddedSection> added_sections_;
   std::vector<AddedEntry> added_entries_;

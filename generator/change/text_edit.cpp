@@ -181,6 +181,39 @@ class TextEncoder {
   std::string error_;
 };
 
+/// Collects what is between the kept parts of a file. Parts are kept in their order.
+class ByteChanges {
+ public:
+  /// `after` grows while parts are kept; what it has at first is kept.
+  ByteChanges(std::string_view before, const std::string& after)
+      : before_(before), after_(after), end_before_(after.size()), end_after_(after.size()) {}
+
+  /// To be called before the part is appended to the file after.
+  void keep(std::size_t offset, std::size_t size) {
+    add(offset);
+    end_before_ = offset + size;
+    end_after_ = after_.size() + size;
+  }
+
+  [[nodiscard]] std::vector<ByteEdit> finish() {
+    add(before_.size());
+    return std::move(changes_);
+  }
+
+ private:
+  void add(std::size_t offset) {
+    if (offset == end_before_ && after_.size() == end_after_) return;
+    changes_.push_back(
+        {end_before_, std::string{before_.substr(end_before_, offset - end_before_)}, after_.substr(end_after_)});
+  }
+
+  std::string_view before_;
+  const std::string& after_;
+  std::size_t end_before_;
+  std::size_t end_after_;
+  std::vector<ByteEdit> changes_;
+};
+
 }  // namespace
 
 std::unique_ptr<SourceFile> edited_text(const std::shared_ptr<const SourceFile>& base,
@@ -213,6 +246,7 @@ std::unique_ptr<SourceFile> edited_text(const std::shared_ptr<const SourceFile>&
 EditedBytes edited_bytes(std::string_view bytes, Encoding encoding, const std::vector<TextEdit>& edits,
                          bool allow_utf8) {
   EditedBytes edited;
+  const std::string_view whole = bytes;
   for (const std::string_view mark : byte_order_marks) {
     if (edited.bytes.empty() && bytes.starts_with(mark) && (mark.size() == 2) == is_utf16(encoding)) {
       edited.bytes = mark;
@@ -222,22 +256,33 @@ EditedBytes edited_bytes(std::string_view bytes, Encoding encoding, const std::v
   const std::vector<RawLine> base = raw_lines(bytes, encoding);
   const EditPlan plan(static_cast<std::uint32_t>(base.size()), !base.empty() && !base.back().end.empty(), edits);
   TextEncoder encoder(encoding, allow_utf8);
+  ByteChanges changes(whole, edited.bytes);
+  const auto keep = [&](std::string_view part) {
+    if (!part.empty()) changes.keep(static_cast<std::size_t>(part.data() - whole.data()), part.size());
+    edited.bytes += part;
+  };
   for (const PlannedLine& planned : plan.lines()) {
     for (std::uint32_t i = 0; i + 1 < planned.count; ++i) {
-      edited.bytes += base[planned.of_base - 1 + i].text;
-      edited.bytes += base[planned.of_base - 1 + i].end;
+      keep(base[planned.of_base - 1 + i].text);
+      keep(base[planned.of_base - 1 + i].end);
     }
     if (planned.added != nullptr) {
       encoder.append(edited.bytes, planned.added->text);
     } else {
-      edited.bytes += base[planned.of_base + planned.count - 2].text;
+      keep(base[planned.of_base + planned.count - 2].text);
     }
     if (planned.end_of == default_end) {
       encoder.append(edited.bytes, default_line_end);
     } else if (planned.end_of != no_end) {
-      edited.bytes += base[planned.end_of - 1].end;
+      const bool is_own = planned.added == nullptr && planned.end_of == planned.of_base + planned.count - 1;
+      if (is_own) {
+        keep(base[planned.end_of - 1].end);
+      } else {
+        edited.bytes += base[planned.end_of - 1].end;
+      }
     }
   }
+  edited.changes = changes.finish();
   edited.error = encoder.error();
   return edited;
 }

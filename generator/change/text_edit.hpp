@@ -1,6 +1,7 @@
 /// Edits of the lines of a text. All other bytes remain: encoding, byte order mark, line ends, blanks and comments.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -31,9 +32,19 @@ struct TextEdit {
                                                       const std::vector<TextEdit>& edits,
                                                       const std::shared_ptr<const SourceFile>& changed_by);
 
+/// Bytes of a file that others replace.
+struct ByteEdit {
+  std::size_t offset = 0;  ///< in the file before
+  std::string before;
+  std::string after;
+
+  friend bool operator==(const ByteEdit&, const ByteEdit&) = default;
+};
+
 struct EditedBytes {
   std::string bytes;
-  std::string error;  ///< names a character that the encoding cannot express
+  std::vector<ByteEdit> changes;  ///< of the bytes before, ascending
+  std::string error;              ///< names a character that the encoding cannot express
 };
 
 /// The bytes of a file with the edits. `encoding` is that of the file; an ASCII file becomes UTF-8 with `allow_utf8`.

@@ -82,7 +82,25 @@ std::vector<ProfileObject> read_profile_objects(const nlohmann::json& rows, Opti
   return objects;
 }
 
+std::map<std::uint16_t, std::string> read_profile_names(const nlohmann::json& rows, OptionFile& file) {
+  std::map<std::uint16_t, std::string> names;
+  for (const auto& [index, name] : file.json().members(rows)) {
+    const auto number = parse_index(index);
+    if (number && name->is_string()) {
+      names[*number] = name->get<std::string>();
+    } else {
+      file.error(*name, index, "expected the name of an object");
+    }
+  }
+  return names;
+}
+
 }  // namespace
+
+std::string MeaningProfile::name_of(std::uint16_t index) const {
+  const auto found = names.find(index);
+  return found == names.end() ? std::string{} : found->second;
+}
 
 const ProfileObject* MeaningProfile::find(std::uint16_t index) const {
   const auto found = std::ranges::lower_bound(objects, index, {}, &ProfileObject::index);
@@ -123,6 +141,8 @@ MeaningProfile read_meaning_profile(const SourceFile& source, Diagnostics& diagn
       profile.meanings.entries = read_meaning(*value, name, MeaningSource::profile, file).entries;
     } else if (name == "objects" && value->is_object()) {
       profile.objects = read_profile_objects(*value, file);
+    } else if (name == "names" && value->is_object()) {
+      profile.names = read_profile_names(*value, file);
     } else if (name == "emcy") {
       profile.meanings.error_codes = read_error_codes(*value, name, MeaningSource::profile, file);
     } else {

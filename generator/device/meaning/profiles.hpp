@@ -4,6 +4,7 @@
 #include <canopen/od/access.hpp>
 #include <canopen/od/data_type.hpp>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -51,10 +52,14 @@ struct MeaningProfile {
   std::uint16_t repeat_offset = 0;  ///< objects 6000h.. are repeated at this distance for further axes; 0: they are not
   std::uint16_t repeat_count = 1;
   MeaningDescriptions meanings;
-  std::vector<ProfileObject> objects;  ///< ascending
+  std::vector<ProfileObject> objects;          ///< ascending
+  std::map<std::uint16_t, std::string> names;  ///< of objects, as the profile spells them
 
   /// The row of an object of the first axis; null if there is none.
   [[nodiscard]] const ProfileObject* find(std::uint16_t index) const;
+
+  /// The name of an object of the first axis; empty if edsc does not have it.
+  [[nodiscard]] std::string name_of(std::uint16_t index) const;
 
   /// The index of the object in the first axis, and the distance to it.
   struct Place {

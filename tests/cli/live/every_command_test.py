@@ -78,8 +78,22 @@ class EveryCommand(ReferenceDevices):
                 self.run_command("overlay apply", f"{device}.overlay", "-o", f"applied-{device}.eds")
                 self.run_command("overlay rebase", f"{device}.overlay", sheet, "-o", f"rebased-{device}.overlay")
                 self.run_command("check", f"{device}.overlay", exit_codes=(FINE, FAILED))
+                self.change_objects(f"{device}.eds", sheet)
                 self.run_command("document", sheet, "-o", f"{device}.html")
                 self.run_command("document", f"{device}.dcf", "--against", sheet, "-o", f"{device}.md")
+
+    def change_objects(self, edited: str, sheet: Path) -> None:
+        """Changes a file of the folder with each action of `edsc object`."""
+        self.run_command("object add", edited, "5F00h", "Speed", "UNSIGNED16", "rw", "--mappable")
+        self.run_command("object add", edited, "5F10h", "Limits", "--record", "Low:INTEGER16:rw=1,High:INTEGER16:rw=2")
+        self.run_command("object set", edited, "5F10h:01-02", "HighLimit=500")
+        self.run_command("object map", edited, "tpdo", 9, "5F00h", "--cob-id", "0x80000000", exit_codes=(FINE, FAILED))
+        self.run_command("object rename", edited, "5F00h", "5F01h")
+        self.run_command("object remove", edited, "5F10h", "--dry-run")
+        self.run_command("object export", edited, "-o", "objects.csv")
+        self.run_command("object import", edited, "objects.csv")
+        self.run_command("merge", sheet, edited, sheet)
+        self.run_command("new", f"new-{edited}", "--vendor-name", "Acme", "--cia", "402")
 
     def test_2_plants(self) -> None:
         self.run_command("network members")

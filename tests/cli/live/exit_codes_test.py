@@ -22,7 +22,7 @@ HAS_COMMANDS = {one["command"].rsplit(" ", 1)[0] for one in LANGUAGE["commands"]
 COMMANDS = {one["command"]: one for one in LANGUAGE["commands"] if one["command"] not in HAS_COMMANDS}
 NO_BUS = "socketcand:127.0.0.1:1/vcan0"  # no server listens there
 # They have no input and no device that can be wrong.
-CANNOT_FAIL = {"overlay from", "completion", "help", "version", "bus", "network members", "record", "monitor", "send sync", "send time", "send pdo",
+CANNOT_FAIL = {"overlay from", "object export", "completion", "help", "version", "bus", "network members", "record", "monitor", "send sync", "send time", "send pdo",
                "send frame", "lss activate", "lss state"}
 
 # More uses than those of standard_streams_test.py: the words with the exit code. @ is BUS.
@@ -45,6 +45,14 @@ MORE = {
     "accept": ("accept @ 100 device.eds --only 2.1 --timeout 10ms", FAILED),
     "node": ("node @ broken.eds --node-id 9", FAILED),
     "watch": ("watch good.log --network plant.json --silence sdo-write --silence node-missing", FINE),
+    "merge": ("merge device.eds third.eds other.eds", FAILED),
+    "new": ("new other_new.eds --vendor-name Acme --cia 401 --tpdo-objects 2F77h", FAILED),
+    "object add": ("object add device.eds 1017h", FAILED),
+    "object set": ("object set device.eds 9999h ParameterName=a", FAILED),
+    "object map": ("object map device.eds tpdo 1 9999h", FAILED),
+    "object rename": ("object rename device.eds 9999h 9998h", FAILED),
+    "object remove": ("object remove device.eds 9999h", FAILED),
+    "object import": ("object import device.eds device.eds", FAILED),
     "overlay apply": ("overlay apply wrong.overlay -o none.eds", FAILED),
     "overlay rebase": ("overlay rebase wrong.overlay device.eds -o none.overlay", FAILED),
     "overlay from-bus": ("overlay from-bus @ 100 device.eds -o none.overlay --timeout 10ms", FAILED),
@@ -98,6 +106,7 @@ class ExitCodes(standard_streams_test.PreparedFiles):
         self.write("same.log", "(1.0) vcan0 605#4018100100000000\n(1.001) vcan0 585#43181001EFCDAB00\n")
         self.write("broken.ini", "[DeviceInfo\nVendorName\n")
         self.write("wrong.overlay", "[Overlay]\nVersion=1\nBase=device.eds\n\n[9999]\nDefaultValue=0 => 100\n")
+        self.write("third.eds", (self.folder / "device.eds").read_text().replace("=0x00001001", "=0x00001003"))
         self.write("absent.json", json.dumps({"bit_rate": 500, "nodes": {"axis": {"node_id": 100, "eds": "device.eds"}}}))
 
     def words_of(self, text: str) -> list[str]:
@@ -136,9 +145,10 @@ class ExitCodes(standard_streams_test.PreparedFiles):
     def test_of_a_missing_file(self) -> None:
         for name, command in COMMANDS.items():
             arguments = [one["names"][0] for one in command["arguments"]]
-            if not {"FILE", "LOG", "BASE"} & set(arguments) or name in ("completion", "network generate"):
+            if not {"FILE", "LOG", "BASE"} & set(arguments) or name in ("completion", "network generate", "new"):
                 continue
-            value = {"BUS": NO_BUS, "NODE": "5", "FILE": "no_such.eds", "LOG": "no_such.log", "BASE": "no_such.eds", "OBJECT": "1017h", "TARGET": NO_BUS}
+            value = {"BUS": NO_BUS, "NODE": "5", "FILE": "no_such.eds", "LOG": "no_such.log", "BASE": "no_such.eds", "OBJECT": "1017h", "TARGET": NO_BUS,
+                     "KEY=VALUE": "a=1", "DIRECTION": "tpdo", "NUMBER": "1", "NAME": "5F00h", "OTHER": "no_such.eds", "SOURCE": "no_such.csv"}
             given = [value[one] for one in arguments]
             if name == "diff":
                 given = ["no_such.eds", "device.eds"]

@@ -52,6 +52,16 @@ ROWS = (
     Row("overlay apply", ("change.overlay", "-o", "applied.eds"), files=("applied.eds",)),
     Row("overlay rebase", ("change.overlay", "device.eds", "-o", "rebased.overlay"), files=("rebased.overlay",)),
     Row("overlay from-bus", (5, "other.eds", "-o", "bus.overlay"), bus=True),
+    Row("new", ("new_device.eds", "--vendor-name", "Acme")),
+    Row("object add", ("edited.eds", "5F00h", "Speed", "UNSIGNED16", "rw", "--dry-run")),
+    Row("object set", ("edited.eds", "1017h", "ParameterName=Heartbeat")),
+    Row("object map", ("edited.eds", "tpdo", 1, "--transmission-type", 1)),
+    Row("object rename", ("edited.eds", "1017h", "5F01h", "--dry-run", "--force")),
+    Row("object remove", ("edited.eds", "1017h", "--dry-run")),
+    Row("object remove", ("edited.eds", "9999h"), FAILED, warns=True),
+    Row("object import", ("edited.eds", "objects.csv")),
+    Row("object export", ("edited.eds",)),
+    Row("merge", ("device.eds", "merged.eds", "device.eds")),
     Row("diff", ("device.eds", "warned.eds")),
     Row("diff", ("device.eds", "broken.eds"), WRONG_USAGE, warns=True),
     Row("document", ("warned.eds", "-o", "page.html"), files=("page.html",)),
@@ -110,6 +120,9 @@ class PreparedFiles(LiveTest):
         self.write("warned.eds", text.replace("EDSVersion=4.0", "EDSVersion=4.0\nNoSuchKey=1"))
         self.write("broken.eds", text.replace("DataType=0x0007", "DataType=0x7777", 1))
         self.write("other.eds", text.replace("=0x00001001", "=0x00001002"))
+        for name in ("edited.eds", "merged.eds"):
+            self.write(name, (self.folder / "device.eds").read_text(encoding="utf-8"))
+        self.write("objects.csv", "index,sub,name,type,access,default,low,high,unit\n1017h,,Heartbeat,,,,,,\n")
         self.write("change.overlay", "[Overlay]\nVersion=1\nBase=device.eds\n\n[1017]\nDefaultValue=0 => 100\n")
         subprocess.run([EDSC, "format", "device.eds", "--dcf", "--node-id", "5", "-o", "other.dcf"], cwd=self.folder, check=True,
                        capture_output=True)
