@@ -1,7 +1,6 @@
 /// Copies, clears and reads bytes.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -14,18 +13,18 @@ namespace canopen {
 namespace bytes_detail {
 
 /// Copies byte by byte: the library's memcpy and memset would add hundreds of bytes to an image. The fence keeps the
-/// compiler from replacing these loops with calls of them.
+/// compiler from replacing these loops with calls of them; <atomic> would bring threads with it.
 [[gnu::noinline]] inline void copy_by_loop(std::uint8_t* to, const std::uint8_t* from, std::size_t size) {
   for (const std::uint8_t* const end = to + size; to != end;) {
     *to++ = *from++;
-    std::atomic_signal_fence(std::memory_order_acq_rel);
+    __atomic_signal_fence(__ATOMIC_ACQ_REL);
   }
 }
 
 [[gnu::noinline]] inline void clear_by_loop(std::uint8_t* to, std::size_t size) {
   for (const std::uint8_t* const end = to + size; to != end;) {
     *to++ = 0;
-    std::atomic_signal_fence(std::memory_order_acq_rel);
+    __atomic_signal_fence(__ATOMIC_ACQ_REL);
   }
 }
 

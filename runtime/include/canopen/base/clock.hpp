@@ -1,8 +1,16 @@
 /// Time as the services see it: 32-bit microseconds since start, handed in by the application or a port.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
+#include <ratio>
+
+// Since C++20, <chrono> of libstdc++ includes streams and locales: a quarter of a second for each file. Durations and
+// clocks alone are in this header.
+#if defined(__GLIBCXX__) && __has_include(<bits/chrono.h>)
+#include <bits/chrono.h>
+#else
+#include <chrono>
+#endif
 
 namespace canopen {
 

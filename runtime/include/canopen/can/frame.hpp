@@ -6,8 +6,8 @@
 #include <concepts>
 #include <cstdint>
 #include <cstring>
-#include <memory>
 
+#include "canopen/base/assume_aligned.hpp"
 #include "canopen/can/cob_id.hpp"
 
 namespace canopen {
@@ -68,7 +68,7 @@ static_assert(sizeof(FrameWords) == sizeof Frame::data);
 
 [[nodiscard]] inline FrameWords words_of(const Frame& frame) {
   FrameWords words;
-  const std::uint8_t* const data = std::assume_aligned<4>(frame.data.data());
+  const std::uint8_t* const data = assume_aligned<4>(frame.data.data());
   std::memcpy(&words.first, data, sizeof words.first);
   std::memcpy(&words.second, data + sizeof words.first, sizeof words.second);
   return words;
@@ -106,7 +106,7 @@ template <Bus BusType>
 template <Bus BusType>
 [[nodiscard]] bool send_data(BusType& bus, std::uint32_t cob_id, std::uint8_t size, const std::uint8_t* data) {
   FrameWords words;
-  std::memcpy(&words, std::assume_aligned<4>(data), sizeof words);
+  std::memcpy(&words, assume_aligned<4>(data), sizeof words);
   return send_words(bus, cob_id, size, words.first, words.second);
 }
 

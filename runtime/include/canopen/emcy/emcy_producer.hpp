@@ -5,12 +5,12 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/base/assume_aligned.hpp"
 #include "canopen/base/clock.hpp"
 #include "canopen/base/deadline.hpp"
 #include "canopen/can/cob_id.hpp"
@@ -311,10 +311,10 @@ class EmergencyProducer {
       }
       for (field += sizeof newest * older; older != 0; --older, field -= sizeof newest) {
         std::uint32_t moved;
-        std::memcpy(&moved, std::assume_aligned<alignof(std::uint32_t)>(field - sizeof moved), sizeof moved);
-        std::memcpy(std::assume_aligned<alignof(std::uint32_t)>(field), &moved, sizeof moved);
+        std::memcpy(&moved, assume_aligned<alignof(std::uint32_t)>(field - sizeof moved), sizeof moved);
+        std::memcpy(assume_aligned<alignof(std::uint32_t)>(field), &moved, sizeof moved);
       }
-      std::memcpy(std::assume_aligned<alignof(std::uint32_t)>(field), &newest, sizeof newest);
+      std::memcpy(assume_aligned<alignof(std::uint32_t)>(field), &newest, sizeof newest);
     }
   }
 

@@ -25,7 +25,7 @@
 #include "canopen/lss/lss_handler.hpp"
 #include "canopen/node/application.hpp"
 #include "canopen/node/handled.hpp"
-#include "canopen/node/mailbox.hpp"
+#include "canopen/node/values_from.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/object_list.hpp"

@@ -15,24 +15,19 @@ namespace canopen {
 template <bool exist, bool write, bool supply>
 class HandlerCalls {
  public:
-  /// Calls the handlers of an object by `ask`. `written` is the key of the object if it is written, otherwise 0.
-  template <class Ask>
-  [[nodiscard]] auto ask([[maybe_unused]] std::uint32_t written, Ask&& ask) {
+  /// Handlers of an object are called as long as the result exists. `written` is the key of the object if it is
+  /// written, otherwise 0.
+  [[nodiscard]] auto call([[maybe_unused]] std::uint32_t written = 0) {
     if constexpr (exist) {
       if constexpr (write) state_.has_set = false;
-      const Call<false> call{state_, written};
-      return ask();
+      return Call<false>{state_, written};
     } else {
-      return ask();
+      return NoState{};
     }
   }
 
-  /// Calls the read handlers of an object for a TPDO.
-  template <class Ask>
-  void ask_for_tpdo(std::uint32_t key, Ask&& ask) requires(supply) {
-    const Call<true> call{state_, key};
-    ask();
-  }
+  /// The same for the read handlers of an object for a TPDO.
+  [[nodiscard]] auto call_for_tpdo(std::uint32_t key) requires(supply) { return Call<true>{state_, key}; }
 
   /// Whether an object is set by its own read handler for a TPDO.
   [[nodiscard]] bool is_supplied([[maybe_unused]] std::uint32_t key) const {

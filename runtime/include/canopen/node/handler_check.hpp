@@ -17,7 +17,7 @@
 #include "canopen/node/application_check.hpp"
 #include "canopen/node/composition.hpp"
 #include "canopen/node/handlers.hpp"
-#include "canopen/node/mailbox.hpp"
+#include "canopen/node/values_from.hpp"
 #include "canopen/od/device_object.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/value_for.hpp"

@@ -94,15 +94,11 @@ class HandlerSet {
   /// Calls the write handlers of the object with this key; returns the first abort code.
   AbortCode before_write(Node& node, std::uint32_t key, std::span<std::uint8_t> bytes) {
     AbortCode code = ok;
-    for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
+    for_each([&]<class Handler>(Handler& handler) {
       if constexpr (Handled<Handler>::takes_any_object) {
         if (code == ok) code = handler.before_write(key, bytes);
       }
-      Handled<Handler>::BeforeWrite::for_each([&]<class Object>() {
-        if (code != ok || key != object_key(Object::index, Object::sub_index)) return;
-        AccessProbe<Device>::uses(Object::index, Object::sub_index);
-        code = Handled<Handler>::template before_write<Object>(handler, node, value_detail::value_from<Object>(bytes));
-      });
+      check_value(handler, typename Handled<Handler>::BeforeWrite{}, node, key, bytes, code);
     });
     return code;
   }
@@ -121,28 +117,20 @@ class HandlerSet {
   /// The same for the object with this key; `store` has its value.
   template <class Store>
   void after_write(Node& node, std::uint32_t key, const Store& store) {
-    for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
+    for_each([&]<class Handler>(Handler& handler) {
       if constexpr (Handled<Handler>::takes_any_object) handler.after_write(key);
-      Handled<Handler>::AfterWrite::for_each([&]<class Object>() {
-        if (key != object_key(Object::index, Object::sub_index)) return;
-        AccessProbe<Device>::uses(Object::index, Object::sub_index);
-        Handled<Handler>::template after_write<Object>(handler, node, store.template get<Object>());
-      });
+      use_value(handler, typename Handled<Handler>::AfterWrite{}, node, key, store);
     });
   }
 
   /// Calls the read handlers of the object with this key; returns the first abort code.
   AbortCode before_read(Node& node, std::uint32_t key) {
     AbortCode code = ok;
-    for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
+    for_each([&]<class Handler>(Handler& handler) {
       if constexpr (Handled<Handler>::takes_any_object) {
         if (code == ok) code = handler.before_read(key);
       }
-      Handled<Handler>::Read::for_each([&]<class Object>() {
-        if (code != ok || key != object_key(Object::index, Object::sub_index)) return;
-        AccessProbe<Device>::uses(Object::index, Object::sub_index);
-        code = Handled<Handler>::template read<Object>(handler, node);
-      });
+      supply_value(handler, typename Handled<Handler>::Read{}, node, key, code);
     });
     return code;
   }
@@ -194,6 +182,37 @@ class HandlerSet {
   constexpr HandlerSet([[maybe_unused]] std::tuple<Given...>& parts, std::index_sequence<Position...>)
       : handlers_(part_detail::PartValue<Handlers, part_detail::place_of<Position, std::tuple<Handlers...>, Given...>,
                                          Given...>{parts}...) {}
+
+  /// Whether this is the key of `Object`, which a handler uses then.
+  template <class Object>
+  [[nodiscard]] static constexpr bool is_for(std::uint32_t key) {
+    if (key != object_key(Object::index, Object::sub_index)) return false;
+    AccessProbe<Device>::uses(Object::index, Object::sub_index);
+    return true;
+  }
+
+  template <class Handler, class... Os>
+  static constexpr void check_value([[maybe_unused]] Handler& handler, ObjectList<Os...>, [[maybe_unused]] Node& node,
+                                    [[maybe_unused]] std::uint32_t key, [[maybe_unused]] std::span<std::uint8_t> bytes,
+                                    [[maybe_unused]] AbortCode& code) {
+    (static_cast<void>(code == ok && is_for<Os>(key) &&
+                       (code = Handled<Handler>::template before_write<Os>(handler, node,
+                                                                           value_detail::value_from<Os>(bytes))) == ok),
+     ...);
+  }
+  template <class Handler, class... Os, class Store>
+  static constexpr void use_value([[maybe_unused]] Handler& handler, ObjectList<Os...>, [[maybe_unused]] Node& node,
+                                  [[maybe_unused]] std::uint32_t key, [[maybe_unused]] const Store& store) {
+    ((is_for<Os>(key) ? Handled<Handler>::template after_write<Os>(handler, node, store.template get<Os>()) : void()),
+     ...);
+  }
+  template <class Handler, class... Os>
+  static constexpr void supply_value([[maybe_unused]] Handler& handler, ObjectList<Os...>, [[maybe_unused]] Node& node,
+                                     [[maybe_unused]] std::uint32_t key, [[maybe_unused]] AbortCode& code) {
+    (static_cast<void>(code == ok && is_for<Os>(key) &&
+                       (code = Handled<Handler>::template read<Os>(handler, node)) == ok),
+     ...);
+  }
 
   template <class Visit>
   constexpr void for_each([[maybe_unused]] Visit&& visit) {

@@ -13,6 +13,7 @@
 #include "canopen/base/shared_value.hpp"
 #include "canopen/node/object_setters.hpp"
 #include "canopen/node/value_check.hpp"
+#include "canopen/node/values_from.hpp"
 #include "canopen/od/device_object.hpp"
 #include "canopen/od/object.hpp"
 #include "canopen/od/value.hpp"
@@ -122,26 +123,11 @@ class Mailbox {
   Slots slots_;
 };
 
-/// A mailbox of a node, passed with its handlers.
-template <class MailboxType>
-struct ValuesFrom {
-  MailboxType* mailbox;
-};
-
 /// Gives a node the values of a mailbox, which must outlive it. A node may have several mailboxes, and a mailbox has
 /// one node.
 template <DictionaryObject... Objects>
 [[nodiscard]] constexpr ValuesFrom<Mailbox<Objects...>> values_from(Mailbox<Objects...>& mailbox) {
   return {&mailbox};
 }
-
-namespace mailbox_detail {
-
-template <class Handler>
-inline constexpr bool is_values_from = false;
-template <class MailboxType>
-inline constexpr bool is_values_from<ValuesFrom<MailboxType>> = true;
-
-}  // namespace mailbox_detail
 
 }  // namespace canopen

@@ -32,7 +32,8 @@ template <class Host>
   }
   if constexpr (Host::Handlers::has_write_handlers) {
     const std::uint32_t key = object_key(index, sub_index);
-    return host.handler_calls().ask(key, [&] { return host.handlers().before_write(host.node(), key, bytes); });
+    [[maybe_unused]] const auto call = host.handler_calls().call(key);
+    return host.handlers().before_write(host.node(), key, bytes);
   }
   return ok;
 }
@@ -43,10 +44,8 @@ template <class Host>
 inline void notify_written([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t index,
                            [[maybe_unused]] std::uint8_t sub_index) {
   if constexpr (Host::Handlers::has_written_handlers) {
-    static_cast<void>(host.handler_calls().ask(0, [&] {
-      host.handlers().after_write(host.node(), object_key(index, sub_index), host.store());
-      return ok;
-    }));
+    [[maybe_unused]] const auto call = host.handler_calls().call();
+    host.handlers().after_write(host.node(), object_key(index, sub_index), host.store());
   }
 }
 
@@ -76,8 +75,10 @@ inline void take_received(Host& host, const typename Object::type& value) {
   }
   if (check_limits<Object>(value) != ok) return;
   if constexpr (Host::Handlers::template handles_write<Object>) {
-    const auto ask = [&] { return host.handlers().template before_write<Object>(host.node(), value); };
-    if (host.handler_calls().ask(object_key(Object::index, Object::sub_index), ask) != ok) return;
+    {
+      [[maybe_unused]] const auto call = host.handler_calls().call(object_key(Object::index, Object::sub_index));
+      if (host.handlers().template before_write<Object>(host.node(), value) != ok) return;
+    }
     if (host.handler_calls().set_by_handler()) return notify_written(host, Object::index, Object::sub_index);
   }
   if (host.store().template set<Object>(value)) host.template on_new_value<Object>();

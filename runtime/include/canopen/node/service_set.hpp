@@ -141,6 +141,8 @@ namespace service_detail {
 
 template <class Service>
 struct Absent : ServiceDefaults<Absent<Service>> {};
+template <class Service>
+inline constexpr Absent<Service> absent;
 
 /// The service, or nothing if the device does not have it.
 template <class Service>
@@ -198,18 +200,19 @@ class ServiceSet : private service_detail::Present<Services>... {
   /// Passes each frame to the services that work without node-ID; others may process it as well.
   template <class Host>
   void on_frame_without_node_id(Host& host, const Frame& frame) {
-    (static_cast<void>(on_frame_if<Services, Present<Services>::runs_without_node_id>(host, frame, cob_id_of(frame))),
+    (static_cast<void>(
+         present<Services, Present<Services>::runs_without_node_id>().on_frame(host, frame, cob_id_of(frame))),
      ...);
   }
   /// Passes a frame with a CAN-ID of the pre-defined connection set.
   template <class Host>
   [[nodiscard]] bool on_fixed_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
-    return (on_frame_if<Services, Present<Services>::has_fixed_can_id>(host, frame, cob_id) || ...);
+    return (present<Services, Present<Services>::has_fixed_can_id>().on_frame(host, frame, cob_id) || ...);
   }
   /// Passes a frame whose CAN-ID may be that of a configured COB-ID.
   template <class Host>
   [[nodiscard]] bool on_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
-    return (on_frame_if<Services, is_configured<Services>>(host, frame, cob_id) || ...);
+    return (present<Services, is_configured<Services>>().on_frame(host, frame, cob_id) || ...);
   }
   template <class Host>
   [[nodiscard]] bool on_remote_frame(Host& host, const Frame& frame) {
@@ -222,11 +225,11 @@ class ServiceSet : private service_detail::Present<Services>... {
 
   template <class Host>
   void on_time_without_node_id(Host& host) {
-    (on_time_if<Services, Present<Services>::runs_without_node_id>(host), ...);
+    (present<Services, Present<Services>::runs_without_node_id>().on_time(host), ...);
   }
   template <class Host>
   void on_time(Host& host) {
-    (on_time_if<Services, !Present<Services>::runs_without_node_id>(host), ...);
+    (present<Services, !Present<Services>::runs_without_node_id>().on_time(host), ...);
   }
   /// Sends what is due, in the order of the services, until the bus has no room. Returns false if it has none.
   template <class Host>
@@ -290,28 +293,18 @@ class ServiceSet : private service_detail::Present<Services>... {
   static constexpr bool is_configured =
       !Present<ServiceType>::has_fixed_can_id && !Present<ServiceType>::runs_without_node_id;
 
-  template <class ServiceType>
-  [[nodiscard]] Present<ServiceType>& present() {
-    return *this;
+  /// The service; one that does nothing if the device does not have it, or if it is not to be called.
+  template <class ServiceType, bool called = true>
+  [[nodiscard]] auto& present() {
+    if constexpr (called) {
+      return static_cast<Present<ServiceType>&>(*this);
+    } else {
+      return service_detail::absent<ServiceType>;
+    }
   }
   template <class ServiceType>
   [[nodiscard]] const Present<ServiceType>& present() const {
     return *this;
-  }
-
-  template <class ServiceType, bool Called, class Host>
-  [[nodiscard]] bool on_frame_if([[maybe_unused]] Host& host, [[maybe_unused]] const Frame& frame,
-                                 [[maybe_unused]] std::uint32_t cob_id) {
-    if constexpr (Called) {
-      return present<ServiceType>().on_frame(host, frame, cob_id);
-    } else {
-      return false;
-    }
-  }
-
-  template <class ServiceType, bool Called, class Host>
-  void on_time_if([[maybe_unused]] Host& host) {
-    if constexpr (Called) present<ServiceType>().on_time(host);
   }
 
   template <class ServiceType, class Host>

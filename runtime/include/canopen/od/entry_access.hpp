@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <memory>
 #include <span>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/base/assume_aligned.hpp"
 #include "canopen/base/bytes.hpp"
 #include "canopen/od/access_probe.hpp"
 #include "canopen/od/dictionary.hpp"
@@ -314,12 +314,12 @@ class EntryAccess : public EntryDirectory<Device> {
   template <class Type>
   [[nodiscard]] static Type load(const std::uint8_t* where) {
     Type value;
-    std::memcpy(&value, std::assume_aligned<alignof(Type)>(where), sizeof value);
+    std::memcpy(&value, assume_aligned<alignof(Type)>(where), sizeof value);
     return value;
   }
   template <class Type>
   static void store(std::uint8_t* where, const Type& value) {
-    std::memcpy(std::assume_aligned<alignof(Type)>(where), &value, sizeof value);
+    std::memcpy(assume_aligned<alignof(Type)>(where), &value, sizeof value);
   }
 
   /// Stores a number in a wider type, sign-extended if it is signed.

@@ -5,11 +5,11 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <memory>
 #include <span>
 #include <type_traits>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/base/assume_aligned.hpp"
 #include "canopen/base/bytes.hpp"
 #include "canopen/base/optimization.hpp"
 #include "canopen/can/node_id.hpp"
@@ -52,7 +52,7 @@ class ObjectStore {
     constexpr entry::Word word = word_of<ObjectType>();
     static_assert(entry::place_of(word) == entry::Place::ram, "a constant of the EDS cannot be set");
     const bool changed = !holds(ram() + entry::offset_of(word), value);
-    std::memcpy(std::assume_aligned<alignof(typename ObjectType::type)>(ram() + entry::offset_of(word)), &value,
+    std::memcpy(assume_aligned<alignof(typename ObjectType::type)>(ram() + entry::offset_of(word)), &value,
                 sizeof value);
     return changed;
   }
@@ -129,7 +129,7 @@ class ObjectStore {
   template <class Type, std::uint16_t Offset>
   [[nodiscard]] static Type load(const std::uint8_t* base) {
     Type value;
-    std::memcpy(&value, std::assume_aligned<alignof(Type)>(base + Offset), sizeof value);
+    std::memcpy(&value, assume_aligned<alignof(Type)>(base + Offset), sizeof value);
     return value;
   }
 
@@ -260,7 +260,7 @@ class ObjectStore {
   }
 
   void add_node_id_to_word(std::uint8_t* word) {
-    std::uint8_t* const at = std::assume_aligned<4>(word);
+    std::uint8_t* const at = assume_aligned<4>(word);
     std::uint32_t value;
     std::memcpy(&value, at, sizeof value);
     value += node_id_.value();

@@ -30,6 +30,8 @@ class PresetBytes {
 
  public:
   static constexpr std::size_t size = sizeof(Part);
+  /// Of the dictionary, each of which `are_numbers` and `bytes` visit.
+  static constexpr std::size_t objects = Device::dictionary.entries.size();
 
   /// Whether all values are numbers. Bytes of strings after their ends are indeterminate for a compiler.
   [[nodiscard]] static constexpr bool are_numbers() {
@@ -90,11 +92,15 @@ struct Packed {
 }
 
 inline constexpr std::size_t unpack_code = 44;         ///< bytes of `unpack` on a Cortex-M0+
-inline constexpr std::size_t max_packed_bytes = 4096;  ///< a compiler takes longer for more
+inline constexpr std::size_t max_packed_bytes = 4096;  ///< compilers take longer for more
+inline constexpr std::size_t max_objects = 2048;       ///< Clang evaluates a million steps
 
+/// Whether a reset unpacks the default values. The other build does not compute it.
 template <class Preset>
-[[nodiscard]] constexpr bool is_shorter_packed() {
-  if constexpr (Preset::size <= max_packed_bytes && Preset::are_numbers()) {
+[[nodiscard]] constexpr bool is_packed() {
+  if constexpr (!prefers_size || Preset::size > max_packed_bytes || Preset::objects > max_objects) {
+    return false;
+  } else if constexpr (Preset::are_numbers()) {
     return Packed<Preset>::size + unpack_code < Preset::size;
   } else {
     return false;
@@ -107,7 +113,7 @@ template <class Preset>
 template <class Device, auto Preset, std::size_t Offset>
 void set_preset(std::remove_cvref_t<decltype(*Preset)>& values) {
   using Bytes = PresetBytes<Device, Preset, Offset>;
-  if constexpr (prefers_size && preset_detail::is_shorter_packed<Bytes>()) {
+  if constexpr (preset_detail::is_packed<Bytes>()) {
     preset_detail::unpack(reinterpret_cast<std::uint8_t*>(&values), sizeof values,
                           preset_detail::Packed<Bytes>::bytes.data());
   } else {

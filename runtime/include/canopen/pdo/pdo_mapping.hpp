@@ -2,14 +2,14 @@
 /// mapping parameters are writable have this code in their image.
 #pragma once
 
+#include <array>  // std::size: <iterator> would bring streams with it
 #include <cstdint>
 #include <cstring>
-#include <iterator>
-#include <memory>
 #include <span>
 #include <type_traits>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/base/assume_aligned.hpp"
 #include "canopen/can/cob_id.hpp"
 #include "canopen/od/data_type.hpp"
 #include "canopen/od/device_options.hpp"
@@ -153,7 +153,7 @@ class MappingParameter {
   /// Returns entry `i`, counted from 0.
   [[nodiscard]] MappedObject operator[](std::size_t i) const {
     std::uint32_t value;
-    std::memcpy(&value, std::assume_aligned<alignof(std::uint32_t)>(first_ + sizeof value * i), sizeof value);
+    std::memcpy(&value, assume_aligned<alignof(std::uint32_t)>(first_ + sizeof value * i), sizeof value);
     return MappedObject{value};
   }
 

@@ -6,11 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <memory>
 #include <span>
 #include <type_traits>
 
 #include "canopen/base/abort_code.hpp"
+#include "canopen/base/assume_aligned.hpp"
 #include "canopen/base/bytes.hpp"
 #include "canopen/base/optimization.hpp"
 #include "canopen/base/result.hpp"
@@ -334,7 +334,7 @@ class SdoServerTransfer {
   /// Copies a number for a block upload.
   [[nodiscard]] AbortCode open_number(EntryAccess<Device> entries) {
     const std::uint32_t value = entries.number(word_);
-    std::memcpy(std::assume_aligned<4>(buffer_.data()), &value, sizeof value);
+    std::memcpy(assume_aligned<4>(buffer_.data()), &value, sizeof value);
     bytes_ = buffer_.data();
     size_ = entry::size_of(word_);
     return ok;
@@ -419,8 +419,8 @@ class SdoServerTransfer {
   }
 
   void put_reply(std::uint32_t low, std::uint32_t high) {
-    std::memcpy(std::assume_aligned<4>(reply_.data()), &low, sizeof low);
-    std::memcpy(std::assume_aligned<4>(reply_.data() + 4), &high, sizeof high);
+    std::memcpy(assume_aligned<4>(reply_.data()), &low, sizeof low);
+    std::memcpy(assume_aligned<4>(reply_.data() + 4), &high, sizeof high);
     reply_state_ = ReplyState::ready;
   }
 

@@ -1,7 +1,6 @@
 /// What an SDO client is given: the channel, options, and the source or destination of the bytes of a transfer.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <span>
 

@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "canopen/base/clock.hpp"
-#include "canopen/node/mailbox.hpp"
 #include "canopen/node/service_set.hpp"
+#include "canopen/node/values_from.hpp"
 
 namespace canopen::service {
 

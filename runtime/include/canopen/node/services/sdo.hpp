@@ -1,21 +1,34 @@
-/// SDO servers (1200h..127Fh) in a node.
+/// The SDO servers of a node, one for each of 1200h..127Fh (CiA 301, 7.5.2.33).
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
 
+#include "canopen/base/abort_code.hpp"
+#include "canopen/base/clock.hpp"
 #include "canopen/base/optimization.hpp"
 #include "canopen/base/result.hpp"
+#include "canopen/can/cob_id.hpp"
+#include "canopen/can/frame.hpp"
 #include "canopen/node/received_value.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/node/services/tpdos.hpp"
 #include "canopen/node/services/values.hpp"
+#include "canopen/od/object_store.hpp"
 #include "canopen/pdo/mpdo_service.hpp"
 #include "canopen/sdo/domain_handlers.hpp"
-#include "canopen/sdo/sdo_servers.hpp"
+#include "canopen/sdo/sdo_protocol.hpp"
+#include "canopen/sdo/sdo_server.hpp"
 
-namespace canopen::service {
+namespace canopen {
+
+inline constexpr std::uint16_t sdo_server_parameter = 0x1200;
+inline constexpr std::uint16_t last_sdo_server_parameter = 0x127F;
+
+namespace service {
 
 /// The functions of a node that its servers call.
 template <class Host, class... Parts>
@@ -30,7 +43,8 @@ struct SdoHooks {
     if (const AbortCode code = host.before_read(index, sub_index); code != ok) return code;
     if constexpr (Host::Handlers::has_upload_handlers) {
       const std::uint32_t key = object_key(index, sub_index);
-      return host.handler_calls().ask(0, [&] { return host.handlers().before_read(host.node(), key); });
+      [[maybe_unused]] const auto call = host.handler_calls().call();
+      return host.handlers().before_read(host.node(), key);
     }
     return ok;
   }
@@ -81,8 +95,8 @@ struct SdoHooks {
   [[nodiscard]] Result<std::uint32_t> read_domain(std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset,
                                                   std::span<std::uint8_t> bytes) requires(Streams::any) {
     const std::uint32_t key = object_key(index, sub_index);
-    return host.handler_calls().ask(
-        0, [&] { return Streams::read(host.handlers().all(), host.node(), key, offset, bytes); });
+    [[maybe_unused]] const auto call = host.handler_calls().call();
+    return Streams::read(host.handlers().all(), host.node(), key, offset, bytes);
   }
   [[nodiscard]] bool streams_download(std::uint16_t index, std::uint8_t sub_index) const requires(Streams::any) {
     return Streams::streams_download(object_key(index, sub_index));
@@ -90,74 +104,179 @@ struct SdoHooks {
   [[nodiscard]] AbortCode write_domain(std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset,
                                        std::span<const std::uint8_t> bytes, bool last) requires(Streams::any) {
     const std::uint32_t key = object_key(index, sub_index);
-    return host.handler_calls().ask(
-        0, [&] { return Streams::write(host.handlers().all(), host.node(), key, offset, bytes, last); });
+    [[maybe_unused]] const auto call = host.handler_calls().call();
+    return Streams::write(host.handlers().all(), host.node(), key, offset, bytes, last);
   }
 };
 
+/// The first server always exists, with the COB-IDs of the pre-defined connection set: CiA 301 fixes those of 1200h.
+/// Another one exists while both of its COB-IDs are usable; bit 30, "dynamically assigned", is ignored. Servers do not
+/// share state; a DOMAIN that one of them starts to write is no longer transferred by the others.
 template <class Device, class... Handlers>
 class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
   template <class Host>
   using Hooks = SdoHooks<Host, Handlers...>;
+  using Store = ObjectStore<Device>;
   static constexpr bool has_writable_parameters =
       Device::dictionary.takes_writes(sdo_server_parameter, last_sdo_server_parameter);
+  static constexpr bool is_stepped = StoredValues<Device, Handlers...>::is_stepped;
+
+  /// The parameters of the servers.
+  static constexpr std::size_t count = [] {
+    std::size_t servers = 1;
+    for (std::uint32_t index = sdo_server_parameter + 1; index <= last_sdo_server_parameter; ++index) {
+      if (Device::dictionary.has(static_cast<std::uint16_t>(index), 1)) ++servers;
+    }
+    return servers;
+  }();
+  static constexpr std::array<std::uint16_t, count> indices = [] {
+    std::array<std::uint16_t, count> rows{sdo_server_parameter};
+    std::size_t at = 1;
+    for (std::uint32_t index = sdo_server_parameter + 1; index <= last_sdo_server_parameter; ++index) {
+      if (Device::dictionary.has(static_cast<std::uint16_t>(index), 1)) rows[at++] = static_cast<std::uint16_t>(index);
+    }
+    return rows;
+  }();
 
  public:
   static constexpr bool has_fixed_can_id = true;
 
   template <class Host>
   void on_state(Host&, NmtState, NmtState state) {
-    if (!serves_sdo(state)) servers_.reset();
+    if (serves_sdo(state)) return;
+    for (SdoServer<Device>& server : servers_) server.reset();
   }
 
   template <class Host>
   static constexpr bool may_take(const Host&, std::uint32_t) {
-    return SdoServers<Device>::count > 1;
+    return count > 1;
   }
+  /// Accepts a request to one of the servers. One whose length is not eight bytes is ignored.
   template <class Host>
-  bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
-    if (!serves_sdo(host.state()) || !servers_.on_frame(host.store(), frame, Hooks<Host>{host}, host.now()))
-      return false;
-    // If nothing else is due, the response does not wait until all services have been asked what they have to send.
-    if constexpr (!StoredValues<Device, Handlers...>::is_stepped) {
-      if (host.may_send_at_once() && servers_.serve(host.store(), host.bus(), Hooks<Host>{host}, host.now()))
-        return true;
+  bool on_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
+    if (!serves_sdo(host.state())) return false;
+    Store& store = host.store();
+    for (std::size_t i = 0; i < count; ++i) {
+      if (cob_id_of_server(i, request_sub_index, store) != cob_id) continue;
+      if (i != 0 && cob_id_of_server(i, response_sub_index, store) == CobId::invalid_bit) continue;
+      if (frame.size == 8) answer(host, i, frame.data);
+      // If nothing else is due, the response does not wait until all services have been asked what they have to send.
+      if (is_stepped || !host.may_send_at_once() || !send_replies(host)) host.attend();
+      return true;
     }
-    host.attend();
-    return true;
+    return false;
   }
   template <class Host>
   void on_time(Host& host) {
-    servers_.on_time(host.now());
+    for (SdoServer<Device>& server : servers_) server.on_time(host.now());
   }
   template <class Host>
   bool serve(Host& host) {
-    if constexpr (StoredValues<Device, Handlers...>::is_stepped) {
+    if constexpr (is_stepped) {
+      // A command has ended: the response that waits for it is sent.
       const auto result = host.template service<StoredValues<Device, Handlers...>>().take_result();
-      if (result) servers_.command_ended(*result);
+      if (result) {
+        for (SdoServer<Device>& server : servers_) server.command_ended(*result);
+      }
     }
-    return servers_.serve(host.store(), host.bus(), Hooks<Host>{host}, host.now());
+    return send_replies(host);
   }
   template <class Host>
   std::optional<TimePoint> deadline(Host& host) const {
-    return servers_.has_reply() ? host.now() : servers_.next_deadline();
+    if (has_reply()) return host.now();
+    std::optional<TimePoint> next;
+    for (const SdoServer<Device>& server : servers_) {
+      const std::optional<TimePoint> own = server.next_deadline();
+      if (own && (!next || *own < *next)) next = own;
+    }
+    return next;
   }
 
   static constexpr bool checks(std::uint16_t index, std::uint8_t) {
     return has_writable_parameters && index >= sdo_server_parameter && index <= last_sdo_server_parameter;
   }
+  /// Checks a COB-ID of 1200h..127Fh. 0609 0030h: its CAN-ID changes while the channel is valid, or is a restricted
+  /// one; or a different value for 1200h, which is fixed.
   template <class Host>
   static AbortCode check_write(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
-    return check_sdo_cob_id(host.entries(), index, sub_index, bytes);
+    if (sub_index != request_sub_index && sub_index != response_sub_index) return ok;
+    EntryAccess<Device> entries = host.entries();
+    const CobId before{entries.number(entries.find(index, sub_index))};
+    if constexpr (Device::dictionary.takes_writes(sdo_server_parameter, sdo_server_parameter)) {
+      if (index == sdo_server_parameter) return before.value() == number_in(bytes) ? ok : AbortCode::invalid_value;
+    }
+    return may_change(before, CobId{number_in(bytes)}, true) ? ok : AbortCode::invalid_value;
   }
 
   /// Whether a response is waiting to be sent.
-  [[nodiscard]] bool has_reply() const { return servers_.has_reply(); }
+  [[nodiscard]] bool has_reply() const {
+    for (const SdoServer<Device>& server : servers_) {
+      if (server.has_reply()) return true;
+    }
+    return false;
+  }
   /// Aborts a transfer of a DOMAIN that has been bound to other memory.
-  void domain_rebound(std::uint16_t index, std::uint8_t sub_index) { servers_.domain_rebound(index, sub_index); }
+  void domain_rebound(std::uint16_t index, std::uint8_t sub_index) {
+    for (SdoServer<Device>& server : servers_) server.domain_rebound(index, sub_index);
+  }
 
  private:
-  SdoServers<Device> servers_{};
+  static constexpr std::uint8_t request_sub_index = 1;
+  static constexpr std::uint8_t response_sub_index = 2;
+
+  /// Returns a COB-ID in the format of `cob_id_of`; `invalid_bit` if this server does not have a usable one.
+  [[nodiscard]] static std::uint32_t cob_id_of_server(std::size_t i, std::uint8_t sub_index, Store& store) {
+    if (i == 0) {
+      const std::uint32_t base =
+          sub_index == request_sub_index ? function_code::sdo_request : function_code::sdo_response;
+      return base + store.node_id().value();
+    }
+    const entry::Word word = store.entries().find(indices[i], sub_index);
+    const std::uint32_t cob_id = word > Dictionary::no_sub_index ? store.entries().number(word) : CobId::invalid_bit;
+    return is_usable(cob_id) ? cob_id & CobId::identifier : CobId::invalid_bit;
+  }
+
+  template <class Host>
+  void answer(Host& host, std::size_t i, const sdo::Data& request) {
+    SdoServer<Device>& server = servers_[i];
+    if constexpr (count > 1) {
+      if (!server.takes_segments()) take_domain_from_others(host.store(), i, request);
+    }
+    if constexpr (is_stepped) server.discard_held_reply();
+    Hooks<Host> hooks{host};
+    server.on_request(request, hooks, host.now());
+    if constexpr (is_stepped) {
+      if (hooks.started_command()) server.hold_reply();
+    }
+  }
+
+  /// Sends pending responses. Returns false if the bus had no room; they remain pending.
+  template <class Host>
+  [[nodiscard]] bool send_replies(Host& host) {
+    for (std::size_t i = 0; i < count; ++i) {
+      while (servers_[i].has_reply()) {
+        const std::uint32_t cob_id = cob_id_of_server(i, response_sub_index, host.store());
+        const bool gone = i != 0 && cob_id == CobId::invalid_bit;  // since the request
+        if (!gone && !send_data(host.bus(), cob_id, 8, servers_[i].reply().data())) return false;
+        servers_[i].reply_sent(Hooks<Host>{host}, host.now());
+      }
+    }
+    return true;
+  }
+
+  void take_domain_from_others(Store& store, std::size_t server, const sdo::Data& request) {
+    const sdo::ClientCommand command = sdo::client_command(request[0]);
+    if (command != sdo::ClientCommand::initiate_download && command != sdo::ClientCommand::block_download) return;
+    const std::uint16_t index = sdo::index_of(request);
+    const entry::Word word = store.entries().find(index, request[3]);
+    if (word <= Dictionary::no_sub_index || !entry::is_domain(word)) return;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i != server) servers_[i].domain_rebound(index, request[3]);
+    }
+  }
+
+  std::array<SdoServer<Device>, count> servers_{};
 };
 
-}  // namespace canopen::service
+}  // namespace service
+}  // namespace canopen

@@ -3,10 +3,10 @@
 
 #include <cstdint>
 #include <cstring>
-#include <memory>
 #include <optional>
 #include <span>
 
+#include "canopen/base/assume_aligned.hpp"
 #include "canopen/node/functions.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/od/object_store.hpp"
@@ -49,7 +49,7 @@ class HighResolutionTime : public ServiceDefaults<HighResolutionTime<Device>> {
   template <class Host>
   void on_sync(Host& host, canopen::Sync) {
     const std::uint32_t microseconds = host.now().since_start().count() + offset_;
-    std::uint8_t* const value = std::assume_aligned<alignof(std::uint32_t)>(host.entries().ram(word));
+    std::uint8_t* const value = assume_aligned<alignof(std::uint32_t)>(host.entries().ram(word));
     std::memcpy(value, &microseconds, sizeof microseconds);
   }
   template <class Host>

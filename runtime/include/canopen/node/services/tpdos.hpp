@@ -76,8 +76,8 @@ class Tpdos : public ServiceDefaults<Tpdos<Device>> {
     void operator()([[maybe_unused]] std::size_t which) const {
       if constexpr (Host::Handlers::has_read_handlers) {
         TpdoService<Device>::for_each_object(which, host.entries(), [this](std::uint32_t key) {
-          host.handler_calls().ask_for_tpdo(key,
-                                            [&] { static_cast<void>(host.handlers().before_read(host.node(), key)); });
+          const auto call = host.handler_calls().call_for_tpdo(key);
+          static_cast<void>(host.handlers().before_read(host.node(), key));
         });
       }
     }

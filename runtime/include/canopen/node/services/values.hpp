@@ -113,7 +113,8 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
     const std::uint32_t key = object_key(index, sub_index);
     AbortCode code = check_storage_command(host.entries(), index, sub_index, bytes);
     if (code == ok) {
-      code = host.handler_calls().ask(key, [&] { return host.handlers().before_write(host.node(), key, bytes); });
+      [[maybe_unused]] const auto call = host.handler_calls().call(key);
+      code = host.handlers().before_write(host.node(), key, bytes);
     }
     if (code != ok || (Stored::Layout::sections_of(sub_index) == 0 && host.handlers().handles(key))) return code;
     code = index == store_parameters ? save(host, sub_index) : restore(host, sub_index);
