@@ -19,6 +19,7 @@ AddOptions add_overlay_options;
 AddOptions add_overlay_from_bus_options;
 AddOptions add_diff_options;
 AddOptions add_document_options;
+AddOptions add_lsp_options;
 AddOptions add_network_options;
 AddOptions add_scan_options;
 AddOptions add_read_options;
@@ -75,6 +76,8 @@ inline constexpr CommandRow commands[] = {
      add_overlay_options},
     {"EDS files", "diff", "compare two EDS files; report breaking changes", add_diff_options},
     {"EDS files", "document", "write a device or a network as an HTML page or as Markdown", add_document_options},
+    {"EDS files", "lsp", "language server for editors: findings, completion and quick fixes while you type",
+     add_lsp_options},
     {"Networks", "network", "check, generate, simulate, verify, configure and run a network", add_network_options},
 #ifndef EDSC_OFFLINE
     {"Bus", "scan", "find and identify the nodes on a bus", add_scan_options},

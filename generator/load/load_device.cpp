@@ -43,10 +43,10 @@ std::string options_path_of(const LoadSettings& settings, const LoadedDevice& lo
   return "";
 }
 
-std::unique_ptr<SourceFile> read_or_report(const std::string& path, const ReadingChoices& choices, LoadedDevice& loaded,
-                                           Diagnostics& diagnostics) {
+std::unique_ptr<SourceFile> read_or_report(const std::string& path, const ReadBase& read, const ReadingChoices& choices,
+                                           LoadedDevice& loaded, Diagnostics& diagnostics) {
   std::string error;
-  auto file = read_source_file(path, error, choices);
+  auto file = read ? read(path, choices, error) : read_source_file(path, error, choices);
   if (!file) {
     file = std::make_unique<SourceFile>(path, std::string{});
     diagnostics.error("unreadable-file", Position{file.get()}, error);
@@ -66,9 +66,9 @@ std::vector<std::shared_ptr<const SourceFile>> parts_of_overlay(const std::strin
   return compose_overlay(file, {}, ignored).parts;
 }
 
-void read_options_file(const std::string& path, LoadedDevice& loaded, Diagnostics& diagnostics) {
+void read_options_file(const std::string& path, const ReadBase& read, LoadedDevice& loaded, Diagnostics& diagnostics) {
   if (path.empty()) return;
-  loaded.options_source = read_or_report(path, {}, loaded, diagnostics);
+  loaded.options_source = read_or_report(path, read, {}, loaded, diagnostics);
   if (loaded.unreadable) return;
   loaded.options = read_options(*loaded.options_source, is_identifier, diagnostics);
   silence_by_options(loaded, diagnostics);
@@ -140,25 +140,25 @@ void mark_consequences_in(const SourceFile& source, Diagnostics& diagnostics) {
 std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnostics& diagnostics) {
   auto loaded = std::make_unique<LoadedDevice>();
   const std::string own_options = options_path_of(settings, *loaded);
-  read_options_file(own_options, *loaded, diagnostics);
-  loaded->source = read_or_report(settings.path, loaded->options.reading, *loaded, diagnostics);
+  read_options_file(own_options, settings.read, *loaded, diagnostics);
+  loaded->source = read_or_report(settings.path, settings.read, loaded->options.reading, *loaded, diagnostics);
   if (loaded->unreadable) return loaded;
   if (loaded->options.reading.encoding && is_overlay(*loaded->source)) {
     // The choice is for the base.
-    loaded->source = read_or_report(settings.path, {}, *loaded, diagnostics);
+    loaded->source = read_or_report(settings.path, settings.read, {}, *loaded, diagnostics);
     if (loaded->unreadable) return loaded;
   }
   const std::shared_ptr<const SourceFile> given = loaded->source;
   const Diagnostics without_overlay = diagnostics;
   const auto apply = [&] {
-    return apply_overlays(*loaded, {{}, settings.needs_reasons, loaded->options.reading}, diagnostics);
+    return apply_overlays(*loaded, {settings.read, settings.needs_reasons, loaded->options.reading}, diagnostics);
   };
   if (!apply()) return loaded;
   if (own_options.empty() && !loaded->parts.empty()) {
     const std::string of_base = options_path_of(settings, *loaded);
     Diagnostics of_options;
     LoadedDevice peek;
-    read_options_file(of_base, peek, of_options);
+    read_options_file(of_base, settings.read, peek, of_options);
     if (peek.options.reading != ReadingChoices{}) {
       // The base is read again: findings of the first reading point to files that are gone then.
       diagnostics = without_overlay;
@@ -166,7 +166,7 @@ std::unique_ptr<LoadedDevice> load_device(const LoadSettings& settings, Diagnost
       loaded->options.reading = peek.options.reading;
       if (!apply()) return loaded;
     }
-    read_options_file(of_base, *loaded, diagnostics);
+    read_options_file(of_base, settings.read, *loaded, diagnostics);
     if (loaded->unreadable) return loaded;
   }
   if (settings.keep_going) diagnostics.keep_going(loaded->source.get());
@@ -220,7 +220,7 @@ ChoicesOfOptions choices_beside(const std::string& path, Diagnostics& diagnostic
     loaded.parts = parts_of_overlay(path);
     options = options_path_of(settings, loaded);
   }
-  read_options_file(options, loaded, diagnostics);
+  read_options_file(options, settings.read, loaded, diagnostics);
   return {std::move(loaded.options_source), loaded.options.reading};
 }
 

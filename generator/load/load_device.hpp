@@ -26,6 +26,7 @@ struct LoadSettings {
   bool keep_going = false;      ///< errors in the EDS become warnings; invalid objects are skipped
   bool needs_reasons = false;   ///< report sections of an overlay without a reason
   std::string profile_path{};   ///< a profile database of the user; empty: none
+  ReadBase read{};              ///< reads the files of the device; empty: from the file system
 };
 
 /// A device and the files to which its positions point.

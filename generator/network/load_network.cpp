@@ -24,8 +24,8 @@ namespace fs = std::filesystem;
 
 class NetworkLoader {
  public:
-  NetworkLoader(LoadedNetwork& loaded, Diagnostics& diagnostics)
-      : loaded_{loaded}, network_{loaded.network}, diagnostics_{diagnostics} {}
+  NetworkLoader(LoadedNetwork& loaded, Diagnostics& diagnostics, const ReadBase& read)
+      : loaded_{loaded}, network_{loaded.network}, diagnostics_{diagnostics}, read_{read} {}
 
   void load() {
     for (const NodeDescription& node : network_.description.nodes) add_node(node);
@@ -82,6 +82,7 @@ class NetworkLoader {
     if (description.options) settings.options_path = beside_network_file(description.options->value);
     settings.keep_going = description.keep_going && description.keep_going->value;
     if (node.node_id != 0) settings.node_id = node.node_id;
+    settings.read = read_;
     settings.check = checked_.insert(settings.path).second;
     Diagnostics of_file;
     network_.files.push_back(load_device(settings, of_file));
@@ -152,6 +153,7 @@ class NetworkLoader {
   LoadedNetwork& loaded_;
   Network& network_;
   Diagnostics& diagnostics_;
+  const ReadBase& read_;
   std::set<std::string> checked_;  ///< files whose rules were checked
   std::set<FindingKey> reported_;  ///< errors in files of nodes
 };
@@ -168,11 +170,12 @@ std::unique_ptr<LoadedNetwork> load_network(const std::string& path, Diagnostics
   return loaded;
 }
 
-std::unique_ptr<LoadedNetwork> load_network(std::unique_ptr<SourceFile> source, Diagnostics& diagnostics) {
+std::unique_ptr<LoadedNetwork> load_network(std::unique_ptr<SourceFile> source, Diagnostics& diagnostics,
+                                            const ReadBase& read) {
   auto loaded = std::make_unique<LoadedNetwork>();
   loaded->network.source = std::move(source);
   loaded->network.description = read_network_file(*loaded->network.source, diagnostics);
-  NetworkLoader{*loaded, diagnostics}.load();
+  NetworkLoader{*loaded, diagnostics, read}.load();
   return loaded;
 }
 

@@ -62,8 +62,9 @@ struct LoadedNetwork {
 /// Reads a network file and the EDS and DCF files that it names, assigns PDOs to its signals, and applies its settings.
 /// Errors in the EDS files are reported; their warnings are not.
 [[nodiscard]] std::unique_ptr<LoadedNetwork> load_network(const std::string& path, Diagnostics& diagnostics);
-/// The same for a network file that was read.
-[[nodiscard]] std::unique_ptr<LoadedNetwork> load_network(std::unique_ptr<SourceFile> source, Diagnostics& diagnostics);
+/// The same for a network file that was read. `read` reads the files that it names; empty: from the file system.
+[[nodiscard]] std::unique_ptr<LoadedNetwork> load_network(std::unique_ptr<SourceFile> source, Diagnostics& diagnostics,
+                                                          const ReadBase& read = {});
 
 /// The default value of an entry as a number; nothing if the entry is missing or has none.
 [[nodiscard]] std::optional<std::uint64_t> value_of(const Device& device, std::uint16_t index,

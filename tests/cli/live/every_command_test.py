@@ -26,6 +26,23 @@ PLANTS = [SOURCE_DIR / f"examples/networks/{plant}.json" for plant in ("eight_de
 ENVIRONMENT = {**os.environ, "ASAN_OPTIONS": f"exitcode={MEMORY_FAULT}", "UBSAN_OPTIONS": f"exitcode={MEMORY_FAULT}"}
 
 
+def editor_session(sheet: Path) -> str:
+    """The messages of an editor that opens an EDS, asks about each tenth line, and ends."""
+    document = {"uri": sheet.as_uri()}
+    text = sheet.read_text(encoding="utf-8")
+    whole = {"start": {"line": 0, "character": 0}, "end": {"line": 100000, "character": 0}}
+    messages = [("initialize", {}), ("textDocument/didOpen", {"textDocument": {**document, "version": 1, "text": text}}),
+                *((f"textDocument/{name}", {"textDocument": document, "position": {"line": line, "character": 14},
+                                            "context": {"includeDeclaration": True}})
+                  for line in range(0, text.count("\n"), 10) for name in ("hover", "completion", "definition", "references")),
+                *((f"textDocument/{name}", {"textDocument": document, "range": whole, "context": {}})
+                  for name in ("codeAction", "inlayHint", "documentSymbol", "foldingRange", "formatting", "codeLens")),
+                ("shutdown", {}), ("exit", {})]
+    requests = ({"jsonrpc": "2.0", "method": method, "params": params, **({} if method in ("exit", "textDocument/didOpen") else {"id": number})}
+                for number, (method, params) in enumerate(messages))
+    return "".join(f"Content-Length: {len(one)}\r\n\r\n{one}" for one in map(json.dumps, requests))
+
+
 class EveryCommand(ReferenceDevices):
     used: set[tuple[str, ...]] = {("bus",)}  # commands that a test has run; setUp() runs `bus`
 
@@ -35,7 +52,8 @@ class EveryCommand(ReferenceDevices):
         every = {tuple(name.split()) for name in every_command()}
         assert every == cls.used, f"not the commands of the help: {sorted(every ^ cls.used)}"
 
-    def run_command(self, words: str, *arguments: object, exit_codes: tuple[int, ...] = (FINE,), bus: bool = False) -> None:
+    def run_command(self, words: str, *arguments: object, exit_codes: tuple[int, ...] = (FINE,), bus: bool = False,
+                    standard_input: str = "") -> None:
         command, *subcommand = words.split()
         self.used.add((command, *subcommand))
         if bus and command in ("lss", "send"):  # edsc send BUS sync, edsc network scan BUS
@@ -44,7 +62,7 @@ class EveryCommand(ReferenceDevices):
             line = [EDSC, command, *subcommand, *([self.network.address] if bus else [])]
         line = [*map(str, line), *map(str, arguments)]
         result = subprocess.run(line, cwd=self.folder, env=ENVIRONMENT, capture_output=True, text=True, errors="replace",
-                                timeout=1200)
+                                timeout=1200, input=standard_input)
         self.assertIn(result.returncode, exit_codes, f"{' '.join(line)}\n{result.stderr}")
         self.assertNotRegex(result.stderr, REPORT, " ".join(line))
 
@@ -62,6 +80,7 @@ class EveryCommand(ReferenceDevices):
                 for form in ("text", "json", "sarif"):
                     self.run_command("check", sheet, "--node-id", 5, "--format", form)
                 self.run_command("dump", sheet)
+                self.run_command("lsp", standard_input=editor_session(sheet))
                 self.run_command("dump", sheet, "--cpp", "--node-id", 5)
                 self.run_command("generate", sheet, "-o", "out")
                 self.run_command("generate", sheet, "-o", "out", "--target", "c")

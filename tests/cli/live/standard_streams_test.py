@@ -32,6 +32,13 @@ class Row:
     files: tuple[str, ...] = ()
     bus: bool = False
     warns: bool = field(default=False)
+    standard_input: str = ""
+
+
+def framed(*methods: str) -> str:
+    """Messages for `edsc lsp`."""
+    texts = [json.dumps({"jsonrpc": "2.0", "method": method, **({} if method == "exit" else {"id": 1})}) for method in methods]
+    return "".join(f"Content-Length: {len(text)}\r\n\r\n{text}" for text in texts)
 
 
 ROWS = (
@@ -66,6 +73,7 @@ ROWS = (
     Row("diff", ("device.eds", "broken.eds"), WRONG_USAGE, warns=True),
     Row("document", ("warned.eds", "-o", "page.html"), files=("page.html",)),
     Row("document", ("broken.eds", "-o", "page.html"), FAILED, warns=True),
+    Row("lsp", (), standard_input=framed("initialize", "shutdown", "exit")),
     Row("network check", ("plant.json",)),
     Row("network members", ()),
     Row("network generate", ("plant.json", "-o", "plant"), files=("plant/axis.dcf", "plant/plant.dbc"), warns=True),
@@ -144,10 +152,10 @@ class StandardStreams(PreparedFiles):
             words = [command, *subcommand, *([self.network.address] if row.bus else [])]
         return [str(EDSC), *map(str, (*words, *row.arguments))]
 
-    def run_with(self, line: list[str], redirection: str) -> subprocess.CompletedProcess[str]:
+    def run_with(self, line: list[str], redirection: str, standard_input: str = "") -> subprocess.CompletedProcess[str]:
         """Runs a command with a redirection of the shell, such as `2>&-`."""
         return subprocess.run(["sh", "-c", f'"$@" {redirection}', "sh", *line], cwd=self.folder, capture_output=True, text=True,
-                              errors="replace", timeout=600)
+                              errors="replace", timeout=600, input=standard_input)
 
     def remove_output(self) -> None:
         for path in sorted(set(self.folder.rglob("*")) - self.before, reverse=True):
@@ -164,19 +172,19 @@ class StandardStreams(PreparedFiles):
         for row in ROWS:
             line = self.line(row)
             with self.subTest(command=" ".join(line[1:])):
-                normal = self.run_with(line, "")
+                normal = self.run_with(line, "", row.standard_input)
                 self.assertEqual(normal.returncode, row.exit_code, normal.stdout + normal.stderr)
                 self.assertTrue(normal.stderr or not row.warns, "prints nothing to standard error")
                 self.expect_files(row)
                 self.remove_output()
                 for redirection in ("2>&-", "2>/dev/full"):
-                    result = self.run_with(line, redirection)
+                    result = self.run_with(line, redirection, row.standard_input)
                     self.assertEqual((redirection, result.returncode, bool(result.stdout)),
                                      (redirection, row.exit_code, bool(normal.stdout)))
                     self.expect_files(row)
                     self.remove_output()
                 for redirection in (">&-", ">/dev/full", ">&- 2>&-", ">/dev/full 2>/dev/full"):
-                    result = self.run_with(line, redirection)
+                    result = self.run_with(line, redirection, row.standard_input)
                     self.assertEqual((redirection, result.returncode),
                                      (redirection, WRONG_USAGE if normal.stdout else row.exit_code))
                     self.remove_output()
