@@ -1,5 +1,6 @@
 // expect: values_from: this device does not have an object of the mailbox
 #include <canopen/node.hpp>
+#include <canopen/node/mailbox.hpp>
 #include <every_type/device.hpp>
 
 #include "support/omitting.hpp"

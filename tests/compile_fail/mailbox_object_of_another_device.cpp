@@ -1,6 +1,7 @@
 // expect: object of another device .*other::od::target_torque
 // A mailbox with an object of another device that has the index and the type of an object of this one.
 #include <canopen/node.hpp>
+#include <canopen/node/mailbox.hpp>
 #include <every_type/device.hpp>
 
 #include "support/omitting.hpp"

@@ -1,5 +1,6 @@
 // expect: a parameter in 1000h..1FFFh is set in the context of the node
 #include <canopen/node.hpp>
+#include <canopen/node/mailbox.hpp>
 #include <every_service/device.hpp>
 
 namespace od = every_service::od;
