@@ -18,10 +18,11 @@ help() {
   odr       no two sources of edsc define different types of one name (g++ with -flto)
   long      before a release: odr; the packages of the static programs for x86-64 and Arm, what the programs write in an
             empty root folder compared with the release build, and the packages of builds in two folders; edsc.exe under
-            wine with all files of the repository; a cold demo; projects that compile edsc; each header of the runtime
-            alone; `edsc node` with each file of the corpus; plants in a virtual machine with SocketCAN; the whole page of
-            footprints; ten hours of each plant under `edsc watch`; each wrong program with both compilers; the programs
-            of asan with all checks of UBSan, each fuzz target for a minute
+            wine with all files of the repository; a cold demo; projects that compile edsc, and what they rebuild; each
+            header of the runtime alone; the header of 65,000 entries with both compilers; `edsc node` with each file of the
+            corpus; plants in a virtual machine with SocketCAN; the whole page of footprints; ten hours of each plant under
+            `edsc watch`; each wrong program with both compilers; the programs of asan with all checks of UBSan, each fuzz
+            target for a minute
 
 Without a gear: gates, test, asan, firmware. The last two use the program edsc of the release build, and build it there
 if it is missing. They are built while tests of the release build wait; the output is in build/ahead.log. The time of each test is printed at the end of a gear, slowest first.

@@ -162,6 +162,13 @@ const TextSection* ChangeApplier::find(std::string_view title) {
   return section;
 }
 
+std::optional<IniEntry> ChangeApplier::find_key(const TextSection& section, std::string_view title,
+                                                std::string_view key) {
+  const auto entry = step_->text.find_entry(section, key);
+  if (!entry) reject(fmt::format("[{}] does not have a key {}", title, key));
+  return entry;
+}
+
 // Values.
 
 void ChangeApplier::make(const SetValue& change) {
@@ -256,8 +263,8 @@ void ChangeApplier::make(const RemovePart& change) {
   const TextSection* const section = find(change.section);
   if (section == nullptr) return;
   if (!change.key.empty()) {
-    const auto entry = step_->text.find_entry(*section, change.key);
-    if (!entry) return reject(fmt::format("[{}] does not have a key {}", change.section, change.key));
+    const auto entry = find_key(*section, change.section, change.key);
+    if (!entry) return;
     step_->edit.remove_entry(*entry);
   } else {
     check_unmapped(section->name);
@@ -285,8 +292,8 @@ void ChangeApplier::make(const RenamePart& change) {
   const TextSection* const section = find(change.section);
   if (section == nullptr) return;
   if (!change.key.empty()) {
-    const auto entry = step_->text.find_entry(*section, change.key);
-    if (!entry) return reject(fmt::format("[{}] does not have a key {}", change.section, change.key));
+    const auto entry = find_key(*section, change.section, change.key);
+    if (!entry) return;
     if (!can_be_key(change.name)) return reject(fmt::format("{} cannot be a key", change.name));
     if (step_->text.find_entry(*section, change.name) && !equal_ignoring_case(change.key, change.name)) {
       return reject(fmt::format("[{}] already has a key {}", change.section, change.name));

@@ -59,6 +59,9 @@ class ChangeApplier {
   void flush();
   void reject(std::string problem);
   [[nodiscard]] const TextSection* find(std::string_view title);
+  /// Returns a key of a section that a change names by this title; rejects the change if it is missing.
+  [[nodiscard]] std::optional<IniEntry> find_key(const TextSection& section, std::string_view title,
+                                                 std::string_view key);
   void set(const TextSection& section, std::string_view key, std::string_view value);
   void set_existing(const TextSection& section, const IniEntry& entry, std::string_view value);
   /// Whether a value is a number in the notation of the file: not a text or a value of a string.

@@ -270,7 +270,7 @@ Json Server::with_view(const Json& params, const std::function<Json(const View&)
   return use(View{workspace_, *document, analysis, encoding_});
 }
 
-/// Findings in a file that is open are those of that document alone.
+/// An open document has its own findings only, not those that other documents have in its file.
 void Server::publish() {
   std::set<std::string> touched;
   const auto touch = [&](const Published& rows) {

@@ -319,7 +319,7 @@ class WrongUsage(CommandLine):
         for command in commands:
             with self.subTest(command=command):
                 result = self.edsc(command, "--help")
-                self.expect(FINE, result, "Examples:", f"  edsc {command} ")
+                self.expect(FINE, result, "Examples:", f"  edsc {command}")
 
     def test_version(self) -> None:
         self.assertRegex(self.edsc("--version").stdout, r"^edsc \d+\.\d+\.\d+( \(commit [0-9a-f]{12}( with changes)?\))?\n$")

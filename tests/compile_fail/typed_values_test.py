@@ -22,6 +22,7 @@ from support.messages import MOST_LINES, messages_of_cases  # noqa: E402
 UNUSED_IS_FINE = ("-Wno-unused-variable", "-Wno-unused-but-set-variable", "-Wno-unused-parameter")
 COMMON_HEADERS = """#include <canopen/sdo/remote_node.hpp>
 #include <canopen/node.hpp>
+#include <canopen/node/mailbox.hpp>
 #include <canopen/node/locked.hpp>
 #include <canopen/node/mailbox.hpp>
 #include <canopen/master.hpp>

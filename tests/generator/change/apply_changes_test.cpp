@@ -164,6 +164,14 @@ TEST(ApplyChanges, RejectsNewErrors) {
   EXPECT_FALSE(apply(forced.after->bytes, {SetValue{"2000", "ParameterName", "a"}}).is_rejected);
 }
 
+/// One error less of a rule does not make up for another one.
+TEST(ApplyChanges, RejectsAnErrorThatReplacesAnotherOne) {
+  const AppliedChanges broken = apply(small_eds, {SetValue{"2000", "DataType", "0x99"}}, {.force = true});
+  ASSERT_EQ(broken.new_errors.size(), 1U);
+  EXPECT_TRUE(apply(broken.after->bytes, {SetValue{"2000", "DataType", "0x98"}}).is_rejected);
+  EXPECT_FALSE(apply(broken.after->bytes, {SetValue{"2000", "DataType", "0x0006"}}).is_rejected);
+}
+
 TEST(ApplyChanges, RejectsWhatAFileCannotHave) {
   EXPECT_EQ(apply(small_eds, {SetValue{"2001", "DefaultValue", "1"}}).problem, "section [2001] is missing");
   EXPECT_EQ(apply(small_eds, {SetValue{"2000", "ParameterName", "a\nb"}}).problem,

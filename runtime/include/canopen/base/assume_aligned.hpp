@@ -6,7 +6,7 @@
 
 namespace canopen {
 
-/// Returns an address that is a multiple of `Alignment`. The same as std::assume_aligned: its header, <memory>, has
+/// Returns an address that is a multiple of `Alignment`. The same as std::assume_aligned: its header, `<memory>`, has
 /// shared pointers and locales, and takes the compiler as long as half of this runtime.
 template <std::size_t Alignment, class Type>
 [[nodiscard]] constexpr Type* assume_aligned(Type* address) {

@@ -1,4 +1,4 @@
-/// A mailbox among the handlers of a node. Files without one do not include node/mailbox.hpp: <atomic> brings strings
+/// A mailbox among the handlers of a node. Files without one do not include node/mailbox.hpp: `<atomic>` brings strings
 /// and mutexes with it.
 #pragma once
 

@@ -98,13 +98,13 @@ inline constexpr std::size_t max_objects = 2048;       ///< Clang evaluates a mi
 /// Whether a reset unpacks the default values. The other build does not compute it.
 template <class Preset>
 [[nodiscard]] constexpr bool is_packed() {
-  if constexpr (!prefers_size || Preset::size > max_packed_bytes || Preset::objects > max_objects) {
-    return false;
-  } else if constexpr (Preset::are_numbers()) {
-    return Packed<Preset>::size + unpack_code < Preset::size;
-  } else {
-    return false;
+  constexpr bool is_considered = prefers_size && Preset::size <= max_packed_bytes && Preset::objects <= max_objects;
+  if constexpr (is_considered) {
+    if constexpr (Preset::are_numbers()) {
+      return Packed<Preset>::size + unpack_code < Preset::size;
+    }
   }
+  return false;
 }
 
 }  // namespace preset_detail

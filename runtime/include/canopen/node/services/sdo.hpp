@@ -111,7 +111,7 @@ struct SdoHooks {
 
 /// The first server always exists, with the COB-IDs of the pre-defined connection set: CiA 301 fixes those of 1200h.
 /// Another one exists while both of its COB-IDs are usable; bit 30, "dynamically assigned", is ignored. Servers do not
-/// share state; a DOMAIN that one of them starts to write is no longer transferred by the others.
+/// share state; if one of them starts to write a DOMAIN, the others abort their transfers of it.
 template <class Device, class... Handlers>
 class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
   template <class Host>
