@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Makes the extension edsc-VERSION-TARGET.vsix in FOLDER from the archive of a static program.
+"""Makes the extension edsc-VERSION-TARGET.vsix in FOLDER from each archive of a static program.
 
     make_extension.py FOLDER ARCHIVE...
 
 ARCHIVE is edsc-VERSION-linux-x86_64.tar.gz, edsc-VERSION-linux-aarch64.tar.gz or edsc-VERSION-windows-x86_64.zip. npm installs the
-client and vsce; VS Code installs the result without a connection: `code --install-extension edsc-VERSION-TARGET.vsix`.
+client and vsce of package-lock.json, from its cache if it has them. VS Code installs the result without a connection:
+`code --install-extension edsc-VERSION-TARGET.vsix`.
 """
 
 from __future__ import annotations
@@ -20,7 +21,8 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 NAME = re.compile(r"edsc-(?P<version>\d+\.\d+\.\d+)-(?P<platform>\w+-\w+)\.(tar\.gz|zip)")
 # The names of VS Code, and the program.
-TARGETS = {"linux-x86_64": ("linux-x64", "edsc"), "linux-aarch64": ("linux-arm64", "edsc"), "windows-x86_64": ("win32-x64", "edsc.exe")}
+TARGETS = {"linux-x86_64": ("linux-x64", "edsc"), "linux-aarch64": ("linux-arm64", "edsc"),
+           "windows-x86_64": ("win32-x64", "edsc.exe")}
 
 
 def add_program(archive: Path, extension: Path) -> tuple[str, str]:
@@ -32,6 +34,7 @@ def add_program(archive: Path, extension: Path) -> tuple[str, str]:
     with tempfile.TemporaryDirectory() as folder:
         shutil.unpack_archive(archive, folder)
         (top,) = Path(folder).iterdir()
+        shutil.rmtree(extension / "bin", ignore_errors=True)
         (extension / "bin").mkdir()
         for file in (top / "bin" / program, top / "share/doc/edsc/THIRD-PARTY-NOTICES"):
             shutil.copy(file, extension / "bin")
@@ -40,17 +43,13 @@ def add_program(archive: Path, extension: Path) -> tuple[str, str]:
     return match["version"], target
 
 
-def make(archive: Path, output: Path) -> None:
-    with tempfile.TemporaryDirectory() as folder:
-        extension = Path(folder) / "extension"
-        shutil.copytree(HERE, extension, ignore=shutil.ignore_patterns("__pycache__", "node_modules"))
-        version, target = add_program(archive, extension)
-        description = json.loads((extension / "package.json").read_text(encoding="utf-8"))
-        description["version"] = version
-        (extension / "package.json").write_text(json.dumps(description, indent=2) + "\n", encoding="utf-8")
-        subprocess.run(["npm", "install", "--silent", "--no-audit", "--no-fund"], cwd=extension, check=True)
-        subprocess.run(["npx", "--no-install", "vsce", "package", "--target", target, "--allow-missing-repository",
-                        "--out", output.resolve() / f"edsc-{version}-{target}.vsix"], cwd=extension, check=True)
+def make(archive: Path, extension: Path, output: Path) -> None:
+    version, target = add_program(archive, extension)
+    description = json.loads((extension / "package.json").read_text(encoding="utf-8"))
+    description["version"] = version
+    (extension / "package.json").write_text(json.dumps(description, indent=2) + "\n", encoding="utf-8")
+    subprocess.run(["npx", "--no-install", "vsce", "package", "--target", target, "--allow-missing-repository",
+                    "--out", output.resolve() / f"edsc-{version}-{target}.vsix"], cwd=extension, check=True)
 
 
 def main() -> None:
@@ -58,8 +57,13 @@ def main() -> None:
         sys.exit(__doc__)
     output, *archives = map(Path, sys.argv[1:])
     output.mkdir(parents=True, exist_ok=True)
-    for archive in archives:
-        make(archive, output)
+    with tempfile.TemporaryDirectory() as folder:
+        extension = Path(folder) / "extension"
+        shutil.copytree(HERE, extension, ignore=shutil.ignore_patterns("__pycache__", "node_modules"))
+        subprocess.run(["npm", "ci", "--ignore-scripts", "--prefer-offline", "--silent", "--no-audit", "--no-fund"],
+                       cwd=extension, check=True)
+        for archive in archives:
+            make(archive, extension, output)
 
 
 if __name__ == "__main__":
