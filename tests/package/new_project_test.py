@@ -9,12 +9,14 @@ QEMU: a scan of its serial line finds the node with the identity of the EDS.
 
 from __future__ import annotations
 
+import contextlib
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+from collections.abc import Iterator
 from pathlib import Path
 
 import consumer
@@ -39,13 +41,16 @@ class NewProject(PackageTest):
     def run_line(self, line: str) -> str:
         return run("bash", "-c", line, folder=self.project, variables=self.variables)
 
-    def start_machine(self, command: str) -> str:
-        """Starts QEMU and returns its serial line."""
+    @contextlib.contextmanager
+    def machine(self, command: str) -> Iterator[str]:
+        """Starts QEMU, returns its serial line, and ends it: an image without sleep needs a whole processor."""
         machine = Program(command, self.project, ENVIRONMENT | self.variables)
-        self.addCleanup(machine.end)
-        machine.wait_for("char device redirected to .*")
-        (line,) = re.findall(r"/dev/pts/\d+", "\n".join(machine.lines))
-        return line
+        try:
+            machine.wait_for("char device redirected to .*")
+            (line,) = re.findall(r"/dev/pts/\d+", "\n".join(machine.lines))
+            yield line
+        finally:
+            machine.end()
 
     def commands_of_the_page(self) -> list[list[str]]:
         pattern = rf"<!-- run by: tests/package/{Path(__file__).name} -->\n```sh\n(.*?)```"
@@ -59,8 +64,9 @@ class NewProject(PackageTest):
         printed = [self.run_line(line) for line in lines]
         self.assertIn("pump_conforms", printed[1])
         self.assertIn("100% tests passed, 0 tests failed out of 1", printed[1])
-        serial_line = self.start_machine(qemu.removesuffix(" &"))
-        self.assertRegex("".join(self.run_line(line.replace(SERIAL_LINE, serial_line)) for line in scan), r"(?m)^ +5 .* pump ")
+        with self.machine(qemu.removesuffix(" &")) as serial_line:
+            scanned = "".join(self.run_line(line.replace(SERIAL_LINE, serial_line) + " --timeout 5s") for line in scan)
+        self.assertRegex(scanned, r"(?m)^ +5 .* pump ")
 
     def make_project(self, *options: str) -> None:
         self.run_line(f"edsc new d1.eds --vendor-name Acme --vendor 0x1234 --product 7 --project {' '.join(options)}")
@@ -70,9 +76,10 @@ class NewProject(PackageTest):
         if WITHOUT_BOARD:
             return
         self.run_line("cmake --workflow --preset firmware")
-        serial_line = self.start_machine("qemu-system-arm -M mps2-an385 -kernel build/firmware/d1_firmware.elf -display none "
-                                         "-monitor none -serial pty")
-        self.assertEqual(self.run_line(f"edsc read slcan:{serial_line} 5 1018h:02 --eds d1.eds --raw").split()[-4:], ["07", "00", "00", "00"])
+        with self.machine("qemu-system-arm -M mps2-an385 -kernel build/firmware/d1_firmware.elf -display none -monitor none "
+                          "-serial pty") as serial_line:
+            read = self.run_line(f"edsc read slcan:{serial_line} 5 1018h:02 --eds d1.eds --raw --timeout 10s")
+        self.assertEqual(read.split()[-4:], ["07", "00", "00", "00"])
 
     def test_no_profile(self) -> None:
         self.make_project()
