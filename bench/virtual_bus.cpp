@@ -2,8 +2,8 @@
 /// [PERIOD]]`, the period of the most frequent messages in ms. The checksum includes all frames and their times: it
 /// must be the same for each kind of endpoints, and in another implementation.
 #include <can_2053c/device.hpp>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/node.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <cpd/device.hpp>
 #include <rk5c/device.hpp>
 

@@ -2,9 +2,9 @@
 /// firmware are never started without their configuration, and the master reports the fault. The slaves do not use the
 /// runtime.
 #include <gtest/gtest.h>
-#include <canopen/host/bus_faults.hpp>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/nmt_master/nmt_master.hpp>
+#include <canopen_sim/bus_faults.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 
 #include <chrono>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #include <gtest/gtest.h>
-#include <canopen/host/virtual/acceptance_table.hpp>
+#include <canopen_sim/virtual/acceptance_table.hpp>
 
 #include <algorithm>
 #include <cstddef>
