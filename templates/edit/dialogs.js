@@ -77,7 +77,7 @@ class SaveDialog {
 /* The keys of the page. */
 const openKeys = () => {
   const rows = [
-    ['/', 'search'], ['Ctrl+S', 'review and save'], ['Ctrl+Z, Ctrl+Y', 'undo, redo'], ['Alt+1, Alt+2, Alt+3', 'tab Device, Objects, PDOs'],
+    ['F1', 'this list'], ['/', 'search'], ['Ctrl+S', 'review and save'], ['Ctrl+Z, Ctrl+Y', 'undo, redo'], ['Alt+1, Alt+2, Alt+3', 'tab Device, Objects, PDOs'],
     ['Ctrl+Alt+N', 'new object'], ['Ctrl+Delete', 'remove the selected objects or entries'],
     ['arrow keys, Page Up, Page Down, Home, End', 'move in the tree, the entries, a frame'], ['Shift+arrow, Ctrl+A', 'select several rows: an edit changes all of them'],
     ['Enter, F2, or any character', 'edit a cell'], ['Enter, Tab', 'accept'], ['Escape', 'discard the typed or rejected text'],

@@ -67,7 +67,7 @@ const valueOf = (key, text) => (key === 'PDOMapping' && text ? (yes.test(text) ?
 /* Rows of the spreadsheet */
 
 /* Of each member of an entry: the least width of its column in rem, and its share of the rest. */
-const widths = { name: [11.5, 2.5], type: [9.2, 0.3], access: [4.2, 0], pdo: [3.4, 0], default: [6.6, 1], value: [6.6, 1], low: [5.6, 0.7], high: [5.6, 0.7],
+const widths = { name: [11.5, 2.5], type: [9.2, 0.3], access: [4.7, 0], pdo: [3.4, 0], default: [6.6, 1], value: [6.6, 1], low: [5.7, 0.7], high: [5.9, 0.7],
   unit: [4.6, 0.4], factor: [4.2, 0.3] };
 const kinds = { type: 'choice', access: 'choice', pdo: 'choice', default: 'number', value: 'number', low: 'number', high: 'number' };
 
@@ -443,7 +443,7 @@ document.addEventListener('keydown', (event) => {
   else if (ctrlKey && altKey && lower === 'n' && grid) run(() => byId('new-object').click());
   else if (altKey && !ctrlKey && ['1', '2', '3'].includes(key) && grid) run(() => mainTabs.select(['tab-device', 'tab-objects', 'tab-pdos'][key - 1], true));
   else if (key === '/' && !isTyping && !ctrlKey && !altKey && grid) run(() => filter.focus());
-  else if (key === '?' && !isTyping) run(() => openKeys());
+  else if (key === 'F1') run(() => openKeys());
   else if (ctrlKey && key === 'Delete' && target.id === 'tree') run(() => removeSelected());
 });
 

@@ -37,6 +37,9 @@ class EntryGrid {
     document.addEventListener('copy', (event) => this.copy(event));
     document.addEventListener('paste', (event) => this.paste(event));
     element.addEventListener('focus', () => this.showActive());
+    element.addEventListener('scroll', () => {
+      if ((element.scrollLeft > 0) !== element.classList.contains('shifted')) element.classList.toggle('shifted', element.scrollLeft > 0);
+    }, { passive: true });
   }
 
   /* Rows */
@@ -119,12 +122,18 @@ class EntryGrid {
       const isSelected = slot.row >= top && slot.row <= bottom && place >= left && place <= right;
       const text = rejected ? rejected.text : sent ?? row.cells[column.key] ?? '';
       const isLocked = this.isLockedCell(row, column);
-      cell.className = `cell ${column.kind}${isLocked && column.kind !== 'fixed' ? ' fixed-cell' : ''}${isActive ? ' active' : ''}` +
+      const names = `cell ${column.kind}${isLocked && column.kind !== 'fixed' ? ' fixed-cell' : ''}${isActive ? ' active' : ''}` +
         `${isSelected && !isActive ? ' selected' : ''}${rejected ? ' rejected' : ''}${sent !== undefined ? ' sent' : ''}`;
-      if (column.draw && !rejected) cell.replaceChildren(...column.draw(row));
-      else setText(cell, text);
+      if (cell.className !== names) cell.className = names;
+      if (column.draw) {
+        if (cell.drawnRow !== row || cell.drawnMarks !== row.marks) cell.replaceChildren(...column.draw(row));
+        Object.assign(cell, { drawnRow: row, drawnMarks: row.marks });
+      } else {
+        setText(cell, text);
+      }
+      cell.id = `entry-${slot.row}-${place}`;
       setAttributes(cell, {
-        id: `entry-${slot.row}-${place}`, 'aria-selected': String(isSelected), 'aria-readonly': isLocked ? 'true' : 'false',
+        'aria-selected': String(isSelected), 'aria-readonly': isLocked ? 'true' : 'false',
         'aria-invalid': rejected ? 'true' : null, 'aria-describedby': rejected ? `message-${slot.row}` : null, title: row.titles?.[column.key],
       });
     });
@@ -171,7 +180,7 @@ class EntryGrid {
     }
     this.view.keep(slot);
     if (isScrolled) this.view.scrollTo(slot);
-    this.view.update();
+    else this.view.update();
     setAttributes(this.element, { 'aria-activedescendant': `entry-${this.active.row}-${this.active.column}` });
     if (isScrolled) this.showColumn();
   }

@@ -29,7 +29,7 @@ class VirtualRows {
 
   placeAll() {
     this.body.style.height = `${this.count * this.height}px`;
-    for (const [at, element] of this.shown) element.style.transform = `translateY(${at * this.height}px)`;
+    for (const [at, element] of this.shown) element.style.top = `${at * this.height}px`;
   }
 
   /* Draws all visible rows again. `kept` stays in the document also if it is not visible: it has the focus. */
@@ -81,7 +81,7 @@ class VirtualRows {
       }
       if (!element) {
         element = this.free.pop() ?? this.create();
-        element.style.transform = `translateY(${at * this.height}px)`;
+        element.style.top = `${at * this.height}px`;
         this.shown.set(at, element);
       }
       this.draw(element, at);
