@@ -1,7 +1,8 @@
 /* The sections of the file that are not objects, as a form: identity once, as the server writes it to both of its places. */
 class DeviceForm {
-  constructor(element, { set }) {
-    Object.assign(this, { element, set });
+  /* `focus(section)` is called with the section of the field that gets the focus. */
+  constructor(element, { set, focus }) {
+    Object.assign(this, { element, set, focus });
     this.fields = new Map();
     this.groups = make('div', { class: 'form-groups' });
     element.append(this.groups);
@@ -28,6 +29,7 @@ class DeviceForm {
       const fieldOf = (field) => {
         const one = new FormField({ label: field.label, kind: field.kind === 'flag' ? 'check' : 'text', hint: field.object ? `${field.object}` : '',
           change: (text) => this.set(field.section, field.key, text, field.label) });
+        one.input.addEventListener('focus', () => this.focus(field.section));
         this.fields.set(`${field.section} ${field.key}`, one);
         return one.element;
       };

@@ -247,7 +247,7 @@ const side = new SidePanel({
 /* Tabs */
 
 const setValue = (section, key, value) => change([{ do: 'set', section, key, value }], { canAsk: false });
-const deviceForm = new DeviceForm(byId('device-form'), { set: setValue });
+const deviceForm = new DeviceForm(byId('device-form'), { set: setValue, focus: (section) => side.showSection(section) });
 const pdoEditor = new PdoEditor(byId('pdo-editor'), {
   change: (changes) => change(changes, { canAsk: changes.some((one) => one.do === 'remove') }), announce, showSection: (title) => side.showSection(title),
 });
@@ -367,8 +367,8 @@ const showConnection = (problem) => {
 const showAll = () => {
   if (!grid) return;
   grid.isLocked = isLocked();
-  showObjects();
   deviceForm.show(part('device'), isLocked());
+  showObjects();
   showPdos();
 };
 
@@ -399,11 +399,11 @@ const update = (names) => {
   }
   if (names.has('file') || names.has('status')) showStatus();
   grid.isLocked = isLocked();
-  if (areObjects || names.has('tree') || names.has('findings') || names.has('status')) showObjects();
   if (names.has('device') || names.has('status')) deviceForm.show(part('device'), isLocked());
-  if (names.has('pdos') || names.has('status') || [...names].some((name) => name.startsWith('candidates/'))) showPdos();
   if (!isFirst) side.showText();
   isFirst = false;
+  if (areObjects || names.has('tree') || names.has('findings') || names.has('status')) showObjects();
+  if (names.has('pdos') || names.has('status') || [...names].some((name) => name.startsWith('candidates/'))) showPdos();
 };
 
 /* Buttons and keys */
