@@ -38,7 +38,7 @@ class PdoEditor {
       if (item) this.select([...this.items.children].indexOf(item));
     });
     this.element.append(make('div', { class: 'pdo-list-side' },
-      make('div', { class: 'actions', role: 'toolbar', 'aria-label': 'PDOs' }, this.newTpdo, this.newRpdo), this.items));
+      make('div', { class: 'actions', role: 'group', 'aria-label': 'PDOs' }, this.newTpdo, this.newRpdo), this.items));
   }
 
   buildMain() {
