@@ -13,6 +13,7 @@ std::unique_ptr<OpenSheet> open_sheet(std::string name, std::string bytes, const
   auto open = std::make_unique<OpenSheet>();
   open->options = options;
   open->checks = checks;
+  if (checks == SheetChecks::all) open->diagnostics.collect_remedies();
   open->source = std::make_shared<SourceFile>(std::move(name), bytes, Packing::none, options.reading);
   open->bytes = std::move(bytes);
   open->ini = parse_ini(*open->source, open->diagnostics);
