@@ -19,9 +19,9 @@ help() {
   long      before a release: odr; the packages of the static programs for x86-64 and Arm, what the programs write in an
             empty root folder compared with the release build, and the packages of builds in two folders; edsc.exe under
             wine with all files of the repository; a cold demo; projects that compile edsc, and what they rebuild; each
-            header of the runtime alone; the header of 65,000 entries with both compilers; `edsc node` with each file of the
-            corpus; plants in a virtual machine with SocketCAN; the whole page of footprints; ten hours of each plant under
-            `edsc watch`; each wrong program with both compilers; the programs of asan with all checks of UBSan, each fuzz
+            header of the runtime alone; the headers of 65,000 entries and of 1024 PDOs with both compilers; what is generated for each
+            file of the corpus; `edsc node` with each of them; each planted fault of a device; plants in a virtual machine with SocketCAN; the whole page of footprints; ten hours of each plant under
+            `edsc watch`; each wrong program and value with both compilers; the programs of asan with all checks of UBSan, each fuzz
             target for a minute
 
 Without a gear: gates, test, asan, firmware. The last two use the program edsc of the release build, and build it there

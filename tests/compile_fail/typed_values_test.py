@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """No way to pass a value to an object converts it silently.
 
-    typed_values_test.py SOURCE_DIR GENERATED_DIR [WAY [KIND]]      GENERATED_DIR has a folder for each device
+    typed_values_test.py SOURCE_DIR GENERATED_DIR [--clang-every N] [WAY [KIND]]      GENERATED_DIR has a folder for each device
 
 Each row of WAYS is a statement that passes a value, and each row of KINDS is a wrong value for an object. None of them
 compiles as a statement: the compiler rejects the value, or it has a result that must be used. The message has at most 12
@@ -10,6 +10,7 @@ lines, with the compilers of Debian 13 at most 18, and the name of the object. A
 
 from __future__ import annotations
 
+import argparse
 import sys
 import tempfile
 from dataclasses import dataclass
@@ -201,7 +202,13 @@ def run_unit(job: tuple[Unit, Path, tuple[Path, ...], tuple[str, ...]]) -> list[
 
 
 def main() -> int:
-    source_dir, generated = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    parser = argparse.ArgumentParser()
+    parser.add_argument("source_dir", type=Path)
+    parser.add_argument("generated", type=Path)
+    parser.add_argument("--clang-every", type=int, default=1, metavar="N", help="Clang compiles each Nth part of the table")
+    parser.add_argument("cell", nargs="*", help="a way, and a kind")
+    arguments = parser.parse_args()
+    source_dir, generated = arguments.source_dir.resolve(), arguments.generated.resolve()
     compilers = those_installed((GCC, CLANG))
     include = (*(path for path in sorted(generated.iterdir()) if path.is_dir()), generated,
                source_dir / "runtime/include", source_dir / "tests")
@@ -212,7 +219,8 @@ def main() -> int:
             folder.mkdir()
             flags = (*UNUSED_IS_FINE, *precompiled(compiler, COMMON_HEADERS, include, folder, UNUSED_IS_FINE))
             jobs += [(unit, folder / f"unit_{number}", include, flags)
-                     for number, unit in enumerate(units_of(compiler, sys.argv[3:]))]
+                     for number, unit in enumerate(units_of(compiler, arguments.cell))
+                     if compiler is not CLANG or number % arguments.clang_every == 0]
         problems = [problem for found in in_parallel(run_unit, jobs) for problem in found]
     for problem in problems:
         print(problem)

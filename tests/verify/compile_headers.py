@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Each header compiles alone and twice without a warning.
 
-    compile_headers.py SOURCE_DIR EDSC [--every N]
+    compile_headers.py SOURCE_DIR EDSC [--every N] [--devices-every N]
 
 --every N: of the headers of the runtime, g++ compiles only every Nth alone.
+--devices-every N: the other compilers read the headers of every Nth device, and g++ every Nth of those that differ as the main file.
 Tests the headers of the runtime and those that edsc generates for the reference devices and the fixtures. Whether a header
 includes all that it needs is tested with g++, where it is alone or the main file. The other compilers read all headers of the
 runtime, and all of a device, in one file. All headers also compile after `using namespace std;`: g++ reads those
@@ -130,11 +131,11 @@ def different_headers(devices: list[Path]) -> list[Path]:
     return sorted(longest.values())
 
 
-def jobs_of_main_files(devices: list[Path], runtime: Path) -> list[Job]:
+def jobs_of_main_files(devices: list[Path], runtime: Path, every: int) -> list[Job]:
     """A main file must not have #pragma once. GNU extensions must not change a dictionary."""
     return [Job(GCC, f"{header.relative_to(header.parents[1])} as the main file", header, (header.parents[1], runtime),
                 ("-x", "c++", *(["-std=gnu++20"] if header.name == "dictionary.hpp" else [])))
-            for header in different_headers(devices)]
+            for header in different_headers(devices)[::every]]
 
 
 def jobs_of_all_headers(devices: list[Path], runtime: Path, scratch: Path) -> list[Job]:
@@ -168,6 +169,7 @@ def main() -> int:
     parser.add_argument("source_dir", type=Path)
     parser.add_argument("edsc", type=Path)
     parser.add_argument("--every", type=int, default=1)
+    parser.add_argument("--devices-every", type=int, default=1)
     arguments = parser.parse_args()
     source_dir, edsc = arguments.source_dir.resolve(), arguments.edsc.resolve()
     runtime = source_dir / "runtime/include"
@@ -178,10 +180,10 @@ def main() -> int:
         jobs = jobs_of_the_runtime(runtime, compilers, scratch, arguments.every)
         for compiler in compilers:
             if compiler == GCC:
-                jobs += jobs_of_main_files(devices, runtime)
+                jobs += jobs_of_main_files(devices, runtime, arguments.devices_every)
                 jobs += jobs_of_all_headers(devices, runtime, scratch)
             else:
-                jobs += jobs_of_devices(devices, compiler, runtime, scratch)
+                jobs += jobs_of_devices(devices[::arguments.devices_every], compiler, runtime, scratch)
         problems = [problem for problem in in_parallel(Job.run, jobs) if problem]
     for problem in problems:
         print(problem)

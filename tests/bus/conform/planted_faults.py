@@ -130,11 +130,13 @@ def main() -> int:
     parser.add_argument("edsc", type=Path)
     parser.add_argument("compiler")
     parser.add_argument("--only", action="append", metavar="NAME", help="this fault, or one of several")
+    parser.add_argument("--each", type=int, default=1, metavar="N", help="each Nth fault of the sources")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--write", action="store_true", help="update the cases in the table")
     arguments = parser.parse_args()
     all_faults = read_faults()
-    numbers = {fault: number for number, fault in enumerate(all_faults) if not arguments.only or fault.name in arguments.only}
+    numbers = {fault: number for number, fault in enumerate(all_faults)
+               if number % arguments.each == 0 and (not arguments.only or fault.name in arguments.only)}
     faults = list(numbers)
     began = time.monotonic()
     with tempfile.TemporaryDirectory(prefix="edsc-planted-") as folder:
