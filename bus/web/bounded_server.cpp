@@ -48,8 +48,8 @@ thread_local steady_clock::time_point ConnectionThreads::accepted_;
 /// A connection of one request, of which only so many bytes are read, within this time.
 class BoundedStream final : public httplib::Stream {
  public:
-  BoundedStream(int socket, steady_clock::time_point accepted)
-      : socket_{socket}, end_of_reading_{accepted + read_time} {}
+  BoundedStream(int socket, steady_clock::time_point accepted, std::size_t max_bytes)
+      : socket_{socket}, end_of_reading_{accepted + read_time}, max_bytes_{max_bytes} {}
 
   [[nodiscard]] bool is_readable() const override { return begin_ != end_ || waits_for(POLLIN, milliseconds{0}); }
   [[nodiscard]] bool is_writable() const override { return waits_for(POLLOUT, write_time); }
@@ -72,7 +72,6 @@ class BoundedStream final : public httplib::Stream {
   [[nodiscard]] socket_t socket() const override { return socket_; }
 
  private:
-  static constexpr std::size_t max_bytes = 16'384;
   static constexpr milliseconds read_time{5'000};
   static constexpr milliseconds write_time{5'000};
 
@@ -84,7 +83,7 @@ class BoundedStream final : public httplib::Stream {
   bool fill() {
     const auto left = std::chrono::duration_cast<milliseconds>(end_of_reading_ - steady_clock::now());
     // What was received while all threads were busy is read also after this time.
-    if (bytes_ >= max_bytes || !waits_for(POLLIN, std::max(left, milliseconds{0}))) return false;
+    if (bytes_ >= max_bytes_ || !waits_for(POLLIN, std::max(left, milliseconds{0}))) return false;
     const ssize_t count = ::recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
     if (count <= 0) return false;
     begin_ = 0;
@@ -95,6 +94,7 @@ class BoundedStream final : public httplib::Stream {
 
   int socket_;
   steady_clock::time_point end_of_reading_;
+  std::size_t max_bytes_;
   std::size_t bytes_ = 0;
   std::size_t begin_ = 0, end_ = 0;
   std::array<char, 4096> buffer_{};
@@ -117,7 +117,7 @@ void BoundedServer::end_connections() {
 bool BoundedServer::process_and_close_socket(socket_t socket) {
   bool is_done = false;
   if (begin_connection(socket)) {
-    BoundedStream stream{socket, ConnectionThreads::accepted()};
+    BoundedStream stream{socket, ConnectionThreads::accepted(), max_request_bytes_};
     bool is_closed = false;
     // cpp-httplib 0.18 also takes the addresses and ports of both ends.
     const auto process = [&](auto& server) {

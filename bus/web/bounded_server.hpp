@@ -9,10 +9,14 @@
 
 namespace edsc {
 
-/// Answers one request for each connection. It reads at most 16 kB of it, within five seconds of its acceptance.
+/// Answers one request for each connection. It reads at most 16 kB of it, or as many bytes as set, within five seconds
+/// of its acceptance.
 class BoundedServer final : public httplib::Server {
  public:
   void set_threads(std::size_t count);
+
+  /// Of a request with its headers. Before binding.
+  void set_max_request_bytes(std::size_t count) { max_request_bytes_ = count; }
 
   /// After binding: connections that the server has not accepted yet wait, as many as the system allows. httplib lets
   /// five wait; the others would be delayed by seconds.
@@ -26,6 +30,7 @@ class BoundedServer final : public httplib::Server {
   [[nodiscard]] bool begin_connection(socket_t socket);
   void end_connection(socket_t socket);
 
+  std::size_t max_request_bytes_ = 16'384;
   std::mutex mutex_;
   std::unordered_set<socket_t> open_;
   bool has_ended_ = false;

@@ -40,10 +40,14 @@ std::string random_token() {
   return token;
 }
 
-int RequestGuard::check(const WebRequest& request) const {
+int RequestGuard::check_origin(const WebRequest& request) const {
   if (!is_own_host(request.host)) return misdirected;
-  if (!request.origin.empty() && request.origin != "http://" + request.host) return forbidden;
-  if (!is_own_token(request.token)) return forbidden;
+  return request.origin.empty() || request.origin == "http://" + request.host ? ok : forbidden;
+}
+
+int RequestGuard::check(const WebRequest& request) const {
+  if (const int status = check_origin(request); status != ok) return status;
+  if (!is_same_token(request.token, token_)) return forbidden;
   if (request.method != "GET") return method_not_allowed;
   return request.range.empty() ? ok : no_range;
 }
@@ -66,9 +70,8 @@ bool RequestGuard::is_own_host(std::string_view host) const {
   return !is_loopback(address_.host) && is_ip_address(name);
 }
 
-/// In a time that does not depend on how much of the token is right.
-bool RequestGuard::is_own_token(std::string_view token) const {
-  return token.size() == token_.size() && memeql_sec(token.data(), token_.data(), token_.size()) != 0;
+bool RequestGuard::is_same_token(std::string_view one, std::string_view other) {
+  return one.size() == other.size() && memeql_sec(one.data(), other.data(), one.size()) != 0;
 }
 
 }  // namespace edsc

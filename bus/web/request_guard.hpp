@@ -30,14 +30,22 @@ class RequestGuard {
   /// The HTTP status for a request: 200, or that of its refusal.
   [[nodiscard]] int check(const WebRequest& request) const;
 
-  [[nodiscard]] std::string url() const { return "http://" + to_text(address_) + "/?token=" + token_; }
+  /// The same without the token and the method, for a server that has other ones.
+  [[nodiscard]] int check_origin(const WebRequest& request) const;
+
+  [[nodiscard]] std::string url() const { return url_with(token_); }
+  [[nodiscard]] std::string url_with(const std::string& token) const {
+    return "http://" + to_text(address_) + "/?token=" + token;
+  }
+
+  /// Compares in a time that does not depend on how much of a token is right.
+  [[nodiscard]] static bool is_same_token(std::string_view one, std::string_view other);
 
   /// Whether only programs on this computer can connect.
   [[nodiscard]] static bool is_loopback(const std::string& host);
 
  private:
   [[nodiscard]] bool is_own_host(std::string_view host) const;
-  [[nodiscard]] bool is_own_token(std::string_view token) const;
 
   ListenAddress address_;
   std::string token_;

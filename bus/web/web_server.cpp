@@ -7,11 +7,11 @@
 #include <atomic>
 #include <chrono>
 #include <string>
-#include <string_view>
 #include <thread>
 #include <utility>
 
 #include "web/bounded_server.hpp"
+#include "web/page_headers.hpp"
 #include "web/request_guard.hpp"
 
 namespace edsc {
@@ -19,35 +19,11 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::pair<const char*, const char*> headers[] = {
-    {"Cache-Control", "no-store"},
-    {"Cross-Origin-Opener-Policy", "same-origin"},
-    {"Cross-Origin-Resource-Policy", "same-origin"},
-    {"Referrer-Policy", "no-referrer"},
-    {"X-Content-Type-Options", "nosniff"},
-    {"X-Frame-Options", "DENY"},
-};
-
 /// What a person reads who opens an incomplete URL. It has no information of the bus.
 constexpr std::pair<int, const char*> refusals[] = {
     {403, "This URL does not have the token. Open the URL that edsc monitor prints.\n"},
     {421, "Unknown host name. Open the URL printed by edsc monitor.\n"},
 };
-
-std::string policy(const std::string& nonce) {
-  return fmt::format(
-      "default-src 'none'; script-src 'nonce-{0}'; style-src 'nonce-{0}'; connect-src 'self'; img-src data:; "
-      "base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
-      nonce);
-}
-
-std::string with_nonce(std::string page, std::string_view nonce) {
-  constexpr std::string_view placeholder = "{{{nonce}}}";
-  for (std::size_t at = 0; (at = page.find(placeholder, at)) != std::string::npos;) {
-    page.replace(at, placeholder.size(), nonce);
-  }
-  return page;
-}
 
 }  // namespace
 
@@ -56,7 +32,7 @@ class WebServer::Implementation {
   Implementation(const ListenAddress& address, std::string page, LiveRows& rows)
       : page_{std::move(page)}, rows_{rows}, guard_{bind(address), random_token()} {
     server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
-      for (const auto& [name, value] : headers) response.set_header(name, value);
+      for (const auto& [name, value] : page_headers) response.set_header(name, value);
       const int status =
           guard_.check({request.method, request.get_header_value("Host"), request.get_header_value("Origin"),
                         request.get_header_value("Range"), request.get_param_value("token")});
@@ -69,7 +45,7 @@ class WebServer::Implementation {
     });
     server_.Get("/", [this](const httplib::Request&, httplib::Response& response) {
       const std::string nonce = random_token();
-      response.set_header("Content-Security-Policy", policy(nonce));
+      response.set_header("Content-Security-Policy", page_policy(nonce));
       response.set_content(with_nonce(page_, nonce), "text/html; charset=utf-8");
     });
     server_.Get("/events", [this](const httplib::Request&, httplib::Response& response) { stream_to(response); });

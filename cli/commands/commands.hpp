@@ -13,6 +13,7 @@ AddOptions add_check_options;
 AddOptions add_dump_options;
 AddOptions add_format_options;
 AddOptions add_merge_options;
+AddOptions add_edit_options;
 AddOptions add_new_options;
 AddOptions add_object_options;
 AddOptions add_overlay_options;
@@ -62,7 +63,8 @@ struct CommandRow {
   bool describes_all = false;  ///< it prints the options of all commands
 };
 
-/// In the order of the help. A program without access to a bus (EDSC_OFFLINE of CMake) does not have those for a bus.
+/// In the order of the help. A program without access to a bus (EDSC_OFFLINE of CMake) does not have those for a bus,
+/// and no servers.
 inline constexpr CommandRow commands[] = {
     {"EDS files", "generate", "generate C++ headers for one device", add_generate_options},
     {"EDS files", "check", "check EDS, DCF and XDD files", add_check_options},
@@ -71,6 +73,9 @@ inline constexpr CommandRow commands[] = {
      add_format_options},
     {"EDS files", "new", "write an EDS for a new device", add_new_options},
     {"EDS files", "object", "add, change, map and remove objects of an EDS or DCF", add_object_options},
+#ifndef EDSC_OFFLINE
+    {"EDS files", "edit", "edit an EDS, DCF or overlay in the browser", add_edit_options},
+#endif
     {"EDS files", "merge", "merge two versions of an EDS or DCF, as a merge driver of git", add_merge_options},
     {"EDS files", "overlay", "correct an EDS that you may not change: apply, derive and rebase overlays",
      add_overlay_options},

@@ -28,23 +28,6 @@ ChangeStamp stamp_of_now() {
   return {fmt::format("{:%m-%d-%Y}", local), fmt::format("{:%I:%M%p}", local)};
 }
 
-/// The options beside a file; those without errors are used.
-Options options_beside(const std::string& path) {
-  const std::filesystem::path beside = to_native(path).replace_extension(".options.json");
-  std::error_code missing;
-  if (!std::filesystem::exists(beside, missing)) return {};
-  std::string error;
-  const auto source = read_source_file(from_native(beside), error);
-  if (!source) fail(error);
-  Diagnostics diagnostics;
-  Options options = read_options(*source, is_identifier, diagnostics);
-  if (diagnostics.errors() > 0) {
-    print_findings(diagnostics, {});
-    throw Exit{exit_input_has_errors};
-  }
-  return options;
-}
-
 void report(const EditSettings& settings, const AppliedChanges& applied) {
   for (const std::string& objection : applied.objections) print_to_stderr("edsc: {}: {}\n", settings.path, objection);
   Diagnostics diagnostics;
@@ -62,6 +45,22 @@ void write_if_unchanged(const EditSettings& settings, const OpenSheet& before, c
 }
 
 }  // namespace
+
+Options options_beside(const std::string& path) {
+  const std::filesystem::path beside = to_native(path).replace_extension(".options.json");
+  std::error_code missing;
+  if (!std::filesystem::exists(beside, missing)) return {};
+  std::string error;
+  const auto source = read_source_file(from_native(beside), error);
+  if (!source) fail(error);
+  Diagnostics diagnostics;
+  Options options = read_options(*source, is_identifier, diagnostics);
+  if (diagnostics.errors() > 0) {
+    print_findings(diagnostics, {});
+    throw Exit{exit_input_has_errors};
+  }
+  return options;
+}
 
 void EditSettings::add_to(Command command) {
   command.add_flag("--dry-run", dry_run, "as a unified diff");

@@ -23,6 +23,9 @@ struct EditSettings {
   void add_to(Command command);
 };
 
+/// The options of the file beside `path`, or none. Ends the command if they have errors.
+[[nodiscard]] Options options_beside(const std::string& path);
+
 /// Reads an EDS or DCF with the options beside it. Ends the command for another kind of file.
 [[nodiscard]] std::unique_ptr<OpenSheet> open_file(const std::string& path);
 

@@ -13,6 +13,7 @@ std::unique_ptr<OpenSheet> open_sheet(std::string name, std::string bytes, const
   auto open = std::make_unique<OpenSheet>();
   open->options = options;
   open->checks = checks;
+  if (checks == SheetChecks::all) open->diagnostics.collect_remedies();
   open->source = std::make_shared<SourceFile>(std::move(name), bytes, Packing::none, options.reading);
   open->bytes = std::move(bytes);
   open->ini = parse_ini(*open->source, open->diagnostics);
@@ -28,7 +29,8 @@ std::unique_ptr<OpenSheet> open_sheet(std::string name, std::string bytes, const
 }
 
 bool is_canonical(const OpenSheet& sheet) {
-  return sheet.device && sheet.source->is_verbatim() && sheet.source->text() == canonical_text(sheet);
+  return sheet.device && sheet.source->is_verbatim() &&
+         is_canonical_form(sheet.source->text(), sheet.ini, sheet.sheet, *sheet.device);
 }
 
 std::string canonical_text(const OpenSheet& sheet) {

@@ -24,6 +24,7 @@ COMMON_HEADERS = """#include <canopen/sdo/remote_node.hpp>
 #include <canopen/node.hpp>
 #include <canopen/node/mailbox.hpp>
 #include <canopen/node/locked.hpp>
+#include <canopen/node/mailbox.hpp>
 #include <canopen/master.hpp>
 #include <canopen_plant/plant.hpp>
 #include <every_type/device.hpp>

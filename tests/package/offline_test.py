@@ -20,7 +20,7 @@ SOURCE_DIR, BUILD_DIR = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 SHEET = SOURCE_DIR / "eds/cpd.eds"
 LIVE_HEADERS = re.compile(r"/(linux/can\S*|net/if\.h|sys/socket\.h|termios\.h|httplib\.h|nettle/\S*)")
 LIVE_COMMANDS = {"scan", "read", "write", "configure", "save", "monitor", "nmt", "send", "lss", "conform", "accept", "bus", "node",
-                 "record", "watch", "replay", "discover"}
+                 "record", "watch", "replay", "discover", "edit"}
 OTHER_COMMANDS = {"generate", "check", "dump", "format", "diff", "document", "lsp", "merge", "new", "object", "overlay", "network", "decode", "audit",
                   "plot", "completion", "help", "version"}
 LOG = "(0.000000) can0 705#00\n(0.100000) can0 000#0105\n(0.200000) can0 185#3706\n"

@@ -18,7 +18,7 @@ import tempfile
 from pathlib import Path
 
 import live
-from live import EDSC, FAILED, FINE, SOURCE_DIR, ReferenceDevices, every_command
+from live import EDSC, FAILED, FINE, SOURCE_DIR, WRONG_USAGE, ReferenceDevices, every_command
 
 MEMORY_FAULT = 99  # as an exit code, which none of the commands has
 REPORT = re.compile(r"==\d+==|runtime error:")  # of AddressSanitizer, valgrind; of UBSan
@@ -74,6 +74,7 @@ class EveryCommand(ReferenceDevices):
             self.run_command("completion", kind)
         self.run_command("help", "check")
         self.run_command("version")
+        self.run_command("edit", "missing.eds", "--no-browser", exit_codes=(WRONG_USAGE,))
         for device in self.devices:
             with self.subTest(device):
                 sheet = SOURCE_DIR / f"eds/{device}.eds"

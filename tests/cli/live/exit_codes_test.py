@@ -22,7 +22,7 @@ HAS_COMMANDS = {one["command"].rsplit(" ", 1)[0] for one in LANGUAGE["commands"]
 COMMANDS = {one["command"]: one for one in LANGUAGE["commands"] if one["command"] not in HAS_COMMANDS}
 NO_BUS = "socketcand:127.0.0.1:1/vcan0"  # no server listens there
 # They have no input and no device that can be wrong.
-CANNOT_FAIL = {"overlay from", "object export", "completion", "help", "version", "bus", "network members", "record", "monitor", "send sync", "send time", "send pdo",
+CANNOT_FAIL = {"edit", "overlay from", "object export", "completion", "help", "version", "bus", "network members", "record", "monitor", "send sync", "send time", "send pdo",
                "send frame", "lss activate", "lss state"}
 
 # More uses than those of standard_streams_test.py: the words with the exit code. @ is BUS.
@@ -98,6 +98,8 @@ ENDED_BY_USER = {"bus": "bus --listen 127.0.0.1:0", "monitor": "monitor @", "rec
                  "watch": "watch @ --network plant.json",
                  "node": "node @ device.eds --node-id 9", "network run": "network run @ absent.json"}
 NOT_WAITING = {"lss state"}
+# Without a bus, until the last page is closed or Ctrl-C.
+WITH_PAGE = {"edit": "edit device.eds --no-browser"}
 
 
 class ExitCodes(standard_streams_test.PreparedFiles):
@@ -125,7 +127,7 @@ class ExitCodes(standard_streams_test.PreparedFiles):
                 self.assertEqual(result.returncode, expected, result.stderr)
                 known[name].add(expected)
         for name in COMMANDS:
-            if name not in WITH_LSS_DEVICE | set(ENDED_BY_USER):
+            if name not in WITH_LSS_DEVICE | set(ENDED_BY_USER) | set(WITH_PAGE):
                 self.assertIn(FINE, known[name], name)
             if name not in CANNOT_FAIL | {"diff"}:
                 self.assertIn(FAILED, known[name], name)
@@ -175,7 +177,7 @@ class ExitCodes(standard_streams_test.PreparedFiles):
     def test_of_an_interrupt(self) -> None:
         with_bus = {name for name, command in COMMANDS.items() if command["usage"].replace("[BUS]", "BUS").count("BUS")}
         self.assertEqual(with_bus, set(WAITING) | set(ENDED_BY_USER) - {"bus", "watch"} | NOT_WAITING)
-        for name, text in (WAITING | ENDED_BY_USER).items():
+        for name, text in (WAITING | ENDED_BY_USER | WITH_PAGE).items():
             with self.subTest(command=name):
                 process = subprocess.Popen(self.words_of(text), cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
                 time.sleep(0.5)

@@ -73,6 +73,7 @@ ROWS = (
     Row("diff", ("device.eds", "broken.eds"), WRONG_USAGE, warns=True),
     Row("document", ("warned.eds", "-o", "page.html"), files=("page.html",)),
     Row("document", ("broken.eds", "-o", "page.html"), FAILED, warns=True),
+    Row("edit", ("missing.eds", "--no-browser"), WRONG_USAGE, warns=True),
     Row("lsp", (), standard_input=framed("initialize", "shutdown", "exit")),
     Row("network check", ("plant.json",)),
     Row("network members", ()),
