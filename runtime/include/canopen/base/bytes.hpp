@@ -30,7 +30,8 @@ namespace bytes_detail {
 
 }  // namespace bytes_detail
 
-/// Copies any number of bytes.
+/// Copies any number of bytes. The loop saves the 152 bytes of memcpy on a Cortex-M0+; a Cortex-M4 would take about 30
+/// instructions more for seven bytes.
 inline void copy_bytes(void* to, const void* from, std::size_t size) {
   if constexpr (prefers_size) {
     bytes_detail::copy_by_loop(static_cast<std::uint8_t*>(to), static_cast<const std::uint8_t*>(from), size);
@@ -39,7 +40,8 @@ inline void copy_bytes(void* to, const void* from, std::size_t size) {
   }
 }
 
-/// Copies a small number of bytes, for which a call of memcpy would take longer.
+/// Copies a small number of bytes, for which a call of memcpy would take longer. One loop for all saves 8 to 152 bytes
+/// of a Cortex-M0+, and would take 4 instructions more of an SDO download on a Cortex-M4.
 inline void copy_few_bytes(std::uint8_t* to, const std::uint8_t* from, std::size_t size) {
   if constexpr (prefers_size) {
     bytes_detail::copy_by_loop(to, from, size);
@@ -48,7 +50,7 @@ inline void copy_few_bytes(std::uint8_t* to, const std::uint8_t* from, std::size
   }
 }
 
-/// Clears any number of bytes.
+/// Clears any number of bytes. The loop saves the 156 bytes of memset on a Cortex-M0+.
 inline void clear_bytes(void* to, std::size_t size) {
   if constexpr (prefers_size) {
     bytes_detail::clear_by_loop(static_cast<std::uint8_t*>(to), size);

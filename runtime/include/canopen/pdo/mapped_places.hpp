@@ -40,6 +40,7 @@ inline void copy_value(std::uint8_t* to, const std::uint8_t* from, unsigned byte
     }
     if ((bytes & 1) != 0) *to = *from;
   } else if constexpr (prefers_size) {
+    // Saves 172 bytes of a Cortex-M0+; 4 RPDOs and 4 TPDOs take 138 instructions more.
     bytes_detail::copy_by_loop(to, from, bytes);
   } else {
     do *to++ = *from++;
@@ -100,7 +101,8 @@ class MappedPlaces {
           if (watched(mapping[i])) places[i] |= Runs::apart;
         }
       }
-      // Without it, a PDO is copied object by object, which takes 96 bytes less on a Cortex-M0+.
+      // Without it, a PDO is copied object by object, which takes 100 bytes less on a Cortex-M0+. On a Cortex-M4, 4
+      // RPDOs and 4 TPDOs would take 348 instructions more.
       if constexpr (!prefers_size || Runs::has_bits) Runs::join(places, mapping.count(), bits);
       return static_cast<std::uint8_t>((bits + 7) / 8);
     }

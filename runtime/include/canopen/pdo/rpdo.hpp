@@ -149,8 +149,8 @@ class RpdoService {
     shared = 128,   ///< another RPDO may have the same CAN-ID
   };
 
-  /// Whether the frame of an RPDO that only waits for the SYNC has a path of its own: on a Cortex-M4 it saves 48
-  /// instructions of each frame, on a Cortex-M0+ it takes 200 bytes.
+  /// Whether the frame of an RPDO that only waits for the SYNC has a path of its own: on a Cortex-M4 it saves 53
+  /// instructions of each frame, on a Cortex-M0+ it takes 224 bytes.
   static constexpr bool has_short_path = !prefers_size;
 
   static constexpr std::uint8_t unmapped = 0xFF;  ///< a size that no frame reaches
@@ -376,7 +376,8 @@ class RpdoService {
     if constexpr (Host::may_change_mappings) applied_ = {};
   }
 
-  /// Whether a run is 6060h with the value that it already has, and no function is called for it.
+  /// Whether a run is 6060h with the value that it already has, and no function is called for it. Saves 151
+  /// instructions of a Cortex-M4, takes 28 bytes of a Cortex-M0+.
   template <class Host>
   [[nodiscard]] static bool repeats_mode([[maybe_unused]] typename Mapped::Place run,
                                          [[maybe_unused]] EntryAccess<Device> entries,

@@ -28,84 +28,84 @@ namespace canopen {
 /// 0001h. A new initiate ends the previous transfer, except during the segments of a block download, from which it
 /// cannot be distinguished.
 template <class Device>
-class SdoServer {
+class SdoServer : private SdoServerTransfer<Device> {  // its bytes are first: they have small offsets
+  using Transfer = SdoServerTransfer<Device>;
+
  public:
   /// Accepts a request. A response that has not been sent yet is replaced.
   void on_request(const sdo::Data& request, SdoServerHooks<Device> auto&& hooks, TimePoint now) {
     if constexpr (has_timeout) last_activity_ = now;
     if constexpr (has_sheet<Device>)
       timeout_.length = from_milliseconds(sdo_timeout_of(options_of<Device>(hooks.entries())));
-    if (const AbortCode code = handle(request, hooks); code != ok) transfer_.abort(code, hooks);
+    if (const AbortCode code = handle(request, hooks); code != ok) Transfer::abort(code, hooks);
   }
 
   /// Aborts a transfer whose client has not sent anything for too long (0504 0000h). A sub-block that stops for half of
   /// that time is confirmed as far as it has been received, so that the client repeats the rest.
   void on_time([[maybe_unused]] TimePoint now) {
     if constexpr (has_timeout) {
-      if (transfer_.state() == State::idle || !timeout_.runs() || now < last_activity_ + current_timeout()) return;
+      if (Transfer::state() == State::idle || !timeout_.runs() || now < last_activity_ + current_timeout()) return;
       if constexpr (has_block) {
-        if (Blocks::sub_block_begun(transfer_)) return Blocks::confirm_sub_block(transfer_);
+        if (Blocks::sub_block_begun(*this)) return Blocks::confirm_sub_block(*this);
       }
-      transfer_.abort(AbortCode::timeout);
+      Transfer::abort(AbortCode::timeout);
     }
   }
 
   /// Returns when the timeout of the client elapses.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
     if constexpr (has_timeout) {
-      if (transfer_.state() != State::idle && timeout_.runs()) return last_activity_ + current_timeout();
+      if (Transfer::state() != State::idle && timeout_.runs()) return last_activity_ + current_timeout();
     }
     return std::nullopt;
   }
 
-  /// Whether a response is waiting to be sent.
-  [[nodiscard]] bool has_reply() const { return transfer_.has_reply(); }
-  [[nodiscard]] const sdo::Data& reply() const { return transfer_.reply(); }
+  using Transfer::has_reply, Transfer::reply;
 
   /// Reports that the response has been passed to the controller: the next segment of a block upload replaces it.
   void reply_sent(SdoServerHooks<Device> auto&& hooks, [[maybe_unused]] TimePoint now) {
     if constexpr (has_timeout) last_activity_ = now;
-    transfer_.drop_reply();
+    Transfer::drop_reply();
     if constexpr (has_block) {
-      if (!Blocks::has_segment(transfer_)) return;
-      if (const AbortCode code = Blocks::next_segment(transfer_, hooks); code != ok) transfer_.abort(code, hooks);
+      if (!Blocks::has_segment(*this)) return;
+      if (const AbortCode code = Blocks::next_segment(*this, hooks); code != ok) Transfer::abort(code, hooks);
     }
   }
 
   /// The same for a device without block transfer.
   void reply_sent() {
     static_assert(!has_block, "the next segment of a block upload needs the hooks");
-    transfer_.drop_reply();
+    Transfer::drop_reply();
   }
 
   /// The request has started a command that takes longer: its response waits for `command_ended`.
-  void hold_reply() { transfer_.hold_reply(); }
+  using Transfer::hold_reply;
   /// The client does not wait for the response any more.
   void discard_held_reply() {
-    if (transfer_.holds_reply()) transfer_.drop_reply();
+    if (Transfer::holds_reply()) Transfer::drop_reply();
   }
   /// The command has ended: a response that is held is sent, as an abort if the code is not `ok`.
   void command_ended(AbortCode code) {
-    if (!transfer_.holds_reply()) return;
-    code == ok ? transfer_.release_reply() : transfer_.abort(code);
+    if (!Transfer::holds_reply()) return;
+    code == ok ? Transfer::release_reply() : Transfer::abort(code);
   }
 
   /// Whether segments of a block download are expected, whose first byte is not a command.
-  [[nodiscard]] bool takes_segments() const { return has_block && transfer_.state() == State::block_downloading; }
+  [[nodiscard]] bool takes_segments() const { return has_block && Transfer::state() == State::block_downloading; }
 
   /// Discards the transfer and the response.
   void reset() {
-    transfer_.enter(State::idle);
-    transfer_.drop_reply();
+    Transfer::enter(State::idle);
+    Transfer::drop_reply();
   }
 
   /// Aborts a transfer of a DOMAIN that has been bound to other memory, or that another server writes now.
   void domain_rebound(std::uint16_t index, std::uint8_t sub_index) {
-    if (transfer_.transfers(index, sub_index)) transfer_.abort(AbortCode::not_stored);
+    if (Transfer::transfers(index, sub_index)) Transfer::abort(AbortCode::not_stored);
   }
 
  private:
-  using State = typename SdoServerTransfer<Device>::State;
+  using State = typename Transfer::State;
   using Blocks = SdoServerBlocks<Device>;
 
   /// The timeout of the type, and of a device with a sheet.
@@ -123,33 +123,32 @@ class SdoServer {
   [[nodiscard]] AbortCode handle(const sdo::Data& request, auto& hooks) {
     const bool blocks = has_block && options_of<Device>(hooks.entries()).sdo_block_transfer;
     if constexpr (has_block) {
-      if (takes_segments() && request[0] != sdo::abort_command) return Blocks::take_segment(request, transfer_, hooks);
+      if (takes_segments() && request[0] != sdo::abort_command) return Blocks::take_segment(request, *this, hooks);
     }
     const sdo::ClientCommand command = sdo::client_command(request[0]);
     if (command == sdo::ClientCommand::upload_segment) return upload_segment(request[0], hooks);
     if (command == sdo::ClientCommand::download_segment) return download_segment(request, hooks);
     if (command == sdo::ClientCommand::abort) {
-      transfer_.enter(State::idle);
+      Transfer::enter(State::idle);
       return ok;
     }
     if constexpr (has_block) {
       if (blocks && command == sdo::ClientCommand::block_upload &&
           static_cast<sdo::BlockUpload>(request[0] & 3) != sdo::BlockUpload::initiate)
-        return Blocks::upload(request, transfer_, hooks);
+        return Blocks::upload(request, *this, hooks);
       if (blocks && command == sdo::ClientCommand::block_download && (request[0] & 1) != 0)
-        return Blocks::end_download(request, transfer_, hooks);
+        return Blocks::end_download(request, *this, hooks);
     }
     // An unknown command does not start a transfer: its abort contains the multiplexer of the transfer that it ends.
-    if (command == sdo::ClientCommand::reserved && transfer_.state() != State::idle)
+    if (command == sdo::ClientCommand::reserved && Transfer::state() != State::idle)
       return AbortCode::command_specifier;
-    transfer_.begin(request);
+    Transfer::begin(request);
     if (command == sdo::ClientCommand::initiate_upload) return initiate_upload(hooks);
     if (command == sdo::ClientCommand::initiate_download) return initiate_download(request, hooks);
     if constexpr (has_block) {
-      if (blocks && command == sdo::ClientCommand::block_upload)
-        return Blocks::initiate_upload(request, transfer_, hooks);
+      if (blocks && command == sdo::ClientCommand::block_upload) return Blocks::initiate_upload(request, *this, hooks);
       if (blocks && command == sdo::ClientCommand::block_download)
-        return Blocks::initiate_download(request, transfer_, hooks);
+        return Blocks::initiate_download(request, *this, hooks);
     }
     return AbortCode::command_specifier;
   }
@@ -157,29 +156,29 @@ class SdoServer {
   // Expedited and segmented upload
 
   [[nodiscard]] AbortCode initiate_upload(auto& hooks) {
-    if (const AbortCode code = transfer_.find_readable(hooks); code != ok) return code;
-    if (transfer_.is_short_number()) {
-      transfer_.answer_number(hooks);
+    if (const AbortCode code = Transfer::find_readable(hooks); code != ok) return code;
+    if (Transfer::is_short_number()) {
+      Transfer::answer_number(hooks);
       return ok;
     }
-    if (const AbortCode code = transfer_.open_upload(hooks); code != ok) return code;
-    transfer_.answer_upload(hooks);
+    if (const AbortCode code = Transfer::open_upload(hooks); code != ok) return code;
+    Transfer::answer_upload(hooks);
     return ok;
   }
 
   [[nodiscard]] AbortCode upload_segment(std::uint8_t command, auto& hooks) {
-    if (transfer_.state() != State::uploading) return transfer_.reject_command();
-    if ((command & sdo::toggle) != transfer_.toggle()) return AbortCode::toggle_bit;
-    transfer_.clear_reply(transfer_.toggle());
+    if (Transfer::state() != State::uploading) return Transfer::reject_command();
+    if ((command & sdo::toggle) != Transfer::toggle()) return AbortCode::toggle_bit;
+    Transfer::clear_reply(Transfer::toggle());
     std::uint32_t size = 0;
     bool last = false;
-    if (const AbortCode code = transfer_.fetch(hooks, size, last); code != ok) return code;
-    std::uint8_t& answer = transfer_.reply()[0];
+    if (const AbortCode code = Transfer::fetch(hooks, size, last); code != ok) return code;
+    std::uint8_t& answer = Transfer::reply()[0];
     answer = static_cast<std::uint8_t>(answer | ((sdo::segment_bytes - size) << 1));
-    transfer_.alternate_toggle();
+    Transfer::alternate_toggle();
     if (last) {
       answer |= sdo::last_segment;
-      transfer_.enter(State::idle);
+      Transfer::enter(State::idle);
     }
     return ok;
   }
@@ -187,44 +186,43 @@ class SdoServer {
   // Expedited and segmented download
 
   [[nodiscard]] AbortCode initiate_download(const sdo::Data& request, auto& hooks) {
-    if (const AbortCode code = transfer_.find_writable(hooks); code != ok) return code;
+    if (const AbortCode code = Transfer::find_writable(hooks); code != ok) return code;
     const bool indicated = (request[0] & sdo::size_indicated) != 0;
     if ((request[0] & sdo::expedited) != 0) {
-      const std::uint32_t size = indicated ? 4u - ((request[0] >> 2) & 3u) : transfer_.size_without_indication();
-      if (const AbortCode code = transfer_.take_expedited(&request[4], size, hooks); code != ok) return code;
+      const std::uint32_t size = indicated ? 4u - ((request[0] >> 2) & 3u) : Transfer::size_without_indication();
+      if (const AbortCode code = Transfer::take_expedited(&request[4], size, hooks); code != ok) return code;
     } else {
-      const AbortCode code = transfer_.open_download(indicated, sdo::word_of(request), hooks);
+      const AbortCode code = Transfer::open_download(indicated, sdo::word_of(request), hooks);
       if (code != ok) return code;
-      transfer_.enter(State::downloading);
+      Transfer::enter(State::downloading);
     }
-    transfer_.answer(0x60);
+    Transfer::answer(0x60);
     return ok;
   }
 
   [[nodiscard]] AbortCode download_segment(const sdo::Data& request, auto& hooks) {
-    if (transfer_.state() != State::downloading) return transfer_.reject_command();
-    if ((request[0] & sdo::toggle) != transfer_.toggle()) return AbortCode::toggle_bit;
+    if (Transfer::state() != State::downloading) return Transfer::reject_command();
+    if ((request[0] & sdo::toggle) != Transfer::toggle()) return AbortCode::toggle_bit;
     const bool last = (request[0] & sdo::last_segment) != 0;
     const std::uint32_t size = sdo::segment_bytes - ((request[0] >> 1) & 7u);
-    if (const AbortCode code = transfer_.store(hooks, &request[1], size, last); code != ok) return code;
+    if (const AbortCode code = Transfer::store(hooks, &request[1], size, last); code != ok) return code;
     if (last) {
-      if (const AbortCode code = transfer_.finish(hooks); code != ok) return code;
+      if (const AbortCode code = Transfer::finish(hooks); code != ok) return code;
     }
-    transfer_.clear_reply(static_cast<std::uint8_t>(0x20 | transfer_.toggle()));
-    transfer_.alternate_toggle();
+    Transfer::clear_reply(static_cast<std::uint8_t>(0x20 | Transfer::toggle()));
+    Transfer::alternate_toggle();
     return ok;
   }
 
   [[nodiscard]] Duration current_timeout() const {
     if constexpr (has_block) {
-      if (Blocks::sub_block_begun(transfer_)) return timeout_.length / 2;
+      if (Blocks::sub_block_begun(*this)) return timeout_.length / 2;
     }
     return timeout_.length;
   }
 
   struct NoTime {};
 
-  SdoServerTransfer<Device> transfer_{};  // first: its bytes have small offsets
   [[no_unique_address]] std::conditional_t<has_timeout, TimePoint, NoTime> last_activity_{};
   [[no_unique_address]] std::conditional_t<has_sheet<Device>, OfSheet, OfType> timeout_{};
 };

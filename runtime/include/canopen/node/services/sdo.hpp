@@ -67,6 +67,7 @@ struct SdoHooks {
       // Also of interest: a new value of a list of objects that are sent.
       if (mappable) new_value = !entries().holds(word, bytes);
     } else if constexpr (!prefers_size && Tpdos<Device>::exists && EntryAccess<Device>::has_plain_numbers) {
+      // Saves 5 instructions of a download on a Cortex-M4, takes 16 bytes of a Cortex-M0+.
       new_value = mappable && entries().replace(word, bytes);
       return !mappable;
     } else if constexpr (Tpdos<Device>::exists) {
