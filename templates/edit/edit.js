@@ -66,16 +66,18 @@ const valueOf = (key, text) => (key === 'PDOMapping' && text ? (yes.test(text) ?
 
 /* Rows of the spreadsheet */
 
-/* Of each member of an entry: the least width of its column in rem, and its share of the rest. */
-const widths = { name: [11.5, 2.5], type: [9.2, 0.3], access: [4.7, 0], pdo: [3.4, 0], default: [6.6, 1], value: [6.6, 1], low: [5.7, 0.7], high: [5.9, 0.7],
+/* In the order of the columns, of each member of an entry: the least width of its column in rem, and its share of the rest. */
+const widths = { name: [11.5, 2.5], type: [9.2, 0.3], access: [4.7, 0], pdo: [3.4, 0], default: [6.6, 1], value: [6.6, 1], low: [6.1, 0.7], high: [6.1, 0.7],
   unit: [4.6, 0.4], factor: [4.2, 0.3] };
 const kinds = { type: 'choice', access: 'choice', pdo: 'choice', default: 'number', value: 'number', low: 'number', high: 'number' };
+
+const shortTitles = { type: 'Type', pdo: 'PDO', default: 'Default', value: 'Value' };
 
 const columnsOf = (choices, kind) => [
   { key: 'entry', title: 'Entry', width: 6.6, kind: 'fixed', draw: (row) => [make('span', { class: 'mono', text: row.cells.entry }),
     ...(row.marks ? [make('span', { class: 'marks' }, ...markElements(row.marks))] : [])] },
-  ...choices.columns.filter((one) => widths[one.member] && (one.member !== 'value' || kind === 'dcf')).map((one) => ({
-    key: one.key, member: one.member, title: one.label, width: widths[one.member][0], share: widths[one.member][1], kind: kinds[one.member] ?? 'text',
+  ...Object.keys(widths).flatMap((member) => choices.columns.filter((one) => one.member === member && (member !== 'value' || kind === 'dcf'))).map((one) => ({
+    key: one.key, member: one.member, title: shortTitles[one.member] ?? one.label, help: one.label, width: widths[one.member][0], share: widths[one.member][1], kind: kinds[one.member] ?? 'text',
     choices: { type: () => part('choices').types.map((type) => ({ text: type.name, hint: type.bits ? plural(type.bits, 'bit') : '' })),
       access: () => part('choices').access, pdo: () => ['yes', 'no'] }[one.member],
   })),
@@ -131,7 +133,10 @@ const countMarks = (findings) => {
 
 /* The tree and the rows of what is chosen */
 
-const filter = new ObjectFilter(document.querySelector('.filters'), () => showObjects());
+const filter = new ObjectFilter(document.querySelector('.filters'), () => {
+  tree.chooseAll();
+  showObjects();
+});
 const tree = new ObjectTree(byId('tree'), {
   select: () => showRows(),
   open: () => {
@@ -210,6 +215,10 @@ const removeSelected = async () => {
   if (chosen.length === 0 || isLocked()) return;
   const rows = grid.selectedRows;
   const isSub = (row) => row.entry.sub !== '' && row.object.entries.length > 1 && row.entry.sub !== '00';
+  if (rows.some((row) => row.entry.sub === '00' && row.object.entries.length > 1) && rows.length === 1 && byId('grid').contains(document.activeElement)) {
+    announce('Sub-index 0 is removed with its object: select the row of the object.');
+    return;
+  }
   const isGridFocused = byId('grid').contains(document.activeElement);
   const sections = isGridFocused && rows.length && rows.every(isSub) ? rows.map((row) => row.section)
     : isGridFocused && rows.length ? [...new Set(rows.map((row) => row.index))] : chosen;
@@ -290,8 +299,8 @@ const showStatus = () => {
   setText(byId('file-name'), file.name);
   document.title = `${status.dirty ? '* ' : ''}${file.name} - edsc edit`;
   const state = byId('file-state');
-  const kinds_ = { eds: 'EDS', dcf: 'DCF', overlay: `overlay of ${file.base}`, network: 'network' };
-  setText(state, [kinds_[file.kind], file.encoding, status.dirty ? plural(status.edits, 'unsaved edit') : 'saved'].filter(Boolean).join(', '));
+  const fileKinds = { eds: 'EDS', dcf: 'DCF', overlay: `overlay of ${file.base}` };
+  setText(state, [fileKinds[file.kind], file.encoding, status.dirty ? plural(status.edits, 'unsaved edit') : 'saved'].filter(Boolean).join(', '));
   state.className = status.dirty ? 'dirty' : 'quiet';
   const locked = isLocked();
   for (const [id, label, name] of [['undo', 'Undo', status.undo], ['redo', 'Redo', status.redo]]) {

@@ -47,6 +47,7 @@ class EntryGrid {
   /* `rows`: { id, section, cells: { KEY: text }, choices, locked, marks }. The same entry stays active. */
   setRows(rows, emptyText = '') {
     const before = this.rows[this.active.row]?.id;
+    const typed = this.takeTyped();
     this.rows = rows;
     this.placeOfId = new Map(rows.map((row, at) => [row.id, at]));
     const at = this.placeOfId.get(before);
@@ -61,6 +62,16 @@ class EntryGrid {
     setText(this.empty, emptyText);
     this.empty.hidden = rows.length > 0;
     this.layOut();
+    if (typed && this.rows[this.active.row]?.id === typed.id) this.edit(typed.text);
+  }
+
+  /* The text of an open editor, which closes: the rows below it move. */
+  takeTyped() {
+    if (!this.editor) return null;
+    const typed = { id: this.rows[this.editor.row].id, text: this.editor.input.value };
+    this.closeEditor();
+    this.element.focus({ preventScroll: true });
+    return typed;
   }
 
   /* Two rows of height below a row with a rejected text are for its message. */

@@ -41,6 +41,11 @@ class ObjectTree {
     const at = this.items.findIndex((one) => one.id === before);
     if (at >= 0) this.active = at;
     this.active = Math.max(0, Math.min(this.active, this.items.length - 1));
+    /* Another object in place of one that was removed. */
+    if (this.items.length && !this.items.some((one) => this.chosen.has(one.id)) && this.chosenIndices.size === 0) {
+      this.anchor = this.active;
+      this.chosen = new Set([this.items[this.active].id]);
+    }
     this.empty.hidden = this.items.length > 0;
     /* A tree without items would have a role that it cannot have. */
     setAttributes(this.element, { role: this.items.length ? 'tree' : 'group', 'aria-multiselectable': this.items.length ? 'true' : null });
@@ -108,6 +113,12 @@ class ObjectTree {
     this.redraw();
     this.show();
     this.select(this.items[this.active]);
+  }
+
+  /* All objects of a new search or filter. */
+  chooseAll() {
+    this.chosen = new Set(['all']);
+    this.active = this.anchor = 0;
   }
 
   /* Selects an object that a link or a finding names. */

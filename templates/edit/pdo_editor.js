@@ -38,7 +38,7 @@ class PdoEditor {
       if (item) this.select([...this.items.children].indexOf(item));
     });
     this.element.append(make('div', { class: 'pdo-list-side' },
-      make('div', { class: 'actions', role: 'toolbar', 'aria-label': 'PDOs' }, this.newTpdo, this.newRpdo), this.items));
+      make('div', { class: 'actions', role: 'group', 'aria-label': 'PDOs' }, this.newTpdo, this.newRpdo), this.items));
   }
 
   buildMain() {
@@ -161,7 +161,7 @@ class PdoEditor {
       const times = [pdo.type.text && `type ${pdo.type.text}`, pdo.inhibit_ms && `inhibit ${pdo.inhibit_ms} ms`, pdo.event_ms && `timer ${pdo.event_ms} ms`].filter(Boolean);
       return make('li', { role: 'option', id: `pdo-${pdo.id}`, 'aria-selected': String(at === this.at),
         class: `${at === this.at ? 'active' : ''} ${pdo.cob_id.kind === 'disabled' ? 'disabled-pdo' : ''}`.trim() },
-      make('b', { text: PdoEditor.nameOf(pdo) }), make('span', { text: pdo.cob_id.label }),
+      make('b', { text: PdoEditor.nameOf(pdo) }), make('span', { text: pdo.cob_id.kind === 'disabled' ? 'disabled' : pdo.cob_id.label }),
       make('small', { text: [...times, `${pdo.used_bits} of 64 bits`].join(', ') }));
     }));
     setAttributes(this.items, { 'aria-activedescendant': this.pdo ? `pdo-${this.pdo.id}` : null });
