@@ -4,7 +4,7 @@
     edit_marks.py SOURCE_DIR EDSC [--samples N] [--work FOLDER] [--check]
 
 npm installs puppeteer-core in FOLDER, a temporary one by default. --check fails above the marks. The time of a frame is that of
-the page's script, styles and layout; drawing depends on the graphics card.
+the page's thread: script, styles, layout and painting.
 """
 
 from __future__ import annotations
