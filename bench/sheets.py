@@ -15,6 +15,11 @@ from typing import Callable, Iterable, Iterator, Sequence
 HERE = Path(__file__).resolve().parent
 FIELD_TYPES = (0x06, 0x05, 0x04, 0x07)  # types of fields, in turn
 
+REF_PDOS = 4  # of each direction in ref.eds
+LAST_COMMUNICATION = 5  # highest sub-index of a communication parameter
+RECORD_FIELDS = 254
+PDO_INDICES = {"RPDO": (0x1400, 0x1600, 0x3000, 0x10000), "TPDO": (0x1800, 0x1A00, 0x3100, 0x20000)}
+
 Section = tuple[str, dict[str, str]]
 
 
@@ -58,6 +63,33 @@ def mixture(count: int) -> Iterator[Section]:
             yield entry(f"{0x2400 + i:04X}", f"Synthetic variable {i}", (0x07, 0x03, 0x05)[i % 3], f"0x{i % 100:X}")
 
 
+def parameter(index: int, title: str, highest: int, values: Iterable[tuple[int, str, int, str]]) -> Iterator[Section]:
+    """A record of PDO parameters; `values` are sub-index, title, data type and default value."""
+    entries = list(values)
+    name = f"{index:04X}"
+    yield name, {"ParameterName": title, "ObjectType": "0x9", "SubNumber": f"0x{len(entries) + 1:X}"}
+    for sub, field, data_type, default in [(0, "n", 0x05, f"0x{highest:X}"), *entries]:
+        section, keys = entry(f"{name}sub{sub:X}", field, data_type, default,
+                              "ro" if sub == 0 and highest == LAST_COMMUNICATION else "rw")
+        yield section, {**keys, "PDOMapping": "0"}
+
+
+def pdos(count: int) -> Iterator[Section]:
+    """All PDOs up to `count` of both directions, in addition to those of ref.eds: 29-bit CAN-IDs, and eight mapped bytes
+    of their own each."""
+    for direction, (communication, mapping, first_object, can_ids) in PDO_INDICES.items():
+        for number in range(REF_PDOS, count):
+            record_number, position = divmod(number * 8, RECORD_FIELDS - RECORD_FIELDS % 8)
+            mapped = [(sub, f"m{sub}", 0x07, f"0x{first_object + record_number:04X}{position + sub:02X}08")
+                      for sub in range(1, 9)]
+            yield from parameter(communication + number, f"{direction}_comm_{number + 1}", LAST_COMMUNICATION, [
+                (1, "cobid", 0x07, f"0x{0x2000_0000 + can_ids + number:X}"),
+                (2, "type", 0x05, "0xFE"), (5, "event_timer", 0x06, "0x0")])
+            yield from parameter(mapping + number, f"{direction}_map_{number + 1}", len(mapped), mapped)
+        for i in range((count * 8 - 1) // (RECORD_FIELDS - RECORD_FIELDS % 8) + 1):
+            yield from record(first_object + i, f"{direction}_values_{i}", "n", "s", RECORD_FIELDS, (0x05,))
+
+
 SHEETS: dict[str, Callable[[], Iterable[Section]]] = {
     "ref": lambda: (),
     "bench100": lambda: variables(22),
@@ -66,6 +98,7 @@ SHEETS: dict[str, Callable[[], Iterable[Section]]] = {
     "eds1000": lambda: mixture(924),
     "eds5000": lambda: mixture(4924),
     "rec6500x9": lambda: records(6500, (0x05,)),  # 65,000 entries, whose values take 64 KiB
+    "pdos512": lambda: pdos(512),  # of each direction
 }
 
 
@@ -75,13 +108,18 @@ def read_sections(text: str) -> list[Section]:
 
 
 def object_lists(sections: list[Section], added: list[Section]) -> None:
+    """Adds objects to the lists of optional objects and of objects of the manufacturer, and PDOs to their numbers."""
+    indices = [int(title, 16) for title, _ in added if "sub" not in title]
     for name, keys in sections:
-        if name == "ManufacturerObjects":
+        if name in ("ManufacturerObjects", "OptionalObjects"):
             listed = [int(value, 16) for key, value in keys.items() if key != "SupportedObjects"]
-            listed = sorted(listed + [int(title, 16) for title, _ in added if "sub" not in title])
+            listed = sorted(listed + [i for i in indices if (i < 0x2000) == (name == "OptionalObjects")])
             keys.clear()
             keys["SupportedObjects"] = str(len(listed))
             keys.update({str(i): f"0x{index:04X}" for i, index in enumerate(listed, 1)})
+        if name == "DeviceInfo":
+            for key, first in (("NrOfRXPDO", 0x1400), ("NrOfTXPDO", 0x1800)):
+                keys[key] = str(int(keys[key]) + sum(first <= index < first + 512 for index in indices))
 
 
 def make(name: str) -> str:

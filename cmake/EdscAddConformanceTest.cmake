@@ -13,7 +13,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/EdscAddDictionary.cmake)
 #
 # COMPOSITION  a header and its canopen::Composition: the type that the program gives to canopen::Node or make_node
 #              (canopen/node/composition.hpp). The report lists the parts that it omits.
-# APPLICATION  a header and its application class (canopen/host/simulated_device.hpp): short for a composition of the device
+# APPLICATION  a header and its application class (canopen_sim/simulated_device.hpp): short for a composition of the device
 #              and this class. Without a type, edsc makes the composition: no application, all parts that the EDS promises.
 #              Add sources and libraries that the header needs to the target NAME, with target_sources and
 #              target_link_libraries.
@@ -88,7 +88,7 @@ function(edsc_add_conformance_test name dictionary)
   file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
 // Made by edsc_add_conformance_test.
 #include <@namespace@/device.hpp>
-#include <canopen/host/simulated_device.hpp>
+#include <canopen_sim/simulated_device.hpp>
 @include@
 int main(int argc, char** argv) { return canopen::simulate_device<@parts@>(argc, argv); }
 ]])

@@ -82,5 +82,7 @@ function(edsc_add_dictionary target)
   set_target_properties(${target} PROPERTIES EDSC_NAMESPACE ${arg_NAMESPACE} EDSC_EDS ${eds} EDSC_NODE_ID "${arg_NODE_ID}")
   add_dependencies(${target} ${target}_headers)
   target_include_directories(${target} INTERFACE ${output_dir})
+  # Clang evaluates a million steps of a constant, which a node with thousands of mapped objects exceeds.
+  target_compile_options(${target} INTERFACE $<$<COMPILE_LANG_AND_ID:CXX,Clang,AppleClang>:-fconstexpr-steps=100000000>)
   target_link_libraries(${target} INTERFACE edsc::runtime)
 endfunction()

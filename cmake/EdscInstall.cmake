@@ -29,8 +29,7 @@ if(TARGET edsc)
 endif()
 
 install(TARGETS edsc_runtime EXPORT edscTargets COMPONENT development)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/include/canopen DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/edsc
-        COMPONENT development)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/edsc COMPONENT development)
 install(EXPORT edscTargets NAMESPACE edsc:: DESTINATION ${package_dir} COMPONENT development)
 set(generated_dir ${PROJECT_BINARY_DIR}/package)
 configure_package_config_file(

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Lists from the code of the runtime that a reviewer of docs/safety.md needs. Host code (host/) is not included.
+"""Lists from the code of the runtime that a reviewer of docs/safety.md needs. Host code (host/), simulation and
+plants (canopen_sim/, canopen_plant/) are not included.
 
     lists.py casts RUNTIME           reinterpret_cast, const_cast and offsetof, by file
     lists.py copies RUNTIME          memcpy, memmove, memcmp and memset, by file

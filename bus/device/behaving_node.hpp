@@ -1,7 +1,7 @@
 /// A dynamic node with a behaviour and faults, between power-on and power-off and beyond.
 #pragma once
 
-#include <canopen/host/simulated_node.hpp>
+#include <canopen_sim/simulated_node.hpp>
 #include <cstdint>
 #include <memory>
 #include <optional>

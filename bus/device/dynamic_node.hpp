@@ -4,8 +4,8 @@
 #include <canopen/can/bus_status.hpp>
 #include <canopen/can/node_id.hpp>
 #include <canopen/emcy/error_register.hpp>
-#include <canopen/host/simulated_node.hpp>
 #include <canopen/nmt/nmt.hpp>
+#include <canopen_sim/simulated_node.hpp>
 #include <cstdint>
 #include <memory>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "device/node_host.hpp"
 
 #include <algorithm>
-#include <canopen/host/simulated_node.hpp>
+#include <canopen_sim/simulated_node.hpp>
 #include <optional>
 
 #include "online/interruption.hpp"

@@ -5,7 +5,7 @@
 #include <canopen/base/clock.hpp>
 #include <canopen/can/frame.hpp>
 #include <canopen/can/node_id.hpp>
-#include <canopen/host/simulated_node.hpp>
+#include <canopen_sim/simulated_node.hpp>
 #include <cstddef>
 #include <deque>
 #include <functional>

@@ -10,7 +10,7 @@
 
 #include <algorithm>
 #include <array>
-#include <canopen/host/simulation_codec.hpp>
+#include <canopen_sim/simulation_codec.hpp>
 #include <cerrno>
 #include <chrono>
 #include <csignal>

@@ -1,4 +1,4 @@
-/// A device that is a program in simulated time (runtime/include/canopen/host/simulation_codec.hpp has the protocol).
+/// A device that is a program in simulated time (runtime/include/canopen_sim/simulation_codec.hpp has the protocol).
 #pragma once
 
 #include <sys/types.h>

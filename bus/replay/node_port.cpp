@@ -1,7 +1,7 @@
 #include "replay/node_port.hpp"
 
 #include <algorithm>
-#include <canopen/host/simulated_node.hpp>
+#include <canopen_sim/simulated_node.hpp>
 #include <utility>
 
 #include "device/dynamic_node.hpp"

@@ -1,7 +1,7 @@
 /// Faults that a simulation injects: `lost:axis1@10s`.
 #pragma once
 
-#include <canopen/host/network_simulation/simulation_protocol.hpp>
+#include <canopen_sim/network_simulation/simulation_protocol.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* runtime_header = "canopen/host/network_simulation/network_simulation.hpp";
+constexpr const char* runtime_header = "canopen_sim/network_simulation/network_simulation.hpp";
 
 /// The words of `$CXX`, such as `ccache g++`.
 std::vector<std::string> compiler() {

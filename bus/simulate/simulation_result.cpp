@@ -1,7 +1,7 @@
 #include "simulate/simulation_result.hpp"
 
-#include <canopen/host/network_simulation/simulation_protocol.hpp>
-#include <canopen/host/simulation_codec.hpp>
+#include <canopen_sim/network_simulation/simulation_protocol.hpp>
+#include <canopen_sim/simulation_codec.hpp>
 
 namespace edsc {
 namespace {

@@ -1,4 +1,4 @@
-/// What a simulation has seen: the output of its program (canopen/host/network_simulation/simulation_protocol.hpp).
+/// What a simulation has seen: the output of its program (canopen_sim/network_simulation/simulation_protocol.hpp).
 #pragma once
 
 #include <canopen/nmt/nmt.hpp>

@@ -99,8 +99,8 @@ std::string build_device(const LoadedDevice& loaded, const std::string& folder) 
   std::vector<OutputFile> files = headers_of(*loaded.device, loaded.options, "repaired", ignored);
   files.push_back({"device.cpp",
                    "#include <repaired/device.hpp>\n"
-                   "#include <canopen/host/simulated_device.hpp>\n"
-                   "#include <canopen/host/simulated_node.hpp>\n\n"
+                   "#include <canopen_sim/simulated_device.hpp>\n"
+                   "#include <canopen_sim/simulated_node.hpp>\n\n"
                    "static constexpr canopen::SimulatedDevice all[] = {\n"
                    "    {\"repaired\", canopen::make_simulated_node<repaired::Device>}};\n\n"
                    "int main(int argc, char** argv) { return canopen::simulate_devices(argc, argv, all); }\n"});

@@ -21,6 +21,7 @@
 #include "system/waiting_signals.hpp"
 #include "text/printable.hpp"
 #ifndef EDSC_OFFLINE
+#include "conform/case.hpp"
 #include "conform/deviations.hpp"
 #endif
 
@@ -56,6 +57,11 @@ lsp::ServerHooks hooks_for(const Settings& settings) {
   hooks.check_deviations = [](const SourceFile& source, Diagnostics& diagnostics) {
     (void)conform::read_deviations(source, diagnostics);
   };
+  for (const conform::AreaRow& area : conform::areas()) {
+    for (const conform::CaseRow* const row : conform::cases_of(area)) {
+      hooks.conformance_cases.push_back({std::string{row->id}, std::string{row->title}});
+    }
+  }
 #endif
   return hooks;
 }

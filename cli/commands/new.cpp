@@ -14,6 +14,7 @@
 #include "change/new_sheet.hpp"
 #include "change/open_sheet.hpp"
 #include "commands/commands.hpp"
+#include "commands/new_project.hpp"
 #include "device/bit_rates.hpp"
 #include "lookup/find_entry.hpp"
 #include "shared/common_options.hpp"
@@ -32,7 +33,8 @@ constexpr const char* examples = R"(Examples:
   edsc new drive.eds --vendor-name "Acme" --vendor 0x1234 --product-name "D1" --product 1 --revision 0x10000 \
            --cia 402 --modes pp,csp --bit-rates 125,500,1000 --heartbeat 100ms \
            --tpdo-objects 6041h,6064h --rpdo-objects 6040h,607Ah
-  edsc new io.eds --vendor-name "Acme" --cia 401 --git)";
+  edsc new io.eds --vendor-name "Acme" --cia 401 --git
+  edsc new pump.eds --vendor-name "Acme" --project          also CMake, application, programs for Linux and a board)";
 
 struct Settings {
   std::string path;
@@ -42,6 +44,7 @@ struct Settings {
   std::vector<std::string> tpdos, rpdos;
   std::optional<std::uint64_t> heartbeat_us;
   bool git = false;
+  bool project = false;
 };
 
 constexpr std::string_view usual_bit_rates = "10,20,50,125,250,500,800,1000";
@@ -100,6 +103,14 @@ NewSheet sheet_of(const Settings& settings) {
   return sheet;
 }
 
+/// How to build a project; with the path of its folder, if it is not the working folder.
+std::string project_commands(const std::filesystem::path& folder) {
+  const std::string change_folder = folder.empty() ? "" : fmt::format("  cd {}\n", printable(from_native(folder)));
+  return "to build the project, test it, and make its firmware:\n" + change_folder +
+         "  cmake --workflow --preset host\n"
+         "  cmake --workflow --preset firmware\n";
+}
+
 constexpr std::string_view git_attributes = "*.eds merge=edsc diff=eds\n*.dcf merge=edsc diff=eds\n";
 constexpr std::string_view git_commands =
     "for git, once in each clone:\n"
@@ -117,6 +128,9 @@ int make_new(const Settings& settings) {
   const NewSheet sheet = sheet_of(settings);
   const std::filesystem::path path = to_native(settings.path);
   const std::filesystem::path attributes = path.parent_path() / ".gitattributes";
+  if (settings.project) {
+    if (std::string fault = project_name_fault(settings.path); !fault.empty()) throw_invalid("--project", fault);
+  }
   refuse_existing(path);
   if (settings.git) refuse_existing(attributes);
   std::string problem;
@@ -128,10 +142,17 @@ int make_new(const Settings& settings) {
     return exit_input_has_errors;
   }
   std::vector<OutputFile> files{{settings.path, std::move(text)}};
+  if (settings.project) {
+    for (OutputFile& file : project_files(settings.path, sheet, *open)) {
+      refuse_existing(to_native(file.path));
+      files.push_back(std::move(file));
+    }
+  }
   if (settings.git) files.push_back({from_native(attributes), std::string{git_attributes}});
   write_all_files(files);
   for (const OutputFile& file : files) print_visibly(stdout, "{}\n", file.path);
   if (settings.git) write_output(git_commands);
+  if (settings.project) write_output(project_commands(path.parent_path()));
   return exit_fine;
 }
 
@@ -160,6 +181,7 @@ void add_new_options(Command command, int& exit_code) {
   command.add_flag("--with-storage", settings.sheet.stores);
   command.add_flag("--with-lss", settings.sheet.has_lss);
   command.add_flag("--git", settings.git);
+  command.add_flag("--project", settings.project);
 }
 
 }  // namespace edsc

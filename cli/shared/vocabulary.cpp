@@ -115,6 +115,7 @@ constexpr CommandOptionRow rows_of_options[] = {
     {"--product",        0,   "NUMBER",    number,     "product code, 1018h:02"},
     {"--product-name",   0,   "TEXT",      text,       "name of the product (default: the name of the file)"},
     {"--profile",        0,   "FILE",      file,       "profile database in the syntax of an EDS: object codes, data types and access types"},
+    {"--project",        0,   "",          flag,       "also write a project: CMake, application class, programs, conformance test, image, options file"},
     {"--quiet",          0,   "",          flag,       "print only failures and the result"},
     {"--raw",            0,   "",          flag,       "the value is bytes, as hexadecimal digits"},
     {"--record",         0,   "LIST",      text,       "sub-indices of a RECORD: NAME:TYPE:ACCESS=VALUE, separated by commas"},

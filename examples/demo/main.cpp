@@ -12,8 +12,8 @@
 #include <can_2053c/device.hpp>
 #include <can_2057c/description.hpp>
 #include <can_2057c/device.hpp>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/node.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <cpc_tc1/description.hpp>
 #include <cpc_tc1/device.hpp>
 #include <cpd/description.hpp>

@@ -1,9 +1,9 @@
 /// A small master on the simulated bus: NMT commands, SDO by object, and PDOs by layout.
 #pragma once
 
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/nmt/nmt.hpp>
 #include <canopen/sdo/sdo_client.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <cstdint>
 #include <functional>
 #include <map>

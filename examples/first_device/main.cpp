@@ -1,5 +1,5 @@
 /// A pump on a simulated bus: a master starts it and sends a speed, the pump answers with its pressure.
-#include <canopen/host/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <cstdio>
 
 #include "pump.hpp"

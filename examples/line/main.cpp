@@ -1,7 +1,7 @@
 /// The master of docs/networks.md: the outputs follow the inputs while the encoder stands still.
 #include <canopen/host/host_bus.hpp>
-#include <canopen/host/plant_text.hpp>
-#include <canopen/plant/plant.hpp>
+#include <canopen_plant/plant.hpp>
+#include <canopen_plant/plant_text.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <exception>

@@ -1,7 +1,7 @@
 /// A master opens the valves of a mixer with RPDO 1, loads a recipe, and gives TPDO 2 a new mapping.
-#include <canopen/host/virtual_bus.hpp>
-#include <canopen/host/virtual_bus_port.hpp>
 #include <canopen/master.hpp>
+#include <canopen_sim/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus_port.hpp>
 #include <cstdio>
 #include <string_view>
 

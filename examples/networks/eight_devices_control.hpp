@@ -3,7 +3,7 @@
 #pragma once
 
 #include <algorithm>
-#include <canopen/plant/plant.hpp>
+#include <canopen_plant/plant.hpp>
 #include <cstdint>
 #include <eight_devices.hpp>
 

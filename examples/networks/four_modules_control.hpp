@@ -1,7 +1,7 @@
 /// The master of four_modules.json: the outputs follow the inputs.
 #pragma once
 
-#include <canopen/plant/plant.hpp>
+#include <canopen_plant/plant.hpp>
 #include <cstdint>
 #include <four_modules.hpp>
 

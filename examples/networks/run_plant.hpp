@@ -3,7 +3,7 @@
 
 #include <atomic>
 #include <canopen/host/host_bus.hpp>
-#include <canopen/host/plant_text.hpp>
+#include <canopen_plant/plant_text.hpp>
 #include <csignal>
 #include <cstdio>
 #include <exception>

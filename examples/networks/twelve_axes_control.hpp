@@ -1,7 +1,7 @@
 /// The master of twelve_axes.json: each axis follows the position of the one before it, and the first one a target.
 #pragma once
 
-#include <canopen/plant/plant.hpp>
+#include <canopen_plant/plant.hpp>
 #include <cstdint>
 #include <twelve_axes.hpp>
 

@@ -1,7 +1,7 @@
 /// A servo drive of CiA 402 with its motor; a master enables it and reads its statusword.
-#include <canopen/host/virtual_bus.hpp>
-#include <canopen/host/virtual_bus_port.hpp>
 #include <canopen/master.hpp>
+#include <canopen_sim/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus_port.hpp>
 #include <cpc_tc1/device.hpp>
 #include <cpc_tc1/meaning_text.hpp>
 #include <cstdio>

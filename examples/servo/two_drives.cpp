@@ -1,7 +1,7 @@
 /// The master of two drives: it boots them, follows their positions by PDO, and learns of an error by EMCY.
-#include <canopen/host/virtual_bus.hpp>
-#include <canopen/host/virtual_bus_port.hpp>
 #include <canopen/master.hpp>
+#include <canopen_sim/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus_port.hpp>
 #include <cpc_tc1/device.hpp>
 #include <cstdint>
 #include <cstdio>

@@ -1,8 +1,8 @@
 /// A tank on a simulated bus, with its node-ID from switches and two DOMAINs; a master reads it and gets its EMCY.
 #include <array>
-#include <canopen/host/virtual_bus.hpp>
-#include <canopen/host/virtual_bus_port.hpp>
 #include <canopen/master.hpp>
+#include <canopen_sim/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus_port.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <string_view>

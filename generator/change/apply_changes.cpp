@@ -86,12 +86,11 @@ AppliedChanges apply_changes(const OpenSheet& before, std::span<const SheetChang
   if (!applied.problem.empty()) return applied;
 
   if (!set_result(before, *changed, settings.utf8, applied)) return applied;
-  if (applied.after->device && is_canonical(before)) {
-    const std::string text = canonical_text(*applied.after);
-    if (text != applied.after->source->text()) {
-      const SourceFile canonical{changed->name(), text, Packing::none, applied.after->source->choices()};
-      if (!set_result(before, canonical, settings.utf8, applied)) return applied;
-    }
+  // The file after is usually canonical if the one before is.
+  if (applied.after->device && !is_canonical(*applied.after) && is_canonical(before)) {
+    const SourceFile canonical{changed->name(), canonical_text(*applied.after), Packing::none,
+                               applied.after->source->choices()};
+    if (!set_result(before, canonical, settings.utf8, applied)) return applied;
   }
   const bool is_renamed = std::ranges::any_of(
       changes, [](const SheetChange& change) { return std::holds_alternative<RenamePart>(change); });

@@ -440,12 +440,8 @@ void ChangeApplier::make(const MapPdo& change) {
   }
   flush();
   const auto [communication, mapping] = parameters_of(change.direction, change.number);
-  for (const std::uint16_t index : {communication, mapping}) {
-    const TextSection* const object = step_->text.find(SectionName{.kind = SectionKind::object, .index = index});
-    const auto compact = object != nullptr ? step_->text.find_entry(*object, "CompactSubObj") : std::nullopt;
-    if (compact && parse_unsigned(strip_inline_comment(compact->value)).value_or(1) != 0) {
-      return reject(fmt::format("{:04X}h has CompactSubObj; write a section for each of its sub-indices", index));
-    }
+  if (compact_entries(communication)) {
+    return reject(fmt::format("{:04X}h has CompactSubObj; write a section for each of its sub-indices", communication));
   }
   set_communication(change, communication);
   if (change.objects || step_->text.find(SectionName{.kind = SectionKind::object, .index = mapping}) == nullptr) {
@@ -493,7 +489,55 @@ void ChangeApplier::set_communication(const MapPdo& change, std::uint16_t index)
   make(AddSections{std::move(added)});
 }
 
+std::optional<IniEntry> ChangeApplier::compact_entries(std::uint16_t index) const {
+  const TextSection* const object = step_->text.find(SectionName{.kind = SectionKind::object, .index = index});
+  auto compact = object != nullptr ? step_->text.find_entry(*object, "CompactSubObj") : std::nullopt;
+  const bool is_compact = compact && parse_unsigned(strip_inline_comment(compact->value)).value_or(1) != 0;
+  return is_compact ? compact : std::nullopt;
+}
+
+void ChangeApplier::set_compact_mapping(const MapPdo& change, std::uint16_t index, const IniEntry& compact) {
+  const std::vector<MappingValue> objects = change.objects.value_or(std::vector<MappingValue>{});
+  const SectionName count_name{.kind = SectionKind::sub_object, .index = index};
+  const TextSection* const count = step_->text.find(count_name);
+  // Sub-index 0 is CompactSubObj unless it has a section.
+  const auto old_entries = parse_unsigned(strip_inline_comment(compact.value)).value_or(0);
+  const bool has_count = count != nullptr || objects.empty();
+  const std::size_t entries = has_count ? std::max<std::size_t>(objects.size(), old_entries) : objects.size();
+  if (const TextSection* const object = step_->text.find(SectionName{.kind = SectionKind::object, .index = index})) {
+    set_existing(*object, compact, fmt::format("{}", entries));
+  }
+  const SectionName values_name{.kind = SectionKind::compact_values, .index = index};
+  const TextSection* values = step_->text.find(values_name);
+  if (values == nullptr) {
+    NewSection section{fmt::format("{:04X}Value", index), {{"NrOfEntries", fmt::format("{}", objects.size())}}};
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      section.keys.emplace_back(fmt::format("{}", i + 1), mapping_text(objects[i]));
+    }
+    if (!objects.empty()) make(AddSections{{std::move(section)}});
+  } else {
+    for (const IniEntry& entry : step_->text.entries(*values)) {
+      const auto number = parse_unsigned(entry.key);
+      if (!number || *number <= objects.size()) continue;
+      step_->edit.remove_entry(entry);
+      step_->is_changed = true;
+    }
+    set(*values, "NrOfEntries", fmt::format("{}", objects.size()));
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      values = step_->text.find(values_name);
+      if (values != nullptr) set(*values, fmt::format("{}", i + 1), mapping_text(objects[i]));
+    }
+  }
+  if (!has_count) return;
+  const std::string text = fmt::format("{}", objects.size());
+  set_or_add_sub(
+      index, 0,
+      value_section(sub_title(index, 0), "Number of mapped objects", canopen::DataType::unsigned8, text, is_dcf()),
+      text);
+}
+
 void ChangeApplier::set_mapping(const MapPdo& change, std::uint16_t index) {
+  if (const auto compact = compact_entries(index)) return set_compact_mapping(change, index, *compact);
   const std::vector<MappingValue> objects = change.objects.value_or(std::vector<MappingValue>{});
   const std::string count = fmt::format("{}", objects.size());
   const auto section_of = [&](std::size_t position, const MappingValue& value) {

@@ -76,6 +76,10 @@ class ChangeApplier {
 
   void set_communication(const MapPdo& change, std::uint16_t index);
   void set_mapping(const MapPdo& change, std::uint16_t index);
+  /// The same for an object with CompactSubObj: the values are in the list of the object.
+  void set_compact_mapping(const MapPdo& change, std::uint16_t index, const IniEntry& compact);
+  /// CompactSubObj of an object; nothing if it is missing or 0.
+  [[nodiscard]] std::optional<IniEntry> compact_entries(std::uint16_t index) const;
   void use_dummies(const MapPdo& change);
   void set_or_add_sub(std::uint16_t index, std::uint8_t sub_index, NewSection section, std::string_view value);
   [[nodiscard]] bool is_dcf() const;

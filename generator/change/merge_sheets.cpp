@@ -37,6 +37,15 @@ struct SectionBlock {
   std::uint32_t first = 0, end = 0;
 };
 
+/// The comments before a key, before the header of a section, or after its last key.
+struct CommentPlace {
+  std::uint32_t first = 0, count = 0;  ///< lines from the first comment to the last one
+  std::uint32_t before = 0;            ///< the line that follows
+  MergeLines lines;                    ///< without blank lines
+};
+constexpr const char* before_header = "[";
+constexpr const char* after_last_key = "]";
+
 /// A version of the file: its sections by their names.
 class MergeVersion {
  public:
@@ -67,6 +76,29 @@ class MergeVersion {
     for (std::uint32_t line = block.first; line < block.end; ++line) lines.emplace_back(text_.source().line(line));
     while (!lines.empty() && trim(lines.back()).empty()) lines.pop_back();
     return lines;
+  }
+
+  /// The comments of a block by the key that they are before.
+  [[nodiscard]] std::map<std::string, CommentPlace> comments(const SectionBlock& block) const {
+    std::map<std::uint32_t, std::string> keys{{block.section->line, before_header}};
+    for (const IniEntry& entry : text_.entries(*block.section)) keys.try_emplace(entry.line, folded(entry.key));
+    std::map<std::string, CommentPlace> comments;
+    CommentPlace place;
+    std::uint32_t last_key = block.section->line;
+    for (std::uint32_t line = block.first; line < block.end; ++line) {
+      if (const auto key = keys.find(line); key != keys.end()) {
+        place.before = last_key = line;
+        comments.try_emplace(key->second, std::move(place));
+        place = {};
+      } else if (const std::string_view text = text_.source().line(line); !trim(text).empty()) {
+        if (place.lines.empty()) place.first = line;
+        place.count = line - place.first + 1;
+        place.lines.emplace_back(text);
+      }
+    }
+    place.before = last_key + 1;
+    comments.try_emplace(after_last_key, std::move(place));
+    return comments;
   }
 
   /// The sub-indices of an object that have a section.
@@ -121,6 +153,7 @@ class SheetMerge {
     const std::vector<TextEdit> edits = edit_.finish();
     const SourceFile& source = ours_.text().source();
     merged_.text = edited_bytes(source.text(), Encoding::utf8, edits, true).bytes;
+    merge_comments();
     for (const auto& [name, conflict] : conflicts_) insert_conflict(name, conflict);
     return std::move(merged_);
   }
@@ -322,6 +355,45 @@ class SheetMerge {
     };
     follow("NrOfRXPDO", 0x1400, 0x15FF);
     follow("NrOfTXPDO", 0x1800, 0x19FF);
+  }
+
+  /// Takes the comments that they changed, in the text with all other changes.
+  void merge_comments() {
+    const SourceFile source("merged", merged_.text);
+    const MergeVersion merged(source);
+    std::vector<TextEdit> edits;
+    for (const std::string& name : merged.names()) {
+      const SectionBlock* const theirs = theirs_.find(name);
+      const auto conflict = conflicts_.find(name);
+      const bool is_whole = conflict != conflicts_.end() && conflict->second.is_whole;
+      if (theirs == nullptr || is_whole) continue;
+      const SectionBlock* const base = base_.find(name);
+      const auto old_comments = base == nullptr ? std::map<std::string, CommentPlace>{} : base_.comments(*base);
+      const auto our_comments = merged.comments(*merged.find(name));
+      bool has_conflict = false;
+      for (const auto& [key, new_comment] : theirs_.comments(*theirs)) {
+        const auto ours = our_comments.find(key);
+        const auto old = old_comments.find(key);
+        const MergeLines old_lines = old == old_comments.end() ? MergeLines{} : old->second.lines;
+        if (ours == our_comments.end() || new_comment.lines == old_lines || new_comment.lines == ours->second.lines)
+          continue;
+        MergeLines lines = new_comment.lines;
+        if (ours->second.lines != old_lines) {
+          lines.clear();
+          append_conflict(lines, ours->second.lines, new_comment.lines);
+          has_conflict = true;
+        }
+        const CommentPlace& place = ours->second;
+        TextEdit edit{place.count == 0 ? place.before : place.first, place.count, {}};
+        for (std::string& line : lines) edit.lines.push_back({std::move(line), {}});
+        edits.push_back(std::move(edit));
+      }
+      if (has_conflict && conflict == conflicts_.end()) {
+        merged_.conflicts.emplace_back(merged.find(name)->section->title);
+      }
+    }
+    std::ranges::sort(edits, {}, &TextEdit::line);
+    merged_.text = edited_bytes(source.text(), Encoding::utf8, edits, true).bytes;
   }
 
   void insert_conflict(const std::string& name, const SectionConflict& conflict) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "device/meaning/profiles.hpp"
@@ -56,11 +57,39 @@ constexpr StandardEntryName standard_entry_names[] = {
     {0x1280, 0x12FF, 1, "COB-ID client to server"},
     {0x1280, 0x12FF, 2, "COB-ID server to client"},
     {0x1280, 0x12FF, 3, "Node-ID of the SDO server"},
+    {0x1400, 0x15FF, 1, "COB-ID used by RPDO"},
+    {0x1400, 0x15FF, 2, "Transmission type"},
+    {0x1800, 0x19FF, 1, "COB-ID used by TPDO"},
+    {0x1800, 0x19FF, 2, "Transmission type"},
+    {0x1800, 0x19FF, 3, "Inhibit time"},
+    {0x1800, 0x19FF, 5, "Event timer"},
 };
 
-std::string_view default_of(std::uint16_t index, std::uint8_t sub_index, const canopen::DataTypeRow& type) {
+/// Parameters with a COB-ID in sub-index 1, or in 1 and 2. `per_node`: that of the pre-defined connection set for the
+/// first `predefined` of them; others are disabled.
+struct CobIdParameters {
+  std::uint16_t first, last;
+  std::uint8_t last_sub_index;
+  std::uint16_t predefined;
+  std::uint16_t per_node;
+};
+constexpr std::uint16_t cob_id_step = 0x100;  ///< from a PDO to the next one
+constexpr CobIdParameters cob_id_parameters[] = {
+    {0x1201, 0x12FF, 2, 0, 0},
+    {0x1400, 0x15FF, 1, 4, 0x200},
+    {0x1800, 0x19FF, 1, 4, 0x180},
+};
+constexpr std::string_view disabled_cob_id = "0x80000000";
+
+std::string default_of(std::uint16_t index, std::uint8_t sub_index, const canopen::DataTypeRow& type) {
   for (const StandardDefault& row : standard_defaults) {
-    if (row.index == index && row.sub_index == sub_index) return row.value;
+    if (row.index == index && row.sub_index == sub_index) return std::string{row.value};
+  }
+  for (const CobIdParameters& row : cob_id_parameters) {
+    if (index < row.first || index > row.last || sub_index == 0 || sub_index > row.last_sub_index) continue;
+    const auto number = static_cast<std::uint16_t>(index - row.first);
+    if (number >= row.predefined) return std::string{disabled_cob_id};
+    return fmt::format("$NODEID+0x{:X}", row.per_node + number * cob_id_step);
   }
   return type.bits == 0 ? "" : "0";
 }
@@ -87,7 +116,28 @@ NewValue standard_value(const StandardEntry& entry, std::uint16_t index, std::ui
   const canopen::DataTypeRow& type = *canopen::find_data_type(static_cast<std::uint32_t>(entry.type));
   NewValue value{std::move(name), &type, std::string{access_text(entry.access.assumed())}};
   value.default_value = default_of(index, sub_index, type);
+  value.sub_index = sub_index;
   return value;
+}
+
+/// Of an SDO server parameter the node-ID of its client, and of a PDO parameter what it does not have, or few devices
+/// do.
+bool is_left_out(const StandardObject& object, const StandardEntry& entry, std::uint16_t index) {
+  if (object.type != ObjectType::record || entry.required) return false;
+  if (index >= 0x1200 && index <= 0x127F) return true;
+  const bool is_receive = index >= 0x1400 && index <= 0x15FF;
+  const bool is_transmit = index >= 0x1800 && index <= 0x19FF;
+  constexpr std::uint8_t inhibit_time = 3, event_timer = 5;
+  return (is_receive || is_transmit) && !(is_transmit && (entry.first == inhibit_time || entry.first == event_timer));
+}
+
+bool is_mapping_parameter(const StandardObject& object) {
+  return object.entries.data() == std::data(standard::pdo_mapping);
+}
+
+/// Whether the user states the number of entries: elements of an ARRAY, entries of a mapping.
+bool is_list(const StandardObject& object, const StandardEntry& entry) {
+  return (object.type == ObjectType::array || is_mapping_parameter(object)) && entry.last > entry.first;
 }
 
 std::optional<NewObject> object_of_cia301(std::uint16_t index, std::uint8_t elements) {
@@ -98,12 +148,10 @@ std::optional<NewObject> object_of_cia301(std::uint16_t index, std::uint8_t elem
     object.values.push_back(standard_value(row->entries.front(), index, 0, object.name));
     return object;
   }
-  object.has_writable_count = index == 0x1003;
+  object.has_writable_count = index == 0x1003 || is_mapping_parameter(*row);
   for (const StandardEntry& entry : row->entries) {
-    const bool is_optional = !entry.required && row->type == ObjectType::record && index >= 0x1200 && index < 0x1280;
-    if (is_optional) continue;
-    const unsigned last =
-        row->type == ObjectType::array && entry.last > entry.first ? entry.first + elements - 1U : entry.last;
+    if (is_left_out(*row, entry, index)) continue;
+    const unsigned last = is_list(*row, entry) ? entry.first + elements - 1U : entry.last;
     for (unsigned sub = entry.first; sub <= std::min<unsigned>(last, entry.last); ++sub) {
       const auto sub_index = static_cast<std::uint8_t>(sub);
       object.values.push_back(standard_value(entry, index, sub_index, entry_name(index, sub_index, object.name)));
@@ -112,21 +160,33 @@ std::optional<NewObject> object_of_cia301(std::uint16_t index, std::uint8_t elem
   return object;
 }
 
+/// A value of an object of a profile; the entry may have a type and an access type of its own.
+NewValue profile_value(const ProfileObject& row, const ProfileEntry& entry) {
+  const bool is_constant = row.use == ProfileUse::constant;
+  NewValue value{entry.name, entry.type != nullptr ? entry.type : row.type,
+                 is_constant ? "const" : std::string{access_text(entry.access.value_or(row.access))}};
+  value.mappable = row.use == ProfileUse::command || row.use == ProfileUse::status;
+  if (value.type->bits != 0) value.default_value = "0";
+  return value;
+}
+
 std::optional<NewObject> object_of_profile(std::uint16_t index, std::uint16_t number, std::uint8_t elements) {
   const MeaningProfile* const profile = find_profile(number);
   if (profile == nullptr) return std::nullopt;
   const std::uint16_t of_first_axis = profile->place_of(index).index;
   const ProfileObject* const row = profile->find(of_first_axis);
   const std::string name = profile->name_of(of_first_axis);
-  if (row == nullptr || row->type == nullptr || name.empty()) return std::nullopt;
-  NewObject object{index, row->has_sub_indices() ? ObjectType::array : ObjectType::var, name, {}};
-  NewValue value{name, row->type, std::string{access_text(row->access)}};
-  if (row->use == ProfileUse::constant) value.access = "const";
-  value.mappable = row->use == ProfileUse::command || row->use == ProfileUse::status;
-  if (row->type->bits != 0) value.default_value = "0";
+  if (row == nullptr || name.empty()) return std::nullopt;
+  const std::span<const ProfileEntry> entries = profile->entries_of(of_first_axis);
+  if (row->type == nullptr && entries.empty()) return std::nullopt;
+  const ObjectType type = row->object_code == "RECORD" ? ObjectType::record
+                          : row->has_sub_indices()     ? ObjectType::array
+                                                       : ObjectType::var;
+  NewObject object{index, type, name, {}};
+  for (const ProfileEntry& entry : entries) object.values.push_back(profile_value(*row, entry));
+  if (!entries.empty()) return object;
   for (unsigned i = 1; i <= (row->has_sub_indices() ? elements : 1U); ++i) {
-    object.values.push_back(value);
-    if (row->has_sub_indices()) object.values.back().name = fmt::format("{} {}", name, i);
+    object.values.push_back(profile_value(*row, {row->has_sub_indices() ? fmt::format("{} {}", name, i) : name}));
   }
   return object;
 }
@@ -162,17 +222,19 @@ std::vector<NewSection> sections_of(const NewObject& object, SubIndexNotation no
   first.keys.emplace_back("ObjectType", fmt::format("0x{:X}", static_cast<unsigned>(object.type)));
   first.keys.emplace_back("SubNumber", fmt::format("{}", object.values.size() + 1));
   std::vector<NewSection> sections{std::move(first)};
+  unsigned last = 0;
+  for (const NewValue& value : object.values) {
+    last = value.sub_index != 0 ? value.sub_index : last + 1U;
+    NewSection section{title_of(object.index, last, notation), {{"ParameterName", value.name}}};
+    add_keys_of(value, section);
+    sections.push_back(std::move(section));
+  }
   NewSection count{title_of(object.index, 0, notation), {{"ParameterName", "Highest sub-index supported"}}};
   NewValue count_value{"", canopen::find_data_type(static_cast<std::uint32_t>(canopen::DataType::unsigned8)),
                        object.has_writable_count ? "rw" : "const"};
-  count_value.default_value = object.has_writable_count ? "0" : fmt::format("{}", object.values.size());
+  count_value.default_value = object.has_writable_count ? "0" : fmt::format("{}", last);
   add_keys_of(count_value, count);
-  sections.push_back(std::move(count));
-  for (std::size_t i = 0; i < object.values.size(); ++i) {
-    NewSection section{title_of(object.index, i + 1, notation), {{"ParameterName", object.values[i].name}}};
-    add_keys_of(object.values[i], section);
-    sections.push_back(std::move(section));
-  }
+  sections.insert(sections.begin() + 1, std::move(count));
   return sections;
 }
 

@@ -21,6 +21,7 @@ struct NewValue {
   std::string access = "rw";
   std::string default_value = {}, low_limit = {}, high_limit = {}, unit = {}, factor = {};
   bool mappable = false;
+  std::uint8_t sub_index = 0;  ///< 0: the one after that of the value before
 };
 
 struct NewObject {

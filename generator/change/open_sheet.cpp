@@ -29,7 +29,8 @@ std::unique_ptr<OpenSheet> open_sheet(std::string name, std::string bytes, const
 }
 
 bool is_canonical(const OpenSheet& sheet) {
-  return sheet.device && sheet.source->is_verbatim() && sheet.source->text() == canonical_text(sheet);
+  return sheet.device && sheet.source->is_verbatim() &&
+         is_canonical_form(sheet.source->text(), sheet.ini, sheet.sheet, *sheet.device);
 }
 
 std::string canonical_text(const OpenSheet& sheet) {

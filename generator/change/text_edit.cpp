@@ -246,6 +246,7 @@ std::unique_ptr<SourceFile> edited_text(const std::shared_ptr<const SourceFile>&
 EditedBytes edited_bytes(std::string_view bytes, Encoding encoding, const std::vector<TextEdit>& edits,
                          bool allow_utf8) {
   EditedBytes edited;
+  edited.bytes.reserve(bytes.size() + bytes.size() / 8);
   const std::string_view whole = bytes;
   for (const std::string_view mark : byte_order_marks) {
     if (edited.bytes.empty() && bytes.starts_with(mark) && (mark.size() == 2) == is_utf16(encoding)) {
@@ -262,9 +263,10 @@ EditedBytes edited_bytes(std::string_view bytes, Encoding encoding, const std::v
     edited.bytes += part;
   };
   for (const PlannedLine& planned : plan.lines()) {
-    for (std::uint32_t i = 0; i + 1 < planned.count; ++i) {
-      keep(base[planned.of_base - 1 + i].text);
-      keep(base[planned.of_base - 1 + i].end);
+    if (planned.count > 1) {  // all but the last line, with their line ends
+      const char* const first = base[planned.of_base - 1].text.data();
+      const std::string_view last = base[planned.of_base + planned.count - 3].end;
+      keep({first, static_cast<std::size_t>(last.data() + last.size() - first)});
     }
     if (planned.added != nullptr) {
       encoder.append(edited.bytes, planned.added->text);

@@ -16,6 +16,8 @@ struct DocumentEntry {
   Remarks remarks;  ///< before it
   std::string key;
   std::string value;
+
+  friend bool operator==(const DocumentEntry&, const DocumentEntry&) = default;
 };
 
 struct DocumentSection {

@@ -11,6 +11,7 @@
 #include "eds/sections/section_keys.hpp"
 #include "lsp/features.hpp"
 #include "lsp/network_place.hpp"
+#include "lsp/options_place.hpp"
 #include "lsp/sheet_place.hpp"
 #include "overlay/overlay_keys.hpp"
 
@@ -210,6 +211,7 @@ class SheetCompletion {
 
 Json completion(const View& view, const TextPosition& at) {
   if (view.document.kind == DocumentKind::network) return network_completion(view, at);
+  if (view.has_options()) return options_completion(view, at);
   return view.is_sheet() ? SheetCompletion{view, at}.run() : Json::array();
 }
 

@@ -32,6 +32,10 @@ struct View {
   [[nodiscard]] bool is_sheet() const {
     return document.kind == DocumentKind::device || document.kind == DocumentKind::overlay;
   }
+  /// Whether it is an options file or a file of deviations.
+  [[nodiscard]] bool has_options() const {
+    return document.kind == DocumentKind::options || document.kind == DocumentKind::deviations;
+  }
 };
 
 /// The committed version of a file; null if there is none, or it cannot be read.

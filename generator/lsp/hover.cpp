@@ -11,6 +11,7 @@
 #include "lookup/find_entry.hpp"
 #include "lsp/features.hpp"
 #include "lsp/network_place.hpp"
+#include "lsp/options_place.hpp"
 #include "lsp/sheet_place.hpp"
 #include "text/markdown.hpp"
 
@@ -146,6 +147,7 @@ std::string describe(const LoadedDevice& loaded, const Device& device, const Ent
 
 Json hover(const View& view, const TextPosition& at) {
   if (view.document.kind == DocumentKind::network) return markdown_hover(describe_network_place(view, at));
+  if (view.has_options()) return markdown_hover(describe_options_place(view, at));
   const Device* const device = view.analysis.device();
   if (!view.is_sheet() || device == nullptr) return nullptr;
   const SheetPlace place = place_in(view.analysis.ini, at.line + 1, view.column_of(at));

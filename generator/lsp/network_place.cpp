@@ -37,17 +37,13 @@ std::optional<std::string_view> meaning_of(const std::vector<std::string>& path,
   return std::nullopt;
 }
 
-struct Offer {
-  std::string label, detail, text;
-};
-
 template <class Rows>
-void offer_members(const Rows& rows, std::vector<Offer>& offers) {
+void offer_members(const Rows& rows, std::vector<JsonOffer>& offers) {
   for (const auto& row : rows)
     offers.push_back({std::string{row.name}, std::string{row.meaning}, std::string{row.name}});
 }
 
-void offer_names(const JsonPlaceInText& place, const Network* network, std::vector<Offer>& offers) {
+void offer_names(const JsonPlaceInText& place, const Network* network, std::vector<JsonOffer>& offers) {
   const std::vector<std::string>& path = place.path;
   if (path.empty()) {
     offer_members(network_members, offers);
@@ -74,7 +70,7 @@ void offer_names(const JsonPlaceInText& place, const Network* network, std::vect
 }
 
 void offer_entries(const NetworkNode& node, canopen::Mappable direction, const std::string& prefix,
-                   std::vector<Offer>& offers) {
+                   std::vector<JsonOffer>& offers) {
   if (node.loaded == nullptr || !node.loaded->names) return;
   for (const Object& object : node.device().objects) {
     for (const Entry& entry : object.entries) {
@@ -99,7 +95,8 @@ std::string sender_at(std::string_view document, const JsonPlaceInText& place) {
   return end == std::string_view::npos ? std::string{} : std::string{signal.substr(begin + 1, end - begin - 1)};
 }
 
-void offer_values(const View& view, const JsonPlaceInText& place, const Network& network, std::vector<Offer>& offers) {
+void offer_values(const View& view, const JsonPlaceInText& place, const Network& network,
+                  std::vector<JsonOffer>& offers) {
   const std::vector<std::string>& path = place.path;
   const auto offer_nodes = [&](const std::string& end) {
     for (const NodeDescription& node : network.description.nodes) {
@@ -239,27 +236,32 @@ std::string describe_network_place(const View& view, const TextPosition& at) {
                      markdown_text(target.node->device().product_name));
 }
 
-Json network_completion(const View& view, const TextPosition& at) {
-  const JsonPlaceInText place = json_place(view.analysis.own->text(), offset_in(view, at));
+Json completion_items(const View& view, const TextPosition& at, const JsonPlaceInText& place,
+                      std::vector<JsonOffer> offers) {
   Json items = Json::array();
-  if (!place.is_in_string) return items;
-  const Network* const network = network_of(view);
-  std::vector<Offer> offers;
-  if (place.is_name) {
-    offer_names(place, network, offers);
-  } else if (network != nullptr) {
-    offer_values(view, place, *network, offers);
-  }
   const std::uint32_t column = static_cast<std::uint32_t>(
       place.begin - static_cast<std::size_t>(view.line(at.line + 1).data() - view.analysis.own->text().data()) + 1);
   const TextRange range = range_in(*view.analysis.own, at.line + 1, column, place.end - place.begin, view.encoding);
-  for (Offer& offer : offers) {
+  for (JsonOffer& offer : offers) {
     items.push_back({{"label", offer.label},
                      {"detail", std::move(offer.detail)},
                      {"filterText", std::move(offer.label)},
                      {"textEdit", {{"range", to_json(range)}, {"newText", std::move(offer.text)}}}});
   }
   return items;
+}
+
+Json network_completion(const View& view, const TextPosition& at) {
+  const JsonPlaceInText place = json_place(view.analysis.own->text(), offset_in(view, at));
+  if (!place.is_in_string) return Json::array();
+  const Network* const network = network_of(view);
+  std::vector<JsonOffer> offers;
+  if (place.is_name) {
+    offer_names(place, network, offers);
+  } else if (network != nullptr) {
+    offer_values(view, place, *network, offers);
+  }
+  return completion_items(view, at, place, std::move(offers));
 }
 
 }  // namespace edsc::lsp

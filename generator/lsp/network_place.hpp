@@ -1,4 +1,5 @@
-/// The place of a cursor in a network file, also while its text is not yet JSON.
+/// The place of a cursor in a JSON file of edsc, and what a network file has there, also while its text is not yet
+/// JSON.
 #pragma once
 
 #include <cstddef>
@@ -20,6 +21,15 @@ struct JsonPlaceInText {
 
 /// Reads the text up to `offset`, and the string around it.
 [[nodiscard]] JsonPlaceInText json_place(std::string_view text, std::size_t offset);
+
+/// What a string of a JSON file can be.
+struct JsonOffer {
+  std::string label, detail, text;
+};
+
+/// The offers as items that replace the string at the cursor.
+[[nodiscard]] Json completion_items(const View& view, const TextPosition& at, const JsonPlaceInText& place,
+                                    std::vector<JsonOffer> offers);
 
 /// The offset of a position in the text of the document.
 [[nodiscard]] std::size_t offset_in(const View& view, const TextPosition& at);

@@ -71,7 +71,8 @@ struct Server::Method {
   Json (*run)(Server& server, const Json& params);
 };
 
-Server::Server(ServerHooks hooks) : hooks_{std::move(hooks)}, workspace_{hooks_.check_deviations} {}
+Server::Server(ServerHooks hooks)
+    : hooks_{std::move(hooks)}, workspace_{hooks_.check_deviations, hooks_.conformance_cases} {}
 
 const std::map<std::string_view, Server::Method>& Server::methods() {
   static const std::map<std::string_view, Method> all{

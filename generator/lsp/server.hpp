@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lsp/features.hpp"
 #include "lsp/workspace.hpp"
@@ -21,6 +22,7 @@ struct ServerHooks {
   std::function<std::string(const Rule& rule)> url_of = {};  ///< where a rule is documented; may be empty
   Committed committed = {};                                  ///< the file of git HEAD; may be empty
   CheckDeviations check_deviations = {};                     ///< may be empty
+  std::vector<ConformanceCase> conformance_cases = {};       ///< those that a file of deviations can name
 };
 
 class Server {

@@ -54,9 +54,18 @@ struct Document {
 /// Reports the findings of a file of deviations.
 using CheckDeviations = std::function<void(const SourceFile& source, Diagnostics& diagnostics)>;
 
+/// A case of `edsc conform`, which a file of deviations names.
+struct ConformanceCase {
+  std::string id;  ///< `2.5`
+  std::string title;
+};
+
 class Workspace {
  public:
-  explicit Workspace(CheckDeviations check_deviations) : check_deviations_{std::move(check_deviations)} {}
+  Workspace(CheckDeviations check_deviations, std::vector<ConformanceCase> cases)
+      : check_deviations_{std::move(check_deviations)}, conformance_cases_{std::move(cases)} {}
+
+  [[nodiscard]] const std::vector<ConformanceCase>& conformance_cases() const { return conformance_cases_; }
 
   void open(const std::string& uri, std::int64_t version, std::string text);
   void close(const std::string& uri);
@@ -81,6 +90,7 @@ class Workspace {
   void analyse_network(const Document& document, Analysis& analysis);
 
   CheckDeviations check_deviations_;
+  std::vector<ConformanceCase> conformance_cases_;
   std::map<std::string, Document, std::less<>> documents_;  ///< by URI
 };
 

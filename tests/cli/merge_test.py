@@ -118,6 +118,42 @@ class Merge(CommandLine):
         self.assertIn("[5F00sub4]", merged)
         self.assertIn("DefaultValue=9", merged[merged.index("[5F00sub1]"):merged.index("[5F00sub4]")])
 
+    def edit(self, name: str, *replacements: tuple[str, str]) -> None:
+        """A branch that an editor makes: texts of the file are replaced."""
+        self.git("checkout", "-q", "-b", name, "base")
+        text = self.drive.read_text(encoding="utf-8")
+        for old, new in replacements:
+            self.assertEqual(text.count(old), 1, old)
+            text = text.replace(old, new)
+        self.commit(text.encode())
+
+    def test_comments(self) -> None:
+        """Comments of one branch, with values of the other one: each before its key, after the last key or above its section."""
+        self.edit("start", ("[1017]\n", "; old\n; reason\n[1017]\n"))
+        self.git("checkout", "-q", "base")
+        self.git("merge", "-q", "--ff-only", "start")
+        name = next(line for line in self.drive.read_text().split("[1017]\n")[1].splitlines() if line.startswith("ParameterName"))
+        section = "[1017]\n" + name
+        self.edit("theirs", ("; old\n; reason\n" + section, "; new reason\n[1017]\n; the name\n" + name),
+                  ("[1018]\n", "; identity, by the label\n[1018]\n"))
+        self.branch("ours", [("set", "1017h", "DefaultValue=222"), ("add", "5F00h", "Speed", "UNSIGNED16", "rw")])
+        self.git("merge", "-q", "--no-edit", "theirs")
+        text = self.drive.read_text(encoding="utf-8")
+        self.assertIn("; new reason\n[1017]\n; the name\n" + name, text)
+        self.assertIn("; identity, by the label\n[1018]\n", text)
+        self.assertNotIn("; old", text)
+        self.assertIn("DefaultValue=222", text[text.index("[1017]"):])
+        self.assertIn("[5F00]", text)
+
+    def test_a_conflict_of_comments(self) -> None:
+        self.edit("theirs", ("[1018sub1]\n", "; theirs\n[1018sub1]\n"))
+        self.edit("ours", ("[1018sub1]\n", "; ours\n[1018sub1]\n"))
+        output = self.git("merge", "-q", "--no-edit", "theirs", status=INPUT_HAS_ERRORS)
+        self.assertIn("drive.eds: conflict in [1018sub1]", output)
+        text = self.drive.read_text(encoding="utf-8")
+        self.assertTrue("<<<<<<< ours\n; ours\n=======\n; theirs\n>>>>>>> theirs\n[1018sub1]\n" in text)
+        self.assertEqual(text.count("<<<<<<<"), 1)
+
     def test_a_conflict_of_a_value(self) -> None:
         self.branch("theirs", [("set", "1017h", "DefaultValue=111"), ("add", "5F00h", "Speed", "UNSIGNED16", "rw")])
         self.branch("ours", [("set", "1017h", "DefaultValue=222"), ("set", "DeviceInfo", "ProductName=Other")])

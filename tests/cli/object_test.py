@@ -80,6 +80,27 @@ class Add(ObjectCommand):
         self.assertTrue(set(wanted) <= set(objects))
         self.assert_canonical()
 
+    def test_records_of_the_standards(self) -> None:
+        """Each RECORD that CiA 301 and CiA 402 have, in a new drive: `check --strict` accepts it. Names and types are those of the
+        standards."""
+        self.assertEqual(self.run_edsc("new", "drive.eds.eds", "--vendor-name", "Acme", "--cia", 402).returncode, FINE)
+        self.path("drive.eds.eds").replace(self.path("drive.eds"))
+        self.change("add", "1020h", "1200h", "1280h", "1403h", "1603h[4]", "1803h", "1A03h[4]")
+        self.change("add", "6048h", "6049h", "60C2h", "60C4h", "6091h", "607Dh", "60FEh", "6848h")
+        self.assertEqual([(one["sub_index"], one["name"], one["data_type"], one["access"])
+                          for one in self.objects()[0x60C4]["entries"]][1:],
+                         [(1, "Maximum buffer size", "UNSIGNED32", "ro"), (2, "Actual buffer size", "UNSIGNED32", "rw"),
+                          (3, "Buffer organization", "UNSIGNED8", "rw"), (4, "Buffer position", "UNSIGNED16", "rw"),
+                          (5, "Size of data record", "UNSIGNED8", "wo"), (6, "Buffer clear", "UNSIGNED8", "wo")])
+        self.assertEqual([one["data_type"] for one in self.objects()[0x6848]["entries"]], ["UNSIGNED8", "UNSIGNED32", "UNSIGNED16"])
+        self.assertEqual([one["name"] for one in self.objects()[0x607D]["entries"]][1:], ["Min position limit", "Max position limit"])
+        self.assertEqual({one["sub_index"]: one.get("default_value") for one in self.objects()[0x1803]["entries"]},
+                         {0: 5, 1: "$NODEID+0x480", 2: 0, 3: 0, 5: 0})
+        self.assertEqual([one.get("default_value") for one in self.objects()[0x1603]["entries"]], [0, 0, 0, 0, 0])
+        self.assert_canonical()
+        checked = self.run_edsc("check", "--strict", "drive.eds")
+        self.assertEqual(checked.returncode, FINE, checked.stdout + checked.stderr)
+
     def test_copies(self) -> None:
         source = next(index for index in sorted(self.objects()) if index >= 0x2000)
         self.change("add", "--like", f"{source:04X}h", "5F30h", "5F31h")
@@ -175,6 +196,33 @@ class Map(ObjectCommand):
         self.change("remove", "5F05h")
         self.assertNotIn(0x5F05, self.objects())
         self.assert_canonical()
+
+    def compact_drive(self) -> None:
+        """The mapping of TPDO 260 as an object with CompactSubObj and a list of its values."""
+        self.change("map", "tpdo", 260, "6041h", "--cob-id", "0x1F0")
+        self.change("remove", "1B03h", "--force")
+        self.path("drive.eds").write_bytes(self.path("drive.eds").read_bytes() + (
+            b"\n[1B03]\nParameterName=TPDO mapping parameter\nObjectType=0x9\nDataType=0x0007\nAccessType=rw\nPDOMapping=0\n"
+            b"CompactSubObj=2\n\n[1B03Value]\nNrOfEntries=2\n1=0x60410010\n2=0x60610008 ; mode\n"))
+        text = self.path("drive.eds").read_text(encoding="utf-8")
+        count = int(text[text.index("[OptionalObjects]"):].split("SupportedObjects=")[1].split()[0], 0)
+        self.path("drive.eds").write_text(text.replace(f"SupportedObjects={count}\n", f"SupportedObjects={count + 1}\n{count + 1}=0x1B03\n"))
+
+    def test_a_compact_mapping(self) -> None:
+        self.compact_drive()
+        self.assertEqual([one["index"] for one in self.pdo("transmit", 260)["entries"]], [0x6041, 0x6061])
+        self.change("map", "tpdo", 260, "6061h", "6041h", "6064h")
+        self.assertEqual([one["index"] for one in self.pdo("transmit", 260)["entries"]], [0x6061, 0x6041, 0x6064])
+        text = self.path("drive.eds").read_text(encoding="utf-8")
+        self.assertIn("CompactSubObj=3\n\n[1B03Value]\nNrOfEntries=3\n1=0x60610008\n2=0x60410010", text)
+        self.change("map", "tpdo", 260, "6064h")
+        self.assertEqual([one["index"] for one in self.pdo("transmit", 260)["entries"]], [0x6064])
+        self.assertIn("CompactSubObj=1\n\n[1B03Value]\nNrOfEntries=1\n1=0x60640020\n",
+                      self.path("drive.eds").read_text(encoding="utf-8"))
+        self.change("map", "tpdo", 260, "none")
+        self.assertEqual(self.pdo("transmit", 260)["entries"], [])
+        self.change("map", "tpdo", 260, "6041h", "6061h")
+        self.assertEqual([one["index"] for one in self.pdo("transmit", 260)["entries"]], [0x6041, 0x6061])
 
     def test_what_cannot_be_mapped(self) -> None:
         self.change("map", "tpdo", 1, "1018h:01", status=INPUT_HAS_ERRORS)

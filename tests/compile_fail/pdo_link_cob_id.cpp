@@ -1,6 +1,6 @@
 // expect: the TPDO and the RPDO have different COB-IDs .*sensor::Tpdo1 .*control::Rpdo1
 // The RPDO receives 182h, the TPDO is sent with 181h.
-#include <canopen/plant/signal.hpp>
+#include <canopen_plant/signal.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -1,5 +1,5 @@
 // expect: the entry of the TPDO is at other bits than that of the RPDO .*sensor::Tpdo1 .*control::Rpdo1
-#include <canopen/plant/signal.hpp>
+#include <canopen_plant/signal.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

@@ -1,6 +1,6 @@
 // expect: position .*ReceivedBy
 // A handler for a signal that the master sends.
-#include <canopen/plant/plant.hpp>
+#include <canopen_plant/plant.hpp>
 #include <every_type/device.hpp>
 
 namespace od = every_type::od;

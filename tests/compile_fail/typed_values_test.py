@@ -24,8 +24,9 @@ COMMON_HEADERS = """#include <canopen/sdo/remote_node.hpp>
 #include <canopen/node.hpp>
 #include <canopen/node/mailbox.hpp>
 #include <canopen/node/locked.hpp>
+#include <canopen/node/mailbox.hpp>
 #include <canopen/master.hpp>
-#include <canopen/plant/plant.hpp>
+#include <canopen_plant/plant.hpp>
 #include <every_type/device.hpp>
 #include "support/omitting.hpp"
 namespace od = every_type::od;

@@ -56,7 +56,7 @@ DYNAMIC_DIFFERENCES: tuple[tuple[str, str, str], ...] = (
     ("301.eds", "5.6", "1003h:00 is UNSIGNED32, and a note says that no service uses it"),
     ("Easy-ak_v1.30.eds", "5.6", "the same"),
 )
-MAIN = """#include <canopen/host/simulated_device.hpp>
+MAIN = """#include <canopen_sim/simulated_device.hpp>
 
 extern const std::span<const canopen::SimulatedDevice> devices;
 
@@ -131,7 +131,7 @@ class Driver:
 
     def program_of(self, jobs: list[Job], name: str) -> Path | None:
         """Returns None if it does not compile."""
-        lines = ["#include <canopen/host/simulated_node.hpp>", *(f"#include <{job.name}/device.hpp>" for job in jobs)]
+        lines = ["#include <canopen_sim/simulated_node.hpp>", *(f"#include <{job.name}/device.hpp>" for job in jobs)]
         rows = ", ".join(f'{{"{job.name}", canopen::make_simulated_node<{job.name}::Device>}}' for job in jobs)
         lines += [f"static constexpr canopen::SimulatedDevice all[] = {{{rows}}};",
                   "extern const std::span<const canopen::SimulatedDevice> devices;",

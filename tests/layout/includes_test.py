@@ -4,7 +4,8 @@
     includes_test.py SOURCE_DIR [unittest arguments]
 
 The page has tables of modules, each with the modules that it may include. A module is below all modules that include it.
-A folder of the runtime is a module, and so is each of its umbrella headers.
+A folder of the runtime is a module, and so is each of its umbrella headers. Its headers at old include paths are one module: each
+only includes the header at the new path, and no other file includes it.
 """
 
 from __future__ import annotations
@@ -18,9 +19,12 @@ from pathlib import Path
 
 SOURCE_DIR = Path(sys.argv[1]).resolve()
 RUNTIME = "runtime/include/canopen"
+OLD_PATHS = "runtime/old_paths"
 TOPS = {"runtime": "runtime/include", "generator": "generator", "bus": "bus", "cli": "cli"}  # each with its include folder
 UMBRELLAS = ("node.hpp", "master.hpp")
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+ANY_INCLUDE = re.compile(r'#include ["<]([^">]+)')
+OLD_PATH = re.compile(r'/// The old include path of (\S+), which is removed after version \d+\.\d+\.\n#pragma once\n\n#include "\1"\n')
 SYSTEM_HEADER = re.compile(r"^#include <((?:arpa|net|netinet|sys|linux)/[\w./]+|"
                            r"(?:dirent|dlfcn|fcntl|poll|pthread|pwd|signal|spawn|termios|unistd|windows)\.h)>", re.MULTILINE)
 ROW = re.compile(r"^\| `((?:runtime|generator|bus|cli)(?:/[\w.]+)?)/?` \| (.*?) \|", re.MULTILINE)
@@ -36,8 +40,13 @@ def name_of(path: Path) -> str:
 
 
 def module_of(path: Path) -> str:
-    """Returns `bus/conform` for bus/conform/cases/setup.cpp, `cli` for cli/main.cpp, `runtime/node.hpp` for node.hpp."""
+    """Returns `bus/conform` for bus/conform/cases/setup.cpp, `cli` for cli/main.cpp, `runtime/node.hpp` for node.hpp, and
+    `runtime/canopen_sim` for canopen_sim/virtual_bus.hpp."""
     if top_of(path) == "runtime":
+        if OLD_PATH.fullmatch(path.read_text(encoding="utf-8")):
+            return OLD_PATHS
+        if not path.is_relative_to(SOURCE_DIR / RUNTIME):
+            return f"runtime/{Path(name_of(path)).parts[0]}"
         inside = path.relative_to(SOURCE_DIR / RUNTIME)
         return f"runtime/{inside.parts[0]}" if len(inside.parts) > 1 or inside.name in UMBRELLAS else "runtime"
     return "/".join(path.relative_to(SOURCE_DIR).parts[:-1][:2])
@@ -105,8 +114,19 @@ class Includes(unittest.TestCase):
     def test_the_runtime_includes_itself_alone(self) -> None:
         names = {f"{path.relative_to(SOURCE_DIR)}: {name}"
                  for path in (SOURCE_DIR / "runtime/include").rglob("*.hpp")
-                 for name in INCLUDE.findall(path.read_text(encoding="utf-8")) if not name.startswith("canopen/")}
+                 for name in INCLUDE.findall(path.read_text(encoding="utf-8"))
+                 if not name.startswith(("canopen/", "canopen_sim/", "canopen_plant/"))}
         self.assertEqual(names, set())
+
+    def test_no_file_includes_an_old_path(self) -> None:
+        old = {name_of(path) for path in sources() if module_of(path) == OLD_PATHS}
+        self.assertNotEqual(old, set())
+        files = [path for folder in (*TOPS, "templates", "generated", "examples", "bench", "tests", "docs", "cmake")
+                 for path in sorted((SOURCE_DIR / folder).rglob("*"))
+                 if path.suffix in (".cpp", ".hpp", ".mustache", ".py", ".cmake", ".md", ".tsv")]
+        found = [f"{path.relative_to(SOURCE_DIR)} includes {name}" for path in files
+                 for name in ANY_INCLUDE.findall(path.read_text(encoding="utf-8")) if name in old]
+        self.assertEqual(found, [])
 
 
 if __name__ == "__main__":

@@ -67,6 +67,8 @@ def script(name: str, path: str, *tests: str) -> Program:
 
 
 RUNTIME = "runtime/include/canopen/"
+SIMULATION = "runtime/include/canopen_sim/"
+PLANT = "runtime/include/canopen_plant/"
 
 HOST = ("generator/", "bus/", "cli/")
 
@@ -94,9 +96,9 @@ RUNTIME_PROGRAMS = (
     gtest("cia402_tests", f"{RUNTIME}profile/"),
     gtest("can_controller_tests", f"{RUNTIME}port/"),
     gtest("port_tests", f"{RUNTIME}host/", f"{RUNTIME}port/", f"{RUNTIME}can/send_queue.hpp",
-          f"{RUNTIME}node/accepted_frames.hpp"),
+          f"{RUNTIME}node/accepted_frames.hpp", SIMULATION),
     gtest("model_tests", RUNTIME),
-    gtest("runtime_tests", RUNTIME),
+    gtest("runtime_tests", RUNTIME, SIMULATION, PLANT),
     gtest("node_tests", RUNTIME),
 )
 

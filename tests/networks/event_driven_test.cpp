@@ -1,8 +1,8 @@
 /// The master of a network whose values are sent when they change.
 #include <gtest/gtest.h>
 
-#include <canopen/plant/plant.hpp>
 #include <canopen/profile/cia402_master.hpp>
+#include <canopen_plant/plant.hpp>
 #include <chrono>
 #include <cstdint>
 #include <event_driven.hpp>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <canopen/can/frame.hpp>
-#include <canopen/host/plant_text.hpp>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/node.hpp>
+#include <canopen_plant/plant_text.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <cstdint>
 #include <map>
 #include <optional>

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <canopen/host/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <string>
 
 #include "ezd_1136_bench.hpp"

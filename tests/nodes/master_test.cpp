@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <canopen/host/plant_text.hpp>
-#include <canopen/host/virtual_bus.hpp>
-#include <canopen/host/virtual_bus_port.hpp>
+#include <canopen_plant/plant_text.hpp>
+#include <canopen_sim/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus_port.hpp>
 #include <functional>
 #include <optional>
 #include <string>

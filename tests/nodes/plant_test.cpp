@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <canopen/host/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <filesystem>
 #include <memory>
 #include <optional>

@@ -44,7 +44,7 @@ LINE_FILE = """{
   ]
 }
 """
-LINE_MAIN = """#include <canopen/plant/plant.hpp>
+LINE_MAIN = """#include <canopen_plant/plant.hpp>
 #include <line.hpp>
 
 struct Bus {

@@ -30,7 +30,7 @@ from support.made_fixtures import names_eds  # noqa: E402
 # These are for programs of a PC: they throw the errors of its operating system, or print numbers of 64 bits, for which newlib
 # has no format.
 HOSTED_ONLY = ("host/descriptor.hpp", "host/event_descriptor.hpp", "host/file_storage.hpp", "host/host_bus.hpp",
-               "host/host_loop.hpp", "host/network_simulation/network_simulation.hpp", "host/simulated_device.hpp",
+               "host/host_loop.hpp", "/network_simulation/network_simulation.hpp", "/simulated_device.hpp",
                "host/slcan.hpp", "host/socketcan.hpp", "host/socketcan_frame.hpp", "host/socketcand.hpp",
                "host/stream_port.hpp")
 

@@ -95,11 +95,53 @@ std::map<std::uint16_t, std::string> read_profile_names(const nlohmann::json& ro
   return names;
 }
 
+/// `["Delta time", "UNSIGNED16", "rw"]`, without the access type or both if they are those of the object; nothing if a
+/// part is unknown.
+std::optional<ProfileEntry> read_profile_entry(const nlohmann::json& row) {
+  const bool has_parts = row.is_array() && !row.empty() && row.size() <= 3 &&
+                         std::ranges::all_of(row, [](const nlohmann::json& part) { return part.is_string(); });
+  if (!has_parts) return std::nullopt;
+  ProfileEntry entry{row[0].get<std::string>()};
+  if (row.size() > 1) {
+    const auto* const type =
+        std::ranges::find(canopen::data_types, row[1].get<std::string>(), &canopen::DataTypeRow::name);
+    if (type == std::end(canopen::data_types)) return std::nullopt;
+    entry.type = type;
+  }
+  if (row.size() > 2) {
+    const auto* const access =
+        std::ranges::find(canopen::access_rows, row[2].get<std::string>(), &canopen::AccessRow::name);
+    if (access == std::end(canopen::access_rows)) return std::nullopt;
+    entry.access = access->access;
+  }
+  return entry;
+}
+
+std::map<std::uint16_t, std::vector<ProfileEntry>> read_profile_entries(const nlohmann::json& rows, OptionFile& file) {
+  std::map<std::uint16_t, std::vector<ProfileEntry>> entries;
+  for (const auto& [index, row] : file.json().members(rows)) {
+    const auto number = parse_index(index);
+    bool is_valid = number && row->is_array();
+    for (std::size_t i = 0; is_valid && i < row->size(); ++i) {
+      auto entry = read_profile_entry((*row)[i]);
+      is_valid = entry.has_value();
+      if (entry) entries[*number].push_back(*std::move(entry));
+    }
+    if (!is_valid) file.error(*row, index, "expected a list of names, data types and access types");
+  }
+  return entries;
+}
+
 }  // namespace
 
 std::string MeaningProfile::name_of(std::uint16_t index) const {
   const auto found = names.find(index);
   return found == names.end() ? std::string{} : found->second;
+}
+
+std::span<const ProfileEntry> MeaningProfile::entries_of(std::uint16_t index) const {
+  const auto found = entries.find(index);
+  return found == entries.end() ? std::span<const ProfileEntry>{} : found->second;
 }
 
 const ProfileObject* MeaningProfile::find(std::uint16_t index) const {
@@ -143,6 +185,8 @@ MeaningProfile read_meaning_profile(const SourceFile& source, Diagnostics& diagn
       profile.objects = read_profile_objects(*value, file);
     } else if (name == "names" && value->is_object()) {
       profile.names = read_profile_names(*value, file);
+    } else if (name == "entries" && value->is_object()) {
+      profile.entries = read_profile_entries(*value, file);
     } else if (name == "emcy") {
       profile.meanings.error_codes = read_error_codes(*value, name, MeaningSource::profile, file);
     } else {

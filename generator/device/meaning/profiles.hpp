@@ -5,6 +5,7 @@
 #include <canopen/od/data_type.hpp>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -45,6 +46,13 @@ struct ProfileObject {
   [[nodiscard]] bool has_sub_indices() const { return object_code != "VAR"; }
 };
 
+/// An entry of an ARRAY with fixed elements, or of a RECORD.
+struct ProfileEntry {
+  std::string name;
+  const canopen::DataTypeRow* type = nullptr;  ///< null: the type of the object
+  std::optional<canopen::Access> access = {};  ///< nothing: the access type of the object
+};
+
 /// A device profile, or with the number 301 the communication profile of all devices.
 struct MeaningProfile {
   std::uint16_t number = 0;
@@ -54,12 +62,17 @@ struct MeaningProfile {
   MeaningDescriptions meanings;
   std::vector<ProfileObject> objects;          ///< ascending
   std::map<std::uint16_t, std::string> names;  ///< of objects, as the profile spells them
+  /// From sub-index 1 on, of RECORDs and of ARRAYs whose elements have names.
+  std::map<std::uint16_t, std::vector<ProfileEntry>> entries;
 
   /// The row of an object of the first axis; null if there is none.
   [[nodiscard]] const ProfileObject* find(std::uint16_t index) const;
 
   /// The name of an object of the first axis; empty if edsc does not have it.
   [[nodiscard]] std::string name_of(std::uint16_t index) const;
+
+  /// The entries of an object of the first axis; empty if the profile does not fix them, or edsc does not have them.
+  [[nodiscard]] std::span<const ProfileEntry> entries_of(std::uint16_t index) const;
 
   /// The index of the object in the first axis, and the distance to it.
   struct Place {

@@ -51,7 +51,7 @@ class SourceWriter {
     for (std::size_t i = 0; i < network_.nodes.size(); ++i) nodes += node_text(network_.nodes[i], i);
     std::string text = fmt::format(
         "// Written by edsc network simulate.\n"
-        "#include <canopen/host/network_simulation/network_simulation.hpp>\n\n"
+        "#include <canopen_sim/network_simulation/network_simulation.hpp>\n\n"
         "namespace simulation = canopen::network_simulation;\n\n{}\nnamespace {{\n\n",
         declarations_);
     text += tables_ + messages_text();
@@ -108,7 +108,7 @@ class SourceWriter {
     source_.files.push_back(
         {name + ".cpp", fmt::format("// Written by edsc network simulate.\n"
                                     "#include <{0}/device.hpp>\n"
-                                    "#include <canopen/host/network_simulation/heartbeat_watch.hpp>\n\n"
+                                    "#include <canopen_sim/network_simulation/heartbeat_watch.hpp>\n\n"
                                     "{1} {{\n"
                                     "  return canopen::network_simulation::make_node_of<{0}::Device>(bus, memory);\n"
                                     "}}\n",

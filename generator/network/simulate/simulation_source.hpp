@@ -1,4 +1,4 @@
-/// The C++ program that simulates a network (runtime/include/canopen/host/network_simulation).
+/// The C++ program that simulates a network (runtime/include/canopen_sim/network_simulation).
 #pragma once
 
 #include <string>

@@ -104,6 +104,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// Pre-operational (CiA 301, 7.3.2.1). A node whose node-ID is not 1..127 sends nothing and remains in
   /// Initialisation, which `state()` returns: an LSS master can give it a node-ID.
   void start(TimePoint now) {
+    report_call();
     now_ = now;
     services_.on_start(host());
     if constexpr (HandlerTypes::template has_event_function<function::Start>) {
@@ -126,6 +127,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
 
   /// Processes a frame from the bus. Frames that are not for this node are ignored.
   void on_frame(const Frame& frame, TimePoint now) {
+    report_call();
     now_ = now;
     idle_.end();
     services_.on_frame_without_node_id(host(), frame);
@@ -141,6 +143,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// Processes elapsed time. Call it at `next_deadline()`, when the bus has room again, and at least every half hour.
   /// In an image for size, heartbeats, timeouts and events may be up to 128 us late (node/idle_time.hpp).
   void on_time(TimePoint now) {
+    report_call();
     now_ = now;
     if (!attention_ && !needs_exact_time() && idle_.lasts(now)) return;
     const bool was_idle = idle_.has_begun();
@@ -169,6 +172,12 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
     }
   }
 
+  /// Whether something outside of the node may change `next_deadline`: a mailbox, or a storage that is written in
+  /// steps.
+  [[nodiscard]] static constexpr bool has_outer_deadlines() {
+    return service::PostedValues<Device, Handlers...>::exists || StoredValues::is_stepped;
+  }
+
   /// Whether LSS configures the node.
   static constexpr bool has_lss = service::Lss<Device, Handlers...>::exists;
 
@@ -185,11 +194,15 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   [[nodiscard]] NmtState state() const { return state_; }
   [[nodiscard]] NodeId node_id() const { return node_id_; }
   /// Returns the time that was passed to the function of the node that runs, or ran last.
-  [[nodiscard]] TimePoint now() const { return now_; }
+  [[nodiscard]] TimePoint now() const {
+    if constexpr (reports_to_bus<BusType>) return bus_.time_of_node(now_);
+    return now_;
+  }
 
   /// Executes an NMT command by local control (CiA 301, 7.3.2). Has no effect before `start` or without a node-ID. In a
   /// read or write handler, the command is executed after the response of the SDO server has been sent.
   void request(NmtCommand command, TimePoint now) {
+    report_call();
     now_ = now;
     if (state_ == NmtState::initialisation) return;
     if (handler_calls_.defer(command)) {
@@ -224,11 +237,12 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// typed `set`. Length and limits are checked as for a download; read_only: it is a constant in the EDS.
   [[nodiscard]] AbortCode set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
     AccessProbe<Device>::uses(index, sub_index);
-    const entry::Word word = entries().find(index, sub_index);
+    report_use();
+    const entry::Word word = host().entries().find(index, sub_index);
     if (word == Dictionary::no_object) return AbortCode::no_object;
     if (word == Dictionary::no_sub_index) return AbortCode::no_sub_index;
     if (entry::place_of(word) != entry::Place::ram) return AbortCode::read_only;
-    if (const AbortCode code = entries().check(index, sub_index, word, bytes); code != ok) return code;
+    if (const AbortCode code = host().entries().check(index, sub_index, word, bytes); code != ok) return code;
     if constexpr (service::DriveModes<Device>::exists) {
       if (service::DriveModes<Device>::checks(index, sub_index) && !accepts_mode<Device>(index, bytes[0]))
         return AbortCode::invalid_value;
@@ -237,13 +251,13 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
         store_, [&](const auto&... of_node) { return check_closed<Device>(index, sub_index, bytes, of_node...); });
     if (closed != ok) return closed;
     handler_calls_.object_is_set(object_key(index, sub_index));
-    if (!entry::is_domain(word) && entries().holds(word, bytes)) return ok;
+    if (!entry::is_domain(word) && host().entries().holds(word, bytes)) return ok;
     // Values set in Initialisation belong to the configuration of the device after a reset.
     if constexpr (StoredValues::exists) {
       if ((word & entry::writable) != 0 && state_ != NmtState::initialisation)
         StoredValues::before_change(host(), index, sub_index, bytes);
     }
-    entries().write(word, bytes);
+    host().entries().write(word, bytes);
     after_write(index, sub_index, true);
     return ok;
   }
@@ -252,19 +266,27 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// (the generic one is set automatically), and the manufacturer-specific bytes. As with `set`, the EMCY is sent with
   /// the next `on_time` or `on_frame`: `next_deadline` is due at once. A device without 1014h sends none.
   void emergency(EmergencyCode code, ErrorRegister bits, const EmergencyInfo& info = no_emergency_info) {
+    report_use();
     emergencies().report(host(), code.value(), bits, info);
   }
 
   /// Sets bits of 1001h without an EMCY: an error that has been reported keeps them until they are passed to
   /// `emergency_over`.
-  void hold_error(ErrorRegister bits) { emergencies().hold(host(), bits); }
+  void hold_error(ErrorRegister bits) {
+    report_use();
+    emergencies().hold(host(), bits);
+  }
 
   /// Reports that an error of the application has disappeared, and clears `bits` of 1001h. Pass the bits that no other
   /// error of the application sets, none for an error without bits. EMCY 0000h is sent with the remaining bits, unless
   /// no error had set `bits`.
-  void emergency_over(ErrorRegister bits) { emergencies().end(host(), bits); }
+  void emergency_over(ErrorRegister bits) {
+    report_use();
+    emergencies().end(host(), bits);
+  }
   /// The same, with the manufacturer-specific bytes of EMCY 0000h for the errors that remain.
   void emergency_over(ErrorRegister bits, const EmergencyInfo& remaining) {
+    report_use();
     emergencies().end(host(), bits, remaining);
   }
 
@@ -276,6 +298,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
 
   /// Handles a change of the CAN controller's state, or lost frames.
   void on_bus_status(const BusStatus& status, TimePoint now) {
+    report_call();
     now_ = now;
     services_.template get<service::BusErrors<Device>>().on_bus_status(host(), status);
     if (attention_) serve();
@@ -295,11 +318,13 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// them. hardware: the storage has failed, or the range is not one of these. With a storage that is written
   /// in steps, `ok` means that it has begun; device_state: the command before it has not ended yet.
   [[nodiscard]] AbortCode save(std::uint8_t sub_index = 1) requires(storage_detail::has_storage<Handlers...>) {
+    report_use();
     return services_.template get<StoredValues>().save(host(), sub_index);
   }
 
   /// Restores parameters like "load" to this sub-index of 1011h: the next reset sets their default values.
   [[nodiscard]] AbortCode restore(std::uint8_t sub_index = 1) requires(storage_detail::has_storage<Handlers...>) {
+    report_use();
     return services_.template get<StoredValues>().restore(host(), sub_index);
   }
 
@@ -316,16 +341,23 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   [[nodiscard]] bool send_mpdo(const MpdoDestination& to, ValueOf<MpdoData> value) {
     static_assert(MpdoService<Device>::sends_destination,
                   "no TPDO of this device is a multiplex PDO or can be made one");
+    report_use();
     return services_.template get<service::Mpdos<Device>>().put(host(), to, value.value());
   }
 
   /// Returns the values in RAM. Changes here do not send TPDOs or restart timers. Do not change mapping parameters
   /// here: services keep data derived from them.
-  [[nodiscard]] typename Device::Values& values() { return store_.values(); }
+  [[nodiscard]] typename Device::Values& values() {
+    report_exposure();
+    return store_.values();
+  }
   [[nodiscard]] const typename Device::Values& values() const { return store_.values(); }
 
   /// Returns access by index and sub-index, for tools.
-  [[nodiscard]] EntryAccess<Device> entries() { return store_.entries(); }
+  [[nodiscard]] EntryAccess<Device> entries() {
+    report_exposure();
+    return store_.entries();
+  }
 
  private:
   using HandlerTypes = HandlerSet<Device, Node, Handlers...>;
@@ -346,6 +378,29 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   static constexpr bool checks_each_call =
       service::PostedValues<Device, Handlers...>::exists ||
       (prefers_size && (service::Periodic<Device, Handlers...>::exists || StoredValues::is_stepped));
+
+  /// Whether the bus knows each use of its nodes by the application, like the VirtualBus. A node on any other bus does
+  /// not contain these reports.
+  template <class SomeBus>
+  static constexpr bool reports_to_bus = requires(SomeBus& bus, TimePoint& now) {
+    bus.node_is_used(now);
+  };
+
+  /// The application calls the node with the present time.
+  void report_call() {
+    if constexpr (reports_to_bus<BusType>) bus_.node_is_called();
+  }
+  /// The application uses the node, which did not get all frames that it ignores.
+  void report_use() {
+    if constexpr (reports_to_bus<BusType>) {
+      if (bus_.node_is_used(now_)) idle_.end();
+    }
+  }
+  /// The application gets access to the values.
+  void report_exposure() {
+    report_use();
+    if constexpr (reports_to_bus<BusType>) bus_.node_is_exposed();
+  }
 
   [[nodiscard]] Host& host() { return *this; }
   [[nodiscard]] auto& emergencies() { return services_.template get<service::Emergency<Device>>(); }
@@ -416,6 +471,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   template <DictionaryObject Object>
   [[nodiscard]] AbortCode assign(const typename Object::type& value) {
     AccessProbe<Device>::uses(Object::index, Object::sub_index);
+    report_use();
     if constexpr (can_be_refused<Object>) {
       if (const AbortCode code = check_limits<Object>(value); code != ok) return code;
     }
@@ -454,6 +510,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
 
   template <DictionaryObject Object>
   void bind_domain(const Domain& memory) {
+    report_use();
     store_.template set<Object>(memory);
     services_.template get<Sdo>().domain_rebound(Object::index, Object::sub_index);
     attention_ = true;

@@ -1,6 +1,6 @@
 #include "every_service_device.hpp"
 
-#include <canopen/host/simulated_node.hpp>
+#include <canopen_sim/simulated_node.hpp>
 #include <every_service/device.hpp>
 
 namespace edsc::conform {

@@ -1,7 +1,7 @@
 /// The good device of these tests, with every service.
 #pragma once
 
-#include <canopen/host/simulated_node.hpp>
+#include <canopen_sim/simulated_node.hpp>
 
 namespace edsc::conform {
 

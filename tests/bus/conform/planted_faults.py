@@ -39,7 +39,7 @@ inline const int planted_fault = std::getenv("EDSC_PLANTED_FAULT") ? std::atoi(s
 /// Whether a fault is selected. None is while the compiler evaluates an expression.
 constexpr bool planted(int fault) { return !std::is_constant_evaluated() && fault == planted_fault; }
 """
-PROGRAM = """#include <canopen/host/simulated_device.hpp>
+PROGRAM = """#include <canopen_sim/simulated_device.hpp>
 #include <every_service/device.hpp>
 
 int main(int argc, char** argv) { return canopen::simulate_device<every_service::Device>(argc, argv); }

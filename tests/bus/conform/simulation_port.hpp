@@ -2,7 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <canopen/host/simulated_device.hpp>
+#include <canopen_sim/simulated_device.hpp>
 #include <deque>
 #include <optional>
 #include <utility>

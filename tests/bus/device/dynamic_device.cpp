@@ -1,7 +1,7 @@
 /// A device whose EDS is loaded at run time, as a program in simulated time: `dynamic_device EDS [OPTIONS-FILE]`.
 #include <fmt/format.h>
 
-#include <canopen/host/simulated_device.hpp>
+#include <canopen_sim/simulated_device.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>

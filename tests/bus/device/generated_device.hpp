@@ -1,7 +1,7 @@
 /// The generated devices that are compared with those whose EDS is loaded at run time.
 #pragma once
 
-#include <canopen/host/simulated_node.hpp>
+#include <canopen_sim/simulated_node.hpp>
 #include <memory>
 
 #define EDSC_ROW(device) \

@@ -1,5 +1,5 @@
 /// The generated devices as a program in simulated time; the name of a device is that of its C++ namespace.
-#include <canopen/host/simulated_device.hpp>
+#include <canopen_sim/simulated_device.hpp>
 
 #include "generated_device.hpp"
 

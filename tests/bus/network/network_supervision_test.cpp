@@ -1,7 +1,7 @@
 /// `edsc network apply` at slaves with faults of hardware and firmware, in simulated time: nothing that is partly
 /// configured is started, and the fault is reported. The slaves do not use the runtime.
 #include <gtest/gtest.h>
-#include <canopen/host/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 
 #include <deque>
 #include <filesystem>

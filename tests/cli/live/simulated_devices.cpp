@@ -1,6 +1,6 @@
 /// Devices in simulated time for simulated_test.py and simulated_port_test.cpp.
 #include <array>
-#include <canopen/host/simulated_device.hpp>
+#include <canopen_sim/simulated_device.hpp>
 #include <cstdint>
 #include <cstdio>
 #include <every_service/device.hpp>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Devices in simulated time: the protocol of runtime/include/canopen/host/simulated_device.hpp, and the commands of edsc with
+"""Devices in simulated time: the protocol of runtime/include/canopen_sim/simulated_device.hpp, and the commands of edsc with
 addresses that begin with `simulated:`.
 
     simulated_test.py SOURCE_DIR EDSC SIMULATED_DEVICES [unittest arguments]

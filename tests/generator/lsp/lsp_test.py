@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 import shutil
 import signal
 import subprocess
@@ -340,6 +341,36 @@ class LanguageServer(unittest.TestCase):
         self.assertEqual(self.complete(good.replace('"x"', '"|"'), "temperature"), ["temperature"])
         self.assertEqual(self.complete(good.replace('"from": "axis1"', '"from": "|'), "axis1"), ["axis1"])
         self.assertEqual(self.complete(good.replace('"node_id": 5', '"|'), "heartbeat_ms"), ["heartbeat_ms"])
+
+    def test_options_are_completed_and_described(self) -> None:
+        """Expected are texts of docs/options.md, and objects of the device beside the options."""
+        self.write("small.eds", SHEET)
+        good = '{"sdo": {"timeout": 500},\n "meaning": {"2000h": {"unit": "degC"}},\n "cpp": 0}'
+        self.uri = self.client.open(self.write("small.options.json", good))
+        for typed, label in (('{"|": 1}', "storage"), ('{"|": 1}', "meaning"), ('{"sdo": {"|": 1}}', "timeout"),
+                             ('{"meaning": {"|": {}}}', "2000h"), ('{"meaning": {"2000h": {"|": 1}}}', "scale"),
+                             ('{"names": {"|": "x"}}', "1018h:01")):
+            with self.subTest(typed):
+                self.assertEqual(self.complete(typed, label), [label])
+        self.assertEqual(self.complete('{"sdo": {"|": 1}}', "scale"), [])
+        self.client.replace(self.uri, good)
+        page = (SOURCE_DIR / "docs/options.md").read_text(encoding="utf-8")
+        (row,) = [line for line in page.splitlines() if line.startswith("| `sdo.timeout` |")]
+        timeout = self.client.at("hover", self.uri, 0, good.index("timeout") + 1)["contents"]["value"]
+        self.assertIn(row.split(" | ")[1], timeout)
+        second = good.splitlines()[1]
+        self.assertIn("2000h:00 Temperature", self.client.at("hover", self.uri, 1, second.index("2000h") + 1)["contents"]["value"])
+        self.assertIn("unit of the physical value", self.client.at("hover", self.uri, 1, second.index("unit") + 1)["contents"]["value"])
+
+    def test_deviations_are_completed_and_described(self) -> None:
+        listed = subprocess.run([EDSC, "conform", "--list"], capture_output=True, text=True, check=True).stdout
+        number, title = re.search(r"(?m)^  (\d+\.\d+) +(.*) \(CiA", listed).groups()
+        good = '{"deviations": [{"case": "' + number + '", "reason": "x"}]}'
+        self.uri = self.client.open(self.write("small.deviations.json", good))
+        self.assertEqual(self.complete(good.replace(number, "|"), number), [number])
+        self.assertEqual(self.complete(good.replace("reason", "|"), "source"), ["source"])
+        self.client.replace(self.uri, good)
+        self.assertIn(title.split("`")[0][:20], self.client.at("hover", self.uri, 0, good.index(number) + 1)["contents"]["value"])
 
     def test_definition_and_references(self) -> None:
         uri, text = self.small()

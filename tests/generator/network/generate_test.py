@@ -426,7 +426,7 @@ class Generate(unittest.TestCase):
         text = PLANT.replace('"a": {"node_id": 1, "eds": "node.eds"', '"a": {"node_id": 1, "eds": "pump.eds"')
         self.generate(text)
         found = self.run_program("""
-            #include <canopen/host/plant_text.hpp>
+            #include <canopen_plant/plant_text.hpp>
             #include <plant.hpp>
             int main() {
               for (const canopen::PlantNode& node : plant::Network::nodes) {
@@ -472,7 +472,7 @@ class Generate(unittest.TestCase):
         self.assertIn('/// 2000h:00 "Speed" UNSIGNED16 in 0.01 V, a TPDO 1 to m RPDO 1', header)
         self.assertRegex(header, r'2003h:00 "Target position" INTEGER32.*, -1 back, 0 home, 1 away')
         found = self.run_program("""
-            #include <canopen/plant/plant.hpp>
+            #include <canopen_plant/plant.hpp>
             #include <cstdio>
             #include <plant.hpp>
             #include <type_traits>

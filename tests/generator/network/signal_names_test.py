@@ -69,7 +69,7 @@ class SignalNames(unittest.TestCase):
     def compile(self, statement: str) -> None:
         result = subprocess.run(["c++", "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Werror", "-I",
                                  SOURCE_DIR / "runtime/include", "-I", self.out, "-x", "c++", "-"],
-                                input=f"#include <canopen/host/host_bus.hpp>\n#include <canopen/master.hpp>\n#include <canopen/plant/plant.hpp>\n#include <plant.hpp>\n{statement}\n", capture_output=True,
+                                input=f"#include <canopen/host/host_bus.hpp>\n#include <canopen/master.hpp>\n#include <canopen_plant/plant.hpp>\n#include <plant.hpp>\n{statement}\n", capture_output=True,
                                 text=True)
         self.assertEqual(result.returncode, 0, result.stderr)
 

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <canopen/host/host_loop.hpp>
-#include <canopen/host/simulated_node.hpp>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/os/node_task.hpp>
+#include <canopen_sim/simulated_node.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <deque>
 #include <optional>
 #include <sample/device.hpp>

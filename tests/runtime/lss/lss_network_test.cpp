@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/lss/lss_master.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <deque>
 #include <random>
 #include <tuple>

@@ -10,10 +10,10 @@
 ///     toggle bits.
 #include <gtest/gtest.h>
 
-#include <canopen/host/bus_faults.hpp>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/node.hpp>
 #include <canopen/sdo/sdo_client.hpp>
+#include <canopen_sim/bus_faults.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <every_service/device.hpp>
 
 #include <algorithm>

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <can_2053c/device.hpp>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/nmt/node_guarding.hpp>
 #include <canopen/node.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <cpc_tc1/device.hpp>
 #include <cpd/device.hpp>
 #include <rk5c/device.hpp>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/nmt_master/nmt_master.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 
 #include <chrono>
 #include <cstdint>

@@ -1,7 +1,7 @@
 /// Error control by the NMT master: node guarding, heartbeats, and lost slaves.
 #include <gtest/gtest.h>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/nmt_master/nmt_master.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 
 #include <algorithm>
 #include <array>

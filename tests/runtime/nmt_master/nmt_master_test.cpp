@@ -1,7 +1,7 @@
 /// The NMT master: commands, the boot-up of slaves, and NMT start-up.
 #include <gtest/gtest.h>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/nmt_master/nmt_master.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 
 #include <array>
 #include <string>

@@ -2,9 +2,9 @@
 /// the master cannot send. No late frame is mistaken for another one, and after the faults all slaves are booted,
 /// configured and Operational.
 #include <gtest/gtest.h>
-#include <canopen/host/bus_faults.hpp>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/nmt_master/nmt_master.hpp>
+#include <canopen_sim/bus_faults.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 
 #include <array>
 #include <list>

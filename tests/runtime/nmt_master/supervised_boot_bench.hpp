@@ -1,8 +1,8 @@
 /// Slaves with faults on a virtual bus, their network list, and what a master does with each fault.
 #pragma once
 
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/nmt_master/network_list.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 
 #include <cstdint>
 #include <list>

@@ -2,9 +2,9 @@
 /// firmware are never started without their configuration, and the master reports the fault. The slaves do not use the
 /// runtime.
 #include <gtest/gtest.h>
-#include <canopen/host/bus_faults.hpp>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/nmt_master/nmt_master.hpp>
+#include <canopen_sim/bus_faults.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 
 #include <chrono>
 #include <cstdint>
@@ -209,8 +209,9 @@ TEST(SupervisedBoot, AMasterThatReadsOneHeartbeatLateStartsTheSlave) {
   Network network{{listed(5, 200)}};
   faulty::Slave& slave = network.add({.values = {}});
   std::optional<canopen::Frame> late;
-  network.end.on_frame = [&, read = network.end.on_frame, is_first = true](const canopen::Frame& frame,
-                                                                           canopen::TimePoint now) mutable {
+  network.end.on_frame = [&,
+                          read = std::function<void(const canopen::Frame&, canopen::TimePoint)>{network.end.on_frame},
+                          is_first = true](const canopen::Frame& frame, canopen::TimePoint now) mutable {
     const bool is_heartbeat = frame.id == 0x705 && frame.data[0] == 0x7F;
     if (is_heartbeat && is_first) {
       late = frame;

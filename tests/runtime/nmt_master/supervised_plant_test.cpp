@@ -1,9 +1,9 @@
 /// The supervised boot-up in a plant: what the master of a network does with slaves that have faults, and what its
 /// application and its log learn.
 #include <gtest/gtest.h>
-#include <canopen/host/plant_text.hpp>
-#include <canopen/host/virtual_bus.hpp>
-#include <canopen/plant/plant.hpp>
+#include <canopen_plant/plant.hpp>
+#include <canopen_plant/plant_text.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <sample/device.hpp>
 
 #include <array>

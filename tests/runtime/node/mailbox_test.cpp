@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/node/mailbox.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 
 #include <type_traits>
 

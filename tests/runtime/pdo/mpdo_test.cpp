@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <canopen/host/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 #include <mpdo_device/device.hpp>
 #include <pdo_device/device.hpp>
 #include <span>

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 #include <canopen/host/blocking_sdo.hpp>
-#include <canopen/host/virtual_bus_port.hpp>
 #include <canopen/sdo/remote_node.hpp>
+#include <canopen_sim/virtual_bus_port.hpp>
 
 #include <array>
 #include <cmath>

@@ -1,7 +1,7 @@
 /// The SDO client: expedited and segmented transfers, errors of the server, and time-outs.
 #include <gtest/gtest.h>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/sdo/sdo_client.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 
 #include <array>
 #include <string>

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <canopen/host/master.hpp>
-#include <canopen/host/virtual_bus.hpp>
-#include <canopen/host/virtual_bus_port.hpp>
 #include <canopen/sdo/sdo_client.hpp>
+#include <canopen_sim/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus_port.hpp>
 
 #include <optional>
 #include <typed_drive/device.hpp>

@@ -2,13 +2,13 @@
 
 #include <canopen/base/lock.hpp>
 #include <canopen/host/blocking_sdo.hpp>
-#include <canopen/host/virtual_bus.hpp>
-#include <canopen/host/virtual_bus_port.hpp>
 #include <canopen/node.hpp>
 #include <canopen/node/locked.hpp>
 #include <canopen/node/mailbox.hpp>
 #include <canopen/pdo/pdo_compatible.hpp>
 #include <canopen/sdo/remote_node.hpp>
+#include <canopen_sim/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus_port.hpp>
 
 #include <array>
 #include <cstdint>

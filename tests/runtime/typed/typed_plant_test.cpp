@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <canopen/plant/plant.hpp>
+#include <canopen_plant/plant.hpp>
 
 #include <array>
 #include <cstdint>

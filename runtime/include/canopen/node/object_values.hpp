@@ -47,10 +47,10 @@ class ObjectValues : public ObjectSetters<NodeType> {
   requires object_values_detail::Arithmetic<Array<whole_array>>
   [[nodiscard]] Result<typename Array<whole_array>::type> get(Array<whole_array>, std::uint8_t sub_index) {
     using Element = Array<whole_array>;
-    const entry::Word word = node().entries().find(Element::index, sub_index);
+    const entry::Word word = node().host().entries().find(Element::index, sub_index);
     if (sub_index == 0 || word <= Dictionary::no_sub_index) return AbortCode::no_sub_index;
     std::array<std::uint8_t, 8> bytes{};
-    std::ranges::copy(node().entries().read(word, bytes), bytes.begin());
+    std::ranges::copy(node().host().entries().read(word, bytes), bytes.begin());
     return value_detail::value_from<Element>(bytes);
   }
 

@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <tuple>
 #include <utility>
 
@@ -45,8 +46,10 @@ struct FixedString : Object {
   static_assert(Bytes <= Object::type::capacity(), "the entry is longer than the string can be");
 };
 
+inline constexpr std::uint16_t first_object = 0x0020;  ///< indices below are those of data types
+
 template <class Object>
-inline constexpr bool is_dummy = Object::index < 0x0020;
+inline constexpr bool is_dummy = Object::index < first_object;
 
 /// An object whose length does not depend on its value: not a string or DOMAIN.
 template <class Object>
@@ -74,6 +77,14 @@ struct MappedObject {
   static constexpr bool is_good = true;
   static_assert(Found, "this PDO does not map the object");
 };
+
+template <class Object, class Call>
+struct CalledParameter : value_for_detail::CheckedParameter<Object> {};
+
+/// CheckedParameterFor<Object> of a function template, which the compiler makes only for a function that is called: a
+/// device with a thousand layouts compiles in half the time.
+template <class Object, class Call>
+using ParameterOfCall = typename CalledParameter<Object, Call>::type;
 
 // Checks one entry at a time, so that the compiler's message names the wrong one.
 
@@ -105,23 +116,41 @@ struct RpdoEntry {
 /// Whether each object can be mapped into a PDO of this direction.
 template <class... Objects, std::size_t... Position>
 [[nodiscard]] constexpr auto check_tpdo(std::index_sequence<Position...> /*entries*/) {
-  return canopen::first_failure(
-      VerdictOf<TpdoMappable<Objects>, TpdoEntry<EntryNumber<Position + 1>, LabelOf<Objects>, Objects>>{}...);
+  if constexpr ((allows(Objects::mappable, Mappable::tpdo) && ...))
+    return canopen::first_failure();
+  else
+    return canopen::first_failure(
+        VerdictOf<TpdoMappable<Objects>, TpdoEntry<EntryNumber<Position + 1>, LabelOf<Objects>, Objects>>{}...);
 }
 template <class... Objects, std::size_t... Position>
 [[nodiscard]] constexpr auto check_rpdo(std::index_sequence<Position...> /*entries*/) {
-  return canopen::first_failure(
-      VerdictOf<RpdoMappable<Objects>, RpdoEntry<EntryNumber<Position + 1>, LabelOf<Objects>, Objects>>{}...);
+  if constexpr ((allows(Objects::mappable, Mappable::rpdo) && ...))
+    return canopen::first_failure();
+  else
+    return canopen::first_failure(
+        VerdictOf<RpdoMappable<Objects>, RpdoEntry<EntryNumber<Position + 1>, LabelOf<Objects>, Objects>>{}...);
 }
 
-/// First bit of each entry, and the end of the last one.
-template <class... Objects>
-inline constexpr std::array<unsigned, sizeof...(Objects) + 1> offsets_of = [] {
-  std::array<unsigned, sizeof...(Objects) + 1> at{};
-  unsigned i = 0;
-  ((at[i + 1] = at[i] + Objects::bits, ++i), ...);
+/// First bit of each entry of these lengths, and the end of the last one.
+template <std::size_t Entries>
+[[nodiscard]] constexpr std::array<unsigned, Entries + 1> offsets_of(const std::array<unsigned, Entries>& bits) {
+  std::array<unsigned, Entries + 1> at{};
+  for (std::size_t i = 0; i < Entries; ++i) at[i + 1] = at[i] + bits[i];
   return at;
-}();
+}
+
+/// Whether entries of these lengths, none of which is 0, fit into a frame.
+[[nodiscard]] constexpr bool fit_into_a_frame(std::initializer_list<unsigned> bits) {
+  unsigned end = 0;
+  for (const unsigned length : bits) {
+    if (length == 0) return false;
+    end += length;
+  }
+  return end <= 64;
+}
+
+template <class... Objects>
+inline constexpr std::array<unsigned, sizeof...(Objects)> lengths_of{Objects::bits...};
 
 /// Whether an object has a fixed length and ends within the frame. Only the first object that does not end within it is
 /// reported; more than 64 objects are reported by the layout.
@@ -134,8 +163,12 @@ template <class Number, class Object, unsigned Begin, bool IsReported>
 }
 template <class... Objects, std::size_t... Position>
 [[nodiscard]] constexpr auto check_room(std::index_sequence<Position...> /*entries*/) {
-  return canopen::first_failure(check_entry_room<EntryNumber<Position + 1>, Objects, offsets_of<Objects...>[Position],
-                                                 sizeof...(Objects) <= 64>()...);
+  if constexpr (fit_into_a_frame({Objects::bits...}))
+    return canopen::first_failure();
+  else
+    return canopen::first_failure(
+        check_entry_room<EntryNumber<Position + 1>, Objects, offsets_of(lengths_of<Objects...>)[Position],
+                         sizeof...(Objects) <= 64>()...);
 }
 
 }  // namespace pdo_detail
@@ -157,7 +190,8 @@ struct PdoLayout {
   using Values = std::tuple<typename Objects::type...>;
 
   /// First bit of each entry, and the end of the last one.
-  static constexpr std::array<unsigned, entries + 1> offsets = pdo_detail::offsets_of<Objects...>;
+  static constexpr std::array<unsigned, entries + 1> offsets =
+      pdo_detail::offsets_of(pdo_detail::lengths_of<Objects...>);
 
   /// The object of entry `Position`.
   template <std::size_t Position>
@@ -178,14 +212,16 @@ struct PdoLayout {
   /// Returns the data bytes for these values. A value has the type of its object or a narrower one, or is a constant,
   /// whose limits the compiler checks. A variable for an object with limits, or with fewer bits than its type, is a
   /// CheckedValue. Anything else does not compile.
-  [[nodiscard]] static constexpr Data pack(CheckedParameterFor<Objects>... values) {
+  template <class Call = void>
+  [[nodiscard]] static constexpr Data pack(pdo_detail::ParameterOfCall<Objects, Call>... values) {
     Data data{};
     pack_aligned<1>(data, value_for_detail::value_in(values)...);
     return data;
   }
 
   /// Writes these values to the first `size` bytes.
-  static constexpr void pack_into(Data& data, CheckedParameterFor<Objects>... values) {
+  template <class Call = void>
+  static constexpr void pack_into(Data& data, pdo_detail::ParameterOfCall<Objects, Call>... values) {
     pack_aligned<1>(data, value_for_detail::value_in(values)...);
   }
 
@@ -198,7 +234,8 @@ struct PdoLayout {
   }
 
   /// The same for a frame; sets its length.
-  static constexpr void pack_into(Frame& frame, CheckedParameterFor<Objects>... values) {
+  template <class Call = void>
+  static constexpr void pack_into(Frame& frame, pdo_detail::ParameterOfCall<Objects, Call>... values) {
     frame.size = size;
     pack_aligned<pdo_detail::frame_data_align>(frame.data, value_for_detail::value_in(values)...);
   }

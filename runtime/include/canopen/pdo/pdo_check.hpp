@@ -21,18 +21,6 @@ namespace canopen {
 
 namespace pdo_detail {
 
-/// Whether the length of a mapping entry fits the object in the dictionary: a BOOLEAN may occupy a byte, a string up to
-/// its capacity.
-template <class Object>
-[[nodiscard]] constexpr bool length_fits(entry::Word word) {
-  if (entry::is_boolean(word)) return Object::bits == 1 || Object::bits == 8;
-  if constexpr (StringValue<typename Object::type>) {
-    return entry::is_string(word) && Object::bits % 8 == 0 && Object::bits <= 8 * Object::type::capacity();
-  } else {
-    return Object::bits == 8 * entry::wire_bytes(word);
-  }
-}
-
 // One check per entry or PDO, so that the compiler's message names it. A failed assertion is not repeated by
 // later ones.
 
@@ -51,28 +39,68 @@ enum class EntryFault : std::uint8_t {
   granularity,
 };
 
-/// A layout with a direction has checked it, and each layout its length.
-template <const Dictionary& DeviceDictionary, class Pdo, class Layout, class Object, unsigned Granularity>
-[[nodiscard]] constexpr EntryFault fault_of() {
-  constexpr entry::Word word = DeviceDictionary.find(Object::index, Object::sub_index);
-  constexpr bool is_directed = requires { Layout::has_direction; };
-  if constexpr (is_dummy<Object>) {
-    if (!Pdo::receive) return EntryFault::dummy_in_a_tpdo;
-    if (Object::index <= 0x0008 && Object::bits != dummy_bits[Object::index > 0x0008 ? 0 : Object::index])
+/// What a check reads of a mapped object. Not a template, so that the compiler makes one check for all objects.
+struct CheckedObject {
+  std::uint16_t index;
+  std::uint8_t sub_index;
+  unsigned bits;
+  Mappable mappable;
+  unsigned string_bits;  ///< of a string that fills its capacity; 0 for other values
+};
+
+template <class Type>
+inline constexpr unsigned string_bits = 0;
+template <StringValue Type>
+inline constexpr unsigned string_bits<Type> = 8 * Type::capacity();
+
+template <class Object>
+inline constexpr CheckedObject checked_object{Object::index, Object::sub_index, Object::bits, Object::mappable,
+                                              string_bits<typename Object::type>};
+
+/// Whether the length of a mapping entry fits the object in the dictionary: a BOOLEAN may occupy a byte, a string up to
+/// its capacity.
+[[nodiscard]] constexpr bool length_fits(const CheckedObject& object, entry::Word word) {
+  if (entry::is_boolean(word)) return object.bits == 1 || object.bits == 8;
+  if (object.string_bits != 0)
+    return entry::is_string(word) && object.bits % 8 == 0 && object.bits <= object.string_bits;
+  return object.bits == 8 * entry::wire_bytes(word);
+}
+
+/// A layout with a direction (`is_directed`) has checked it, and each layout its length.
+[[nodiscard]] constexpr EntryFault fault_of(const CheckedObject& object, const Dictionary& dictionary, bool is_directed,
+                                            bool receive, unsigned granularity) {
+  if (object.index < first_object) {
+    if (!receive) return EntryFault::dummy_in_a_tpdo;
+    if (object.index < std::size(dummy_bits) && object.bits != dummy_bits[object.index])
       return EntryFault::dummy_of_another_length;
   } else {
+    const entry::Word word = dictionary.find(object.index, object.sub_index);
     if (word == Dictionary::no_object) return EntryFault::no_object;
     if (word == Dictionary::no_sub_index) return EntryFault::no_sub_index;
     const bool maps_nothing = (word & (entry::tpdo | entry::rpdo)) == 0;
-    const bool maps_here = (word & (Pdo::receive ? entry::rpdo : entry::tpdo)) != 0;
+    const bool maps_here = (word & (receive ? entry::rpdo : entry::tpdo)) != 0;
     if (maps_nothing)
-      return is_directed && Object::mappable == Mappable::no ? EntryFault::none : EntryFault::not_mappable;
-    if (!maps_here) return Pdo::receive ? EntryFault::not_in_an_rpdo : EntryFault::not_in_a_tpdo;
+      return is_directed && object.mappable == Mappable::no ? EntryFault::none : EntryFault::not_mappable;
+    if (!maps_here) return receive ? EntryFault::not_in_an_rpdo : EntryFault::not_in_a_tpdo;
     if (entry::is_domain(word)) return EntryFault::no_fixed_length;
-    if (Object::bits == 0) return EntryFault::none;
-    if (!length_fits<Object>(word)) return EntryFault::other_length;
+    if (object.bits == 0) return EntryFault::none;
+    if (!length_fits(object, word)) return EntryFault::other_length;
   }
-  return Object::bits % Granularity != 0 ? EntryFault::granularity : EntryFault::none;
+  return object.bits % granularity != 0 ? EntryFault::granularity : EntryFault::none;
+}
+
+template <class Layout>
+inline constexpr bool is_directed = requires {
+  Layout::has_direction;
+};
+
+/// Whether no entry of a layout has a fault.
+template <class... Objects>
+[[nodiscard]] constexpr bool entries_are_right(const PdoLayout<Objects...>* /*layout*/,
+                                               [[maybe_unused]] const Dictionary& dictionary,
+                                               [[maybe_unused]] bool directed, [[maybe_unused]] bool receive,
+                                               [[maybe_unused]] unsigned granularity) {
+  return ((fault_of(checked_object<Objects>, dictionary, directed, receive, granularity) == EntryFault::none) && ...);
 }
 
 template <const Dictionary& DeviceDictionary, class Pdo, class Number, class Label, class Object, EntryFault Fault>
@@ -109,14 +137,20 @@ struct CheckedCobId {
 
 template <const Dictionary& DeviceDictionary, class Pdo, class Number, class Layout, class Object, unsigned Granularity>
 [[nodiscard]] constexpr auto check_entry() {
-  constexpr EntryFault fault = fault_of<DeviceDictionary, Pdo, Layout, Object, Granularity>();
+  constexpr EntryFault fault =
+      fault_of(checked_object<Object>, DeviceDictionary, is_directed<Layout>, Pdo::receive, Granularity);
   return VerdictOf<fault == EntryFault::none,
                    CheckedEntry<DeviceDictionary, Pdo, Number, LabelOf<Object>, Object, fault>>{};
 }
+/// Looks at single entries only if one has a fault: most of the compile time of a device with many PDOs was theirs.
 template <const Dictionary& DeviceDictionary, class Pdo, class Layout, unsigned Granularity, std::size_t... Position>
 [[nodiscard]] constexpr auto check_entries(std::index_sequence<Position...> /*entries*/) {
-  return canopen::first_failure(check_entry<DeviceDictionary, Pdo, EntryNumber<Position + 1>, Layout,
-                                            typename Layout::template Entry<Position>, Granularity>()...);
+  if constexpr (entries_are_right(static_cast<const Layout*>(nullptr), DeviceDictionary, is_directed<Layout>,
+                                  Pdo::receive, Granularity))
+    return canopen::first_failure();
+  else
+    return canopen::first_failure(check_entry<DeviceDictionary, Pdo, EntryNumber<Position + 1>, Layout,
+                                              typename Layout::template Entry<Position>, Granularity>()...);
 }
 
 template <const Dictionary& DeviceDictionary, class Pdo, class Layout, PdoParameters Communication,

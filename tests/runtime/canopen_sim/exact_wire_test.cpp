@@ -2,7 +2,7 @@
 /// with CAN-ID 0 and without data has 47 bits and 6 stuff bits.
 #include <gtest/gtest.h>
 #include <canopen/can/frame_length.hpp>
-#include <canopen/host/virtual_bus.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 
 #include <cstdint>
 #include <string>

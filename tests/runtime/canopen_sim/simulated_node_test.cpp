@@ -1,7 +1,7 @@
 /// A device behind one interface: from power-on to power-off, with and without an application.
 #include <gtest/gtest.h>
-#include <canopen/host/simulated_node.hpp>
 #include <canopen/node/handlers.hpp>
+#include <canopen_sim/simulated_node.hpp>
 
 #include <every_service/device.hpp>
 #include <memory>

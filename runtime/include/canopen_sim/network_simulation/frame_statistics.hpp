@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "canopen/can/arbitration.hpp"
-#include "canopen/host/network_simulation/network_plan.hpp"
-#include "canopen/host/virtual_bus.hpp"
+#include "canopen_sim/network_simulation/network_plan.hpp"
+#include "canopen_sim/virtual_bus.hpp"
 
 namespace canopen::network_simulation {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "canopen/host/simulated_node.hpp"
+#include "canopen_sim/simulated_node.hpp"
 
 namespace canopen::network_simulation {
 

@@ -12,12 +12,12 @@
 #include <string_view>
 #include <vector>
 
-#include "canopen/host/network_simulation/changing_values.hpp"
-#include "canopen/host/network_simulation/heartbeat_watch.hpp"
-#include "canopen/host/network_simulation/network_plan.hpp"
-#include "canopen/host/virtual_bus.hpp"
 #include "canopen/nmt_master/concise_dcf.hpp"
 #include "canopen/sdo/sdo_client.hpp"
+#include "canopen_sim/network_simulation/changing_values.hpp"
+#include "canopen_sim/network_simulation/heartbeat_watch.hpp"
+#include "canopen_sim/network_simulation/network_plan.hpp"
+#include "canopen_sim/virtual_bus.hpp"
 
 namespace canopen::network_simulation {
 

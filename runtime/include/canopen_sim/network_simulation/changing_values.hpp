@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "canopen/base/bytes.hpp"
-#include "canopen/host/network_simulation/network_plan.hpp"
+#include "canopen_sim/network_simulation/network_plan.hpp"
 
 namespace canopen::network_simulation {
 

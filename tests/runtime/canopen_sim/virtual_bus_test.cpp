@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
-#include <canopen/host/virtual/key_tree.hpp>
-#include <canopen/host/virtual_bus.hpp>
 #include <canopen/node.hpp>
+#include <canopen_sim/virtual/key_tree.hpp>
+#include <canopen_sim/virtual_bus.hpp>
 
 #include <algorithm>
 #include <random>

@@ -18,30 +18,32 @@ class AcceptanceTable {
  public:
   static constexpr std::size_t no_place = static_cast<std::size_t>(-1);
 
-  /// Sets the number of receivers; none accepts a frame before `accept` or `accept_all`.
+  /// Adds receivers, which do not accept a frame before `accept` or `accept_all`.
   void resize(std::size_t places) {
-    words_ = (places + bits - 1) / bits;
-    table_.assign(rows * words_, 0);
-    lists_.assign(places, {});
+    lists_.resize(places);
+    const std::size_t words = (places + bits - 1) / bits;
+    if (words == words_) return;
+    words_ = words;
+    all_.resize(words);
+    table_.assign(rows * words, 0);
+    for (std::size_t place = 0; place < places; ++place) {
+      for (const AcceptedFrame& frame : lists_[place]) set(row_of(frame), place);
+    }
   }
-
-  [[nodiscard]] std::size_t size() const { return lists_.size(); }
 
   /// Replaces the list of a receiver. Takes little time if it is the same as before.
   void accept(std::size_t place, const std::vector<AcceptedFrame>& frames) {
     List& list = lists_[place];
-    if (!list.all && list.frames == frames) return;
-    clear(place);
-    list.frames = frames;
-    for (const AcceptedFrame& frame : frames) set(row_of(frame), place);
+    if (list == frames) return;
+    for (const AcceptedFrame& frame : list) reset(row_of(frame), place);
+    list = frames;
+    for (const AcceptedFrame& frame : list) set(row_of(frame), place);
   }
 
-  /// The receiver accepts each frame.
-  void accept_all(std::size_t place) {
-    if (lists_[place].all) return;
-    lists_[place].frames.clear();
-    lists_[place].all = true;
-    for (std::size_t row = 0; row < rows; ++row) set(row, place);
+  /// Whether the receiver accepts each frame; otherwise, those of its list.
+  void accept_all(std::size_t place, bool all) {
+    const Word bit = Word{1} << (place % bits);
+    all ? all_[place / bits] |= bit : all_[place / bits] &= ~bit;
   }
 
   /// Returns the first receiver of this frame from `from` on; `no_place` if there is none.
@@ -49,10 +51,10 @@ class AcceptanceTable {
     const Word* row = &table_[row_of({frame.id, frame.extended, frame.remote}) * words_];
     std::size_t word = from / bits;
     if (word >= words_) return no_place;
-    Word rest = row[word] & (~Word{0} << (from % bits));
+    Word rest = (row[word] | all_[word]) & (~Word{0} << (from % bits));
     while (rest == 0) {
       if (++word == words_) return no_place;
-      rest = row[word];
+      rest = row[word] | all_[word];
     }
     return word * bits + static_cast<std::size_t>(std::countr_zero(rest));
   }
@@ -63,10 +65,7 @@ class AcceptanceTable {
   static constexpr std::size_t extended_row = 2 * 0x800;
   static constexpr std::size_t rows = extended_row + 1;
 
-  struct List {
-    std::vector<AcceptedFrame> frames;
-    bool all = false;
-  };
+  using List = std::vector<AcceptedFrame>;
 
   [[nodiscard]] static std::size_t row_of(const AcceptedFrame& frame) {
     return frame.extended ? extended_row : (frame.id & 0x7FF) + (frame.remote ? 0x800u : 0u);
@@ -77,14 +76,8 @@ class AcceptanceTable {
     table_[row * words_ + place / bits] &= ~(Word{1} << (place % bits));
   }
 
-  void clear(std::size_t place) {
-    List& list = lists_[place];
-    for (const AcceptedFrame& frame : list.frames) reset(row_of(frame), place);
-    for (std::size_t row = 0; list.all && row < rows; ++row) reset(row, place);
-    list.all = false;
-  }
-
   std::size_t words_ = 0;    ///< of a row
+  std::vector<Word> all_;    ///< a row: the receivers of each frame
   std::vector<Word> table_;  ///< a row for each CAN-ID of data frames, then of remote frames, then for extended ones
   std::vector<List> lists_;  ///< of each receiver
 };
