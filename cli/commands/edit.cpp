@@ -14,6 +14,7 @@
 #include "shared/git_file.hpp"
 #include "shared/output.hpp"
 #include "system/available_input.hpp"
+#include "system/memory_arenas.hpp"
 #include "system/run_program.hpp"
 #include "text/printable.hpp"
 #include "web/edit_page.hpp"
@@ -86,6 +87,7 @@ void open_browser(const std::string& url) {
 }
 
 int edit_in_browser(const Settings& settings) {
+  share_memory_between_threads();  // each request reads the file in the thread of its connection
   edit::EditSession session = open_session(settings);
   if (!session.problem().empty()) fail(session.problem());
   if (!session.journal_problem().empty()) {
