@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Files of vendors and their prefixes in `edsc lsp`: the findings are those of `edsc check`. Exit code 77: EDSC_CORPUS names no folder.
+"""Files of vendors and their prefixes in `edsc lsp`: the findings are those of `edsc check`.
+Without a corpus (see tests/corpus/corpus_test.py) the test is skipped.
 
-    corpus_test.py SOURCE_DIR EDSC [unittest arguments]
+    lsp_corpus_test.py SOURCE_DIR EDSC [unittest arguments]
 """
 
 from __future__ import annotations
 
-import os
 import random
 import sys
 import tempfile
@@ -16,12 +16,17 @@ from pathlib import Path
 from lsp_client import Client
 from lsp_test import EDSC, check, published_form, server_form
 
-CORPUS = Path(os.environ.get("EDSC_CORPUS", ""))
+sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parents[2] / "corpus")]
+from corpus_test import find_corpus  # noqa: E402
+from support.compilers import SKIPPED  # noqa: E402
+
+CORPUS = find_corpus(Path(sys.argv[1]).resolve())
 PREFIXES = 2  # of each file
 
 
 class Corpus(unittest.TestCase):
     def test_prefixes(self) -> None:
+        assert CORPUS is not None
         source = random.Random(3)
         files = sorted(path for path in CORPUS.rglob("*") if path.suffix.lower() in (".eds", ".dcf"))
         self.assertTrue(files)
@@ -50,7 +55,7 @@ class Corpus(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if not os.environ.get("EDSC_CORPUS") or not CORPUS.is_dir():
-        print("skipped: EDSC_CORPUS does not name a folder")
-        sys.exit(77)
+    if CORPUS is None:
+        print("SKIPPED: no corpus; set EDSC_CORPUS to its folder")
+        sys.exit(SKIPPED)
     unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
