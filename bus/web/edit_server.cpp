@@ -15,6 +15,7 @@
 
 #include "server/listen_address.hpp"
 #include "web/bounded_server.hpp"
+#include "web/http_status.hpp"
 #include "web/page_headers.hpp"
 #include "web/request_guard.hpp"
 
@@ -24,8 +25,7 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr int ok = 200, bad_request = 400, forbidden = 403, not_found = 404, method_not_allowed = 405,
-              length_required = 411, too_large = 413, wrong_type = 415, no_range = 416;
+using namespace http_status;
 
 constexpr const char* session_header = "X-Edsc-Session";
 constexpr std::size_t max_header_bytes = 16'384;
@@ -242,9 +242,9 @@ class EditServer::Implementation {
     return ok;
   }
 
-  static void answer(httplib::Response& response, JsonAnswer json) {
+  static void answer(httplib::Response& response, const JsonAnswer& json) {
     response.status = json.status;
-    response.set_content(std::move(json.body), json_type);
+    response.set_content(json.body, json_type);
   }
 
   void note_page() {

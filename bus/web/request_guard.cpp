@@ -10,12 +10,13 @@
 #include <random>
 
 #include "text/ascii.hpp"
+#include "web/http_status.hpp"
 
 namespace edsc {
 namespace {
 
 constexpr std::uint16_t default_port = 80;
-constexpr int ok = 200, forbidden = 403, method_not_allowed = 405, misdirected = 421, no_range = 416;
+using namespace http_status;
 
 std::string lower(std::string_view text) {
   std::string out{text};
