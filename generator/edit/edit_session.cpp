@@ -306,7 +306,7 @@ void EditSession::apply(const nlohmann::json& requests, bool is_forced) {
                         : !applied.objections.empty() ? applied.objections.front()
                         : !applied.new_errors.empty() ? applied.new_errors.front().message
                                                       : "the change is rejected";
-    throw rejection;
+    throw Rejection{std::move(rejection)};
   }
   if (applied.edits.empty()) return;
   const std::string name = name_of(read.changes);
