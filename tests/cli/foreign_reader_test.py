@@ -172,7 +172,7 @@ class ForeignReader(unittest.TestCase):
         print(f"{loaded} files, {self.changed} changes, {self.refused} refused, {self.compared} values compared")
         self.assertGreater(loaded, 10)
         self.assertGreater(self.changed, 2 * loaded)
-        self.assertGreater(self.compared, 100)
+        self.assertGreater(self.compared, loaded)
 
 
 if __name__ == "__main__":
