@@ -22,7 +22,7 @@ from pathlib import Path
 
 SOURCE_DIR = Path(sys.argv[1]).resolve()
 sys.path.insert(0, str(SOURCE_DIR / "tests/document"))
-from document_case import CHROMIUM, WORK, Skipped, install_npm_packages  # noqa: E402
+from document_case import CHROMIUM, WORK, install_browser  # noqa: E402
 
 SKIPPED = 77
 TERMS = ("heartbeat", "COB-ID", "socketcan", "pdo-length", "EMCY", "LSS", "1010h", "overlay", "edsc_add_dictionary",
@@ -113,12 +113,7 @@ class Site(unittest.TestCase):
         self.assertEqual(names, [self.site.name, "0.0.9"])
 
     def test_in_a_browser(self) -> None:
-        try:
-            install_npm_packages(SOURCE_DIR / "tests/document/browser", WORK)
-            if CHROMIUM is None:
-                raise Skipped("chromium is not installed")
-        except Skipped as reason:
-            self.skipTest(str(reason))
+        install_browser(SOURCE_DIR, WORK)
         files = [self.site / name for name in ("index.html", "tutorial.html", "how-to/storage.html", "application.html",
                                                  "command-line.html", "changelog.html", "stability.html", "how-to/audit.html")]
         result = subprocess.run(["node", "pages.mjs", CHROMIUM, "site", *files], cwd=WORK, capture_output=True, text=True)

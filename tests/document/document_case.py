@@ -14,9 +14,8 @@ SOURCE_DIR = Path(sys.argv[1]).resolve()
 EDSC = Path(sys.argv[2]).resolve()
 WORK = Path(sys.argv[3]).resolve()
 sys.path[:0] = [str(SOURCE_DIR / "tests/support"), str(SOURCE_DIR / "tests/masters")]
-from npm_packages import Skipped, install_npm_packages  # noqa: E402
+from browser import CHROMIUM, install_browser  # noqa: E402
 
-CHROMIUM = shutil.which("chromium")
 DEVICES = sorted((SOURCE_DIR / "eds").glob("*.eds"))
 
 HEAD = """[FileInfo]
@@ -50,13 +49,7 @@ class DocumentCase(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls) -> None:
-        try:
-            install_npm_packages(SOURCE_DIR / "tests/document/browser", WORK)
-            if CHROMIUM is None:
-                raise Skipped("chromium is not installed")
-        except Skipped as reason:
-            print(reason, file=sys.stderr)
-            raise unittest.SkipTest(str(reason)) from None
+        install_browser(SOURCE_DIR, WORK)
 
     def setUp(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="edsc-document-"))

@@ -30,9 +30,7 @@ def option(name: str) -> str:
 SCREENSHOTS = option("--screenshots")
 SOURCE_DIR, EDSC, WORK = (Path(argument).resolve() for argument in sys.argv[1:4])
 sys.path.insert(0, str(SOURCE_DIR / "tests/support"))
-from npm_packages import Skipped, install_npm_packages  # noqa: E402
-
-CHROMIUM = shutil.which("chromium")
+from browser import CHROMIUM, install_browser  # noqa: E402
 
 OBJECTS = """
 [ManufacturerObjects]
@@ -83,13 +81,7 @@ class EditPage(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls) -> None:
-        try:
-            install_npm_packages(SOURCE_DIR / "tests/document/browser", WORK)
-            if CHROMIUM is None:
-                raise Skipped("chromium is not installed")
-        except Skipped as reason:
-            print(reason, file=sys.stderr)
-            raise unittest.SkipTest(str(reason)) from None
+        install_browser(SOURCE_DIR, WORK)
 
     def setUp(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="edsc-edit-"))

@@ -14,7 +14,6 @@ import io
 import json
 import re
 import select
-import shutil
 import subprocess
 import sys
 import threading
@@ -40,9 +39,7 @@ from live import SOURCE_DIR, ReferenceDevices, run  # noqa: E402
 
 sys.path.append(str(SOURCE_DIR / "tests/support"))
 sys.path.append(str(SOURCE_DIR / "tests/masters"))
-from npm_packages import Skipped, install_npm_packages  # noqa: E402
-
-CHROMIUM = shutil.which("chromium")
+from browser import CHROMIUM, install_browser  # noqa: E402
 
 
 class Traffic(threading.Thread):
@@ -77,14 +74,6 @@ class MonitorPage(ReferenceDevices):
     def memory_kb(self) -> int:
         return int(re.search(r"VmRSS:\s+(\d+)", Path(f"/proc/{self.monitor.pid}/status").read_text())[1])
 
-    def install(self) -> None:
-        try:
-            install_npm_packages(SOURCE_DIR / "tests/document/browser", WORK)
-            if CHROMIUM is None:
-                raise Skipped("chromium is not installed")
-        except Skipped as reason:
-            self.skipTest(str(reason))
-
     def start_monitor(self, *arguments: object) -> str:
         """Returns the URL."""
         self.monitor = self.start("monitor", *arguments, "--web", "127.0.0.1:0")
@@ -99,7 +88,7 @@ class MonitorPage(ReferenceDevices):
         return json.loads(browser.stdout)
 
     def test_what_a_user_does(self) -> None:
-        self.install()
+        install_browser(SOURCE_DIR, WORK)
         self.start_devices()
         for node_id in self.node_ids:
             self.assertEqual(self.edsc("write", node_id, "1017h", 500, "--type", "u16").returncode, 0)
@@ -142,7 +131,7 @@ class MonitorPage(ReferenceDevices):
         self.assertGreater(len({float(row["value"]) for row in rows}), 5)
 
     def test_rows_of_any_kind(self) -> None:
-        self.install()
+        install_browser(SOURCE_DIR, WORK)
         found = self.browse("monitor_rows.mjs", self.start_monitor())
         self.assertEqual(found["seen"], {"errors": [], "requests": []})
 
