@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -76,6 +77,38 @@ bool fits(std::string_view bytes, const std::vector<ByteEdit>& edits) {
   return true;
 }
 
+/// A beginning with the steps that were read after it.
+struct Beginning {
+  StoredEdits edits;
+  std::string now;         ///< the bytes after the last step
+  std::size_t needed = 1;  ///< steps that were written with it
+  bool is_broken = true;   ///< by a line that is not a step: what follows is not used
+
+  [[nodiscard]] bool is_complete() const { return edits.steps.size() >= needed; }
+};
+
+/// Adds what a line has to the beginnings, of which the last one is read.
+void read_record(std::string_view line, std::vector<Beginning>& beginnings) {
+  if (line.empty()) return;
+  const Json json = Json::parse(line, nullptr, false);
+  try {
+    if (json.contains(begin_record)) {
+      const std::string base = bytes_of_text(json.at(begin_record).get<std::string>());
+      beginnings.push_back({{base, {}}, base, json.at("steps").get<std::size_t>(), false});
+      return;
+    }
+    Beginning& last = beginnings.back();
+    EditStep step = step_of(json);
+    if (!last.is_broken && fits(last.now, step.edits)) {
+      last.now = with_edits(last.now, step.edits);
+      last.edits.steps.push_back(std::move(step));
+      return;
+    }
+  } catch (const Json::exception&) {  // not a record of this version
+  }
+  beginnings.back().is_broken = true;
+}
+
 }  // namespace
 
 std::string StoredEdits::result() const {
@@ -105,37 +138,25 @@ EditJournal::~EditJournal() { file_.remove_if_empty(); }
 std::optional<StoredEdits> EditJournal::stored() const {
   std::string bytes;
   if (!file_ || !read_file(file_.path(), bytes).empty()) return std::nullopt;
-  StoredEdits stored;
-  std::string now;
-  bool has_begun = false;
+  std::vector<Beginning> beginnings(1);
   for (std::size_t at = 0; at < bytes.size();) {
     const std::size_t end = bytes.find('\n', at);
     if (end == std::string::npos) break;
-    const Json line = Json::parse(bytes.begin() + static_cast<std::ptrdiff_t>(at),
-                                  bytes.begin() + static_cast<std::ptrdiff_t>(end), nullptr, false);
+    read_record(std::string_view{bytes}.substr(at, end - at), beginnings);
     at = end + 1;
-    try {
-      if (!has_begun) {
-        stored.base = now = bytes_of_text(line.at(begin_record).get<std::string>());
-        has_begun = true;
-        continue;
-      }
-      EditStep step = step_of(line);
-      if (!fits(now, step.edits)) break;
-      now = with_edits(now, step.edits);
-      stored.steps.push_back(std::move(step));
-    } catch (const Json::exception&) {
-      break;  // not a record of this version
-    }
   }
-  if (stored.steps.empty() || now == stored.base) return std::nullopt;
-  return stored;
+  const auto last =
+      std::find_if(beginnings.rbegin(), beginnings.rend(), [](const Beginning& one) { return one.is_complete(); });
+  if (last == beginnings.rend() || last->now == last->edits.base) return std::nullopt;
+  return std::move(last->edits);
 }
 
-void EditJournal::begin(const std::string& base) {
-  clear();
+void EditJournal::begin(const std::string& base, const std::vector<EditStep>& steps) {
+  // The first line end ends a line that was not written completely.
+  std::string text = "\n" + Json{{begin_record, text_of_bytes(base)}, {"steps", steps.size()}}.dump() + "\n";
+  for (const EditStep& step : steps) text += as_json(step).dump() + "\n";
+  file_.append(text);
   has_begun_ = true;
-  file_.append(Json{{begin_record, text_of_bytes(base)}}.dump() + "\n");
 }
 
 void EditJournal::add(const EditStep& step) { file_.append(as_json(step).dump() + "\n"); }

@@ -217,11 +217,13 @@ void EditSession::record(const EditStep& step, std::string_view before) {
     journal_.clear();
     return;
   }
-  if (!journal_.has_begun()) {
-    journal_.begin(saved_);
-    if (before != saved_) journal_.add({"earlier edits", bytes_between(saved_, before)});
+  if (journal_.has_begun()) {
+    journal_.add(step);
+  } else if (before == saved_) {
+    journal_.begin(saved_, {step});
+  } else {
+    journal_.begin(saved_, {{"earlier edits", bytes_between(saved_, before)}, step});
   }
-  journal_.add(step);
 }
 
 void EditSession::take_step(EditStep step, std::string bytes, std::unique_ptr<const OpenSheet> sheet) {
@@ -373,6 +375,10 @@ void EditSession::save(const nlohmann::json& request) {
             {"value", fmt::format("0x{:08X}", (revision / major + 1) * major)}}},
           false);
   }
+  // Another program may have written the file since, or something in which the edits cannot be made.
+  if (const FileBytes disk = read_bytes(settings_.path); disk.error.empty() && disk.bytes != saved_) {
+    throw Rejection{nullptr, "nothing was written: the file was changed by another program"};
+  }
   if (const std::string error = write_files({{settings_.path, bytes_}}); !error.empty()) {
     throw Rejection{nullptr, error};
   }
@@ -393,13 +399,19 @@ void EditSession::resolve(const nlohmann::json& request) {
   become(std::move(resolved.bytes));
   conflicts_ = std::move(resolved.conflicts);
   history_.restart({"the edits before the file was changed", bytes_between(saved_, bytes_)});
-  if (!conflicts_.empty()) return;
-  journal_.clear();
-  if (history_.to_undo() != nullptr) record(*history_.to_undo(), saved_);
+  if (conflicts_.empty()) restart_journal();
+}
+
+void EditSession::restart_journal() {
+  if (const EditStep* const step = history_.to_undo()) {
+    journal_.begin(saved_, {*step});
+  } else {
+    journal_.clear();
+  }
 }
 
 void EditSession::answer_journal(const nlohmann::json& request) {
-  if (!stored_) throw Rejection{nullptr, "there are no unsaved edits of an earlier session"};
+  if (!stored_) throw Rejection{nullptr, "no earlier session has left unsaved edits"};
   const bool is_used = flag_of(request, "use");
   const StoredEdits stored = *std::exchange(stored_, std::nullopt);
   if (!is_used) {
@@ -411,11 +423,8 @@ void EditSession::answer_journal(const nlohmann::json& request) {
     return;
   }
   become(stored.result());
-  journal_.begin(saved_);
-  for (const EditStep& step : stored.steps) {
-    journal_.add(step);
-    history_.add(step);
-  }
+  journal_.begin(saved_, stored.steps);
+  for (const EditStep& step : stored.steps) history_.add(step);
 }
 
 Json EditSession::import(const nlohmann::json& request) {
@@ -469,9 +478,7 @@ void EditSession::merge(const std::string& base, const std::string& mine, const 
   history_.restart({"the edits before the file was changed", bytes_between(saved_, bytes_)});
   message_ = "the file was changed by another program";
   if (bytes_ != saved_) message_ += "; your edits of other lines remain";
-  if (!conflicts_.empty()) return;
-  journal_.clear();
-  if (history_.to_undo() != nullptr) record(*history_.to_undo(), saved_);
+  if (conflicts_.empty()) restart_journal();
 }
 
 // What the page shows.

@@ -73,6 +73,8 @@ class EditSession {
   void become(std::string bytes);
   void take_step(EditStep step, std::string bytes, std::unique_ptr<const OpenSheet> sheet);
   void record(const EditStep& step, std::string_view before);
+  /// The journal has the one step of a restarted history.
+  void restart_journal();
   void publish();
   [[nodiscard]] nlohmann::ordered_json status() const;
   [[nodiscard]] std::shared_ptr<const SourceFile> text_of(const std::string& bytes) const;

@@ -239,6 +239,45 @@ TEST_F(EditSessionTest, IncompleteRecordIsNotUsed) {
   EXPECT_EQ(session.bytes(), edited);
 }
 
+TEST_F(EditSessionTest, NoStepIsLostWhileTheJournalBeginsAgain) {
+  write("a.eds", small_eds);
+  std::string edited;
+  {
+    EditSession session = open();
+    change(session, {set("2000", "DefaultValue", "17")});
+    change(session, {set("2000", "HighLimit", "100")});
+    edited = session.bytes();
+  }
+  const std::string journal = "journal/" + std::filesystem::directory_iterator {
+    path("journal")
+    } -> path().filename().string();
+  const std::string before = read(journal);
+  {
+    EditSession session = open();
+    post(session, "journal", {{"use", true}});
+  }
+  const std::string after = read(journal);
+  ASSERT_TRUE(after.starts_with(before));
+  ASSERT_GT(after.size(), before.size());
+  for (std::size_t written = before.size(); written <= after.size(); written += 7) {
+    write(journal, after.substr(0, written));
+    EditSession session = open();
+    post(session, "journal", {{"use", true}});
+    ASSERT_EQ(session.bytes(), edited) << written << " bytes written";
+  }
+}
+
+TEST_F(EditSessionTest, SaveOverwritesNothingIntoWhichEditsCannotBeMerged) {
+  write("a.eds", small_eds);
+  EditSession session = open();
+  change(session, {set("2000", "DefaultValue", "17")});
+  const std::string theirs = "<?xml version=\"1.0\"?><ISO15745ProfileContainer/>";
+  write("a.eds", theirs);
+  EXPECT_TRUE(post(session, "save").contains("rejected"));
+  EXPECT_EQ(read("a.eds"), theirs);
+  EXPECT_TRUE(session.has_unsaved_edits());
+}
+
 TEST_F(EditSessionTest, OneSessionAtATime) {
   write("a.eds", small_eds);
   const EditSession first = open();
