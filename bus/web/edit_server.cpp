@@ -8,6 +8,7 @@
 #include <charconv>
 #include <condition_variable>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -71,17 +72,11 @@ std::optional<std::size_t> number_of(const std::string& text) {
   return error == std::errc{} && end == text.data() + text.size() ? std::optional{number} : std::nullopt;
 }
 
-/// The value of a member that is a text without escapes, such as a token.
-std::string plain_member(const std::string& json, const std::string& name) {
-  const std::string start = "\"" + name + "\"";
-  std::size_t at = json.find(start);
-  if (at == std::string::npos) return {};
-  at = json.find_first_not_of(" \t\r\n", at + start.size());
-  if (at == std::string::npos || json[at] != ':') return {};
-  at = json.find_first_not_of(" \t\r\n", at + 1);
-  if (at == std::string::npos || json[at] != '"') return {};
-  const std::size_t end = json.find('"', at + 1);
-  return end == std::string::npos ? std::string{} : json.substr(at + 1, end - at - 1);
+/// The value of a member that is a text; empty without one.
+std::string text_member(const std::string& body, const char* name) {
+  const nlohmann::json json = nlohmann::json::parse(body, nullptr, false);
+  const auto found = json.find(name);
+  return json.is_object() && found != json.end() && found->is_string() ? found->get<std::string>() : std::string{};
 }
 
 /// The tokens that URLs have, and those of sessions.
@@ -137,7 +132,7 @@ class EditServer::Implementation {
       response.set_content(with_nonce(page_, nonce), "text/html; charset=utf-8");
     });
     server_.Post("/session", [this](const httplib::Request& request, httplib::Response& response) {
-      const std::string session = tokens_.exchange(plain_member(request.body, "token"));
+      const std::string session = tokens_.exchange(text_member(request.body, "token"));
       if (session.empty()) return answer(response, {forbidden, std::string{refusal_texts[0].body}});
       note_page();
       answer(response, {ok, R"({"session":")" + session + "\"}"});
