@@ -205,7 +205,7 @@ class Session {
   return true;
 }
 
-/// Lines of standard input until it ends. Answers are written when there is no line left to obey.
+/// Lines of standard input until it ends. Answers are written when all lines that have arrived are obeyed.
 [[nodiscard]] inline int serve(Session& session, int output, const char* program) {
   std::string answer{simulation::greeting};
   answer += '\n';

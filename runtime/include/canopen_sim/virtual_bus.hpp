@@ -88,7 +88,7 @@ class VirtualBus {
     }
 
     [[nodiscard]] explicit operator bool() const { return static_cast<bool>(function_); }
-    // NOLINTNEXTLINE(google-explicit-constructor): it was a std::function
+    // NOLINTNEXTLINE(google-explicit-constructor): a callback can be kept and set again as a function
     operator std::function<Signature>() const { return function_; }
 
    private:
