@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <sample/dictionary.hpp>
+#include <set>
+#include <vector>
 
 namespace {
 
@@ -53,6 +55,48 @@ TEST(Dictionary, EveryEntryIsFoundWhereTheTablesHaveIt) {
     if (sample::dictionary.find_index(static_cast<std::uint16_t>(index)) != Dictionary::no_object) ++found;
   }
   EXPECT_EQ(found, sample::dictionary.entries.size());
+}
+
+/// The addresses in a range of indices at which an entry is found.
+std::vector<std::uint32_t> found_in(std::uint32_t first, std::uint32_t last) {
+  std::vector<std::uint32_t> keys;
+  for (std::uint32_t key = first << 8; key <= (last << 8 | 0xFF); ++key) {
+    if (sample::dictionary.has(static_cast<std::uint16_t>(key >> 8), static_cast<std::uint8_t>(key)))
+      keys.push_back(key);
+  }
+  return keys;
+}
+
+TEST(Dictionary, VisitsTheCommunicationProfileOnly) {
+  std::vector<std::uint32_t> visited;
+  sample::dictionary.for_each_communication_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+    visited.push_back(canopen::object_key(index, sub_index));
+    EXPECT_EQ(word, sample::dictionary.find(index, sub_index));
+  });
+  EXPECT_FALSE(visited.empty());
+  EXPECT_EQ(visited, found_in(0, 0x1FFF));
+}
+
+TEST(Dictionary, AnyOfEntriesFindsEachEntry) {
+  const std::vector<std::uint32_t> keys = found_in(0, 0xFFFF);
+  EXPECT_FALSE(sample::dictionary.any_of_entries([](entry::Word) { return false; }));
+  for (const std::uint32_t key : keys) {
+    const entry::Word word =
+        sample::dictionary.find(static_cast<std::uint16_t>(key >> 8), static_cast<std::uint8_t>(key));
+    EXPECT_TRUE(sample::dictionary.any_of_entries([&](entry::Word other) { return other == word; })) << key;
+  }
+}
+
+TEST(Dictionary, TheWordsOfTheTablesHaveTheTypesOfTheEntries) {
+  const auto kind_of = [](entry::Word word) { return word & ~entry::offset_mask; };
+  std::set<entry::Word> of_tables;
+  sample::dictionary.for_each_word([&](entry::Word word) { of_tables.insert(kind_of(word)); });
+  std::set<entry::Word> of_entries;
+  for (const std::uint32_t key : found_in(0, 0xFFFF)) {
+    of_entries.insert(
+        kind_of(sample::dictionary.find(static_cast<std::uint16_t>(key >> 8), static_cast<std::uint8_t>(key))));
+  }
+  EXPECT_EQ(of_tables, of_entries);
 }
 
 TEST(Dictionary, RejectsRunsOutOfOrder) {

@@ -59,7 +59,7 @@ class EmergencyConsumer {
  private:
   static constexpr std::uint8_t highest = [] {
     std::uint8_t sub_index = 0;
-    Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub, entry::Word) {
+    Device::dictionary.for_each_communication_entry([&](std::uint16_t index, std::uint8_t sub, entry::Word) {
       if (index == 0x1028) sub_index = sub;
     });
     return sub_index;

@@ -273,6 +273,46 @@ struct Dictionary {
     }
   }
 
+  /// The same for the communication profile, 1000h..1FFFh. A device may have thousands of other entries.
+  template <class Visit>
+  constexpr void for_each_communication_entry(Visit&& visit) const {
+    for (std::size_t run = 0; run + 1 < runs.size(); ++run) {
+      for (std::uint32_t at = runs[run].position; at < runs[run + 1].position; ++at) {
+        const auto index = static_cast<std::uint16_t>(runs[run].first + at - runs[run].position);
+        if (index > 0x1FFF) return;
+        const entry::Word word = entries[at];
+        for (unsigned sub_index = 0; sub_index <= highest_sub_index(word); ++sub_index) {
+          const entry::Word found = sub_word(word, static_cast<std::uint8_t>(sub_index));
+          if (found > no_sub_index) visit(index, static_cast<std::uint8_t>(sub_index), found);
+        }
+      }
+    }
+  }
+
+  /// Whether `is_it(word)` is true for any entry, with the offset of the word resolved.
+  template <class Predicate>
+  [[nodiscard]] constexpr bool any_of_entries(Predicate is_it) const {
+    for (const entry::Word word : entries) {
+      for (unsigned sub_index = 0; sub_index <= highest_sub_index(word); ++sub_index) {
+        const entry::Word found = sub_word(word, static_cast<std::uint8_t>(sub_index));
+        if (found > no_sub_index && is_it(found)) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Calls `visit(word)` for each word of the tables that describes an entry, without order; objects that share a shape
+  /// share the words of their sub-indices, whose offsets are not resolved.
+  template <class Visit>
+  constexpr void for_each_word(Visit&& visit) const {
+    for (const entry::Word word : entries) {
+      if (word > no_sub_index && entry::kind_of(word) <= entry::Kind::var) visit(word);
+    }
+    for (const entry::Word word : subs) {
+      if (word != entry::gap) visit(word);
+    }
+  }
+
   [[nodiscard]] constexpr const Limits* find_limits(std::uint32_t key) const {
     return dictionary_detail::find_by_key(limits, key);
   }

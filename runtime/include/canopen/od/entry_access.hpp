@@ -39,7 +39,7 @@ struct Kinds {
 
 [[nodiscard]] constexpr Kinds kinds_of(const Dictionary& dictionary) {
   Kinds kinds;
-  dictionary.for_each_entry([&](std::uint16_t, std::uint8_t, Word word) {
+  dictionary.for_each_word([&](Word word) {
     const bool in_ram = place_of(word) == Place::ram;
     const std::uint8_t size = wire_bytes(word);
     if (is_string(word) && in_ram) kinds.strings_in_ram = true;

@@ -158,14 +158,14 @@ class ObjectStore {
 
   static constexpr std::size_t domain_count = [] {
     std::size_t count = 0;
-    for_each_domain([&](std::uint16_t) { ++count; });
+    if constexpr (EntryAccess<Device>::kinds.domains) for_each_domain([&](std::uint16_t) { ++count; });
     return count;
   }();
 
   static constexpr std::array<std::uint16_t, domain_count> domain_offsets = [] {
     std::array<std::uint16_t, domain_count> offsets{};
     std::size_t i = 0;
-    for_each_domain([&](std::uint16_t offset) { offsets[i++] = offset; });
+    if constexpr (domain_count != 0) for_each_domain([&](std::uint16_t offset) { offsets[i++] = offset; });
     return offsets;
   }();
 
@@ -184,9 +184,10 @@ class ObjectStore {
   static constexpr std::size_t kept_errors = [] {
     std::size_t count = 0;
     if constexpr (Device::options.reset_emergency != 0) {
-      Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
-        if (index == 0x1003 && sub_index != 0 && entry::place_of(word) == entry::Place::ram) ++count;
-      });
+      Device::dictionary.for_each_communication_entry(
+          [&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+            if (index == 0x1003 && sub_index != 0 && entry::place_of(word) == entry::Place::ram) ++count;
+          });
     }
     return count;
   }();

@@ -63,16 +63,16 @@ template <class Device, class... OfNode>
   return remote && transmission != Transmission::reserved ? ok : AbortCode::invalid_value;
 }
 
-/// Whether this sub-index of all PDO communication parameters of a device has `size` bytes.
-template <class Device>
-[[nodiscard]] consteval bool has_pdo_parameter_size(std::uint8_t sub_index, std::size_t size) {
+/// Whether this sub-index of all PDO communication parameters of a device has `Size` bytes.
+template <class Device, std::uint8_t SubIndex, std::size_t Size>
+inline constexpr bool has_pdo_parameter_size = [] {
   bool has = true;
-  Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t other, entry::Word word) {
-    if (other == sub_index && (is_rpdo_communication(index) || is_tpdo_communication(index)))
-      has = has && entry::wire_bytes(word) == size;
+  Device::dictionary.for_each_communication_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+    if (sub_index == SubIndex && (is_rpdo_communication(index) || is_tpdo_communication(index)))
+      has = has && entry::wire_bytes(word) == Size;
   });
   return has;
-}
+}();
 
 /// Checks whether these bytes, whose length is correct, may be written to 1400h..15FFh or 1800h..19FFh. Bits of a
 /// COB-ID that the device does not allow to change are restored in `bytes`. 0604 0047h: in the EDS, the parameter does
@@ -85,7 +85,7 @@ template <class Device>
   const CobId cob_id{entries.number(index, pdo_parameter::cob_id)};
   switch (sub_index) {
     case pdo_parameter::cob_id: {
-      if (!has_pdo_parameter_size<Device>(pdo_parameter::cob_id, 4) && bytes.size() != 4)
+      if (!has_pdo_parameter_size<Device, pdo_parameter::cob_id, 4> && bytes.size() != 4)
         return AbortCode::internal_incompatibility;
       const CobId after = written_cob_id(cob_id, options.pdo_cob_id_writable, bytes);
       const bool is_allowed = !cob_id.valid() && is_in(options.pdo_allowed_can_ids, after.value());
@@ -95,7 +95,7 @@ template <class Device>
     case pdo_parameter::transmission_type: return check_transmission_type(options, tpdo, bytes[0]);
     case pdo_parameter::inhibit_time:
       if (!tpdo || options.inhibit_time_writable_while_valid) return ok;
-      if (!has_pdo_parameter_size<Device>(pdo_parameter::inhibit_time, 2) && bytes.size() != 2)
+      if (!has_pdo_parameter_size<Device, pdo_parameter::inhibit_time, 2> && bytes.size() != 2)
         return AbortCode::internal_incompatibility;
       break;
     case pdo_parameter::sync_start:

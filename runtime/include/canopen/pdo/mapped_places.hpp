@@ -64,6 +64,8 @@ class MappedPlaces {
     return rows;
   }();
   static constexpr bool any = std::ranges::any_of(capacities, [](std::uint8_t capacity) { return capacity != 0; });
+  static constexpr bool any_static =
+      std::ranges::any_of(capacities, [](std::uint8_t capacity) { return capacity == 0; });
 
   /// Returns the same for the PDO with this mapping parameter.
   [[nodiscard]] static constexpr std::uint8_t capacity_of([[maybe_unused]] EntryAccess<Device> entries,

@@ -19,13 +19,18 @@ namespace canopen {
 /// mapping, a PDO is an MPDO if it does not have a layout.
 template <class Device, PdoIndices Indices, class Pdos>
 class MultiplexedPdos {
-  template <class Pdo>
-  [[nodiscard]] static constexpr bool may_be() {
-    constexpr std::uint16_t mapping = Indices.mapping + Pdo::number - 1;
-    if (!Device::options.mpdo) return false;
-    if (!Device::dictionary.has(Indices.communication + Pdo::number - 1, pdo_parameter::cob_id)) return false;
-    if (entry::wire_bytes(Device::dictionary.find(mapping, 0)) != 1) return false;
-    return Pdo::entries == 0 || mapping_capacity(Device::dictionary, mapping) != 0;
+  [[nodiscard]] static constexpr std::uint16_t communication_of(std::size_t place) {
+    return static_cast<std::uint16_t>(Indices.communication + Pdos::numbers[place] - 1);
+  }
+  [[nodiscard]] static constexpr std::uint16_t mapping_of(std::size_t place) {
+    return static_cast<std::uint16_t>(Indices.mapping + Pdos::numbers[place] - 1);
+  }
+
+  [[nodiscard]] static constexpr bool may_be(std::size_t place) {
+    const Dictionary& dictionary = Device::dictionary;
+    if (!dictionary.has(communication_of(place), pdo_parameter::cob_id)) return false;
+    if (entry::wire_bytes(dictionary.find(mapping_of(place), 0)) != 1) return false;
+    return Pdos::keys[place].empty() || mapping_capacity(dictionary, mapping_of(place)) != 0;
   }
 
  public:
@@ -40,22 +45,26 @@ class MultiplexedPdos {
 
   static constexpr std::size_t count = [] {
     std::size_t sum = 0;
-    Pdos::for_each([&]<class Pdo, std::size_t>() { sum += may_be<Pdo>() ? 1u : 0u; });
+    if constexpr (Device::options.mpdo) {
+      for (std::size_t i = 0; i < Pdos::count; ++i) sum += may_be(i) ? 1u : 0u;
+    }
     return sum;
   }();
 
   static constexpr std::array<Parameters, count> rows = [] {
     std::array<Parameters, count> found{};
-    std::size_t i = 0;
-    Pdos::for_each([&]<class Pdo, std::size_t>() {
-      constexpr std::uint16_t index = Indices.communication + Pdo::number - 1;
+    if constexpr (count > 0) {
       const Dictionary& dictionary = Device::dictionary;
-      if (!may_be<Pdo>()) return;
-      found[i++] = {Pdo::number, dictionary.find(Indices.mapping + Pdo::number - 1, 0),
-                    dictionary.find(index, pdo_parameter::cob_id),
-                    dictionary.find(index, pdo_parameter::transmission_type),
-                    dictionary.find(index, pdo_parameter::inhibit_time)};
-    });
+      std::size_t at = 0;
+      for (std::size_t i = 0; i < Pdos::count; ++i) {
+        if (!may_be(i)) continue;
+        const std::uint16_t index = communication_of(i);
+        found[at++] = {Pdos::numbers[i], dictionary.find(mapping_of(i), 0),
+                       dictionary.find(index, pdo_parameter::cob_id),
+                       dictionary.find(index, pdo_parameter::transmission_type),
+                       dictionary.find(index, pdo_parameter::inhibit_time)};
+      }
+    }
     return found;
   }();
 
@@ -94,8 +103,10 @@ class MultiplexedPdos {
 /// The MPDOs that a device can have.
 template <class Device>
 struct MpdoFeatures {
-  using Rpdos = MultiplexedPdos<Device, rpdo_indices, typename Device::Rpdos>;
-  using Tpdos = MultiplexedPdos<Device, tpdo_indices, typename Device::Tpdos>;
+  struct ListedRpdos : Device::Rpdos {};
+  struct ListedTpdos : Device::Tpdos {};
+  using Rpdos = MultiplexedPdos<Device, rpdo_indices, ListedRpdos>;
+  using Tpdos = MultiplexedPdos<Device, tpdo_indices, ListedTpdos>;
   using Scanned = MpdoLists<Device, ScannedObjects>;
   using Dispatched = MpdoLists<Device, DispatchedObjects>;
 

@@ -38,27 +38,30 @@ struct NumberedPdo : Layout {
 
 namespace pdo_detail {
 
-/// The keys of the objects of a PDO, in their order.
-template <class Pdo>
-inline constexpr std::array<std::uint32_t, Pdo::entries> keys_of = [] {
-  std::array<std::uint32_t, Pdo::entries> keys{};
-  Pdo::for_each(
-      [&]<class Object, std::size_t Position>() { keys[Position] = object_key(Object::index, Object::sub_index); });
-  return keys;
-}();
+/// The keys of the objects of a layout, in their order.
+template <class... Objects>
+inline constexpr std::array<std::uint32_t, sizeof...(Objects)> layout_keys{
+    object_key(Objects::index, Objects::sub_index)...};
+template <class... Objects>
+[[nodiscard]] constexpr std::span<const std::uint32_t> keys_of(const PdoLayout<Objects...>* /*layout*/) {
+  return layout_keys<Objects...>;
+}
 
 }  // namespace pdo_detail
 
-/// A device has up to 512 PDOs of a direction. What is needed of each of them is in arrays: a function for each PDO
-/// whose name contains the list takes the compiler time that grows with the third power of their number.
+/// A device has up to 512 PDOs of a direction. What is needed of each of them is in arrays. The compiler's time for a
+/// function whose name contains the list grows with the square of their number: g++ compares each type in the name with
+/// all others. Services therefore use a class that derives from the list.
 template <class... Pdos>
 struct PdoList {
   static constexpr std::size_t count = sizeof...(Pdos);
+  using All = PdoList;  ///< of a class that derives from the list
 
   // Of each PDO:
   static constexpr std::array<std::uint16_t, count> numbers{Pdos::number...};
   static constexpr std::array<std::uint8_t, count> sizes{Pdos::size...};  ///< data bytes of the default mapping
-  static constexpr std::array<std::span<const std::uint32_t>, count> keys{pdo_detail::keys_of<Pdos>...};
+  static constexpr std::array<std::span<const std::uint32_t>, count> keys{
+      pdo_detail::keys_of(static_cast<const Pdos*>(nullptr))...};
 
   /// Calls `visit.template operator()<Pdo, Position>()` for each PDO in order.
   template <class Visit>
@@ -96,11 +99,13 @@ struct PdoList {
 namespace pdo_detail {
 
 /// Whether a PDO maps an object, or can do so, and its COB-ID is in the dictionary.
-template <const Dictionary& DeviceDictionary, PdoIndices Indices, class PdoType>
-inline constexpr bool is_served = (PdoType::entries > 0 ||
-                                   mapping_capacity(DeviceDictionary, Indices.mapping + PdoType::number - 1) > 0) &&
-                                  DeviceDictionary.has(Indices.communication + PdoType::number - 1,
-                                                       pdo_parameter::cob_id);
+[[nodiscard]] constexpr bool is_served(const Dictionary& dictionary, PdoIndices indices, std::uint16_t number,
+                                       bool maps_objects) {
+  const auto mapping = static_cast<std::uint16_t>(indices.mapping + number - 1);
+  const auto communication = static_cast<std::uint16_t>(indices.communication + number - 1);
+  return (maps_objects || mapping_capacity(dictionary, mapping) > 0) &&
+         dictionary.has(communication, pdo_parameter::cob_id);
+}
 
 /// The PDOs of several lists.
 template <class... Lists>
@@ -127,17 +132,21 @@ struct Whole {
 };
 
 template <const Dictionary& DeviceDictionary, PdoIndices Indices, class List>
-struct Served;
+struct Some;
 template <const Dictionary& DeviceDictionary, PdoIndices Indices, class... PdoType>
-struct Served<DeviceDictionary, Indices, PdoList<PdoType...>> {
+struct Some<DeviceDictionary, Indices, PdoList<PdoType...>>
+    : Joined<std::conditional_t<is_served(DeviceDictionary, Indices, PdoType::number, PdoType::entries != 0),
+                                PdoList<PdoType>, PdoList<>>...> {};
+
+template <const Dictionary& DeviceDictionary, PdoIndices Indices, class List>
+struct Served {
   static constexpr bool all = [] {
-    bool every = true;
-    for (const bool serves : {true, is_served<DeviceDictionary, Indices, PdoType>...}) every = every && serves;
-    return every;
+    for (std::size_t i = 0; i < List::count; ++i) {
+      if (!is_served(DeviceDictionary, Indices, List::numbers[i], !List::keys[i].empty())) return false;
+    }
+    return true;
   }();
-  using type = typename std::conditional_t<
-      all, Whole<PdoList<PdoType...>>,
-      Joined<std::conditional_t<is_served<DeviceDictionary, Indices, PdoType>, PdoList<PdoType>, PdoList<>>...>>::type;
+  using type = typename std::conditional_t<all, Whole<List>, Some<DeviceDictionary, Indices, typename List::All>>::type;
 };
 
 /// Whether the PDOs of a list are numbered from 1 without gaps.
@@ -208,7 +217,8 @@ template <class Device, PdoIndices Indices, class Pdos, class OfNode>
   }
 }
 
-/// The PDOs of a list that map an object, or can do so, and whose COB-ID is in the dictionary.
+/// The PDOs of a list, or of a class that derives from one, that map an object, or can do so, and whose COB-ID is in
+/// the dictionary.
 template <const Dictionary& DeviceDictionary, PdoIndices Indices, class List>
 using ServedPdos = typename pdo_detail::Served<DeviceDictionary, Indices, List>::type;
 

@@ -88,22 +88,17 @@ struct MappedRun {
   /// Whether an object of this device can begin within a byte.
   static constexpr bool has_bits = [] {
     bool has = (Device::dummies & 2) != 0;
-    Device::dictionary.for_each_entry([&](std::uint16_t, std::uint8_t, entry::Word word) {
-      has = has || (entry::is_boolean(word) && (word & (entry::tpdo | entry::rpdo)) != 0);
-    });
+    Device::dictionary.for_each_word(
+        [&](entry::Word word) { has = has || (entry::is_boolean(word) && (word & (entry::tpdo | entry::rpdo)) != 0); });
     return has;
   }();
   static constexpr unsigned unit = has_bits ? 1 : 8;  ///< unit of lengths, in bits
 
   /// Whether 12 bits are enough for the offsets of all mappable objects.
-  static constexpr bool has_short_offsets = [] {
-    bool has = true;
-    Device::dictionary.for_each_entry([&](std::uint16_t, std::uint8_t, entry::Word word) {
-      if ((word & (entry::tpdo | entry::rpdo)) == 0 || entry::place_of(word) > entry::Place::rom) return;
-      has = has && entry::offset_of(word) < 0xFFF;
-    });
-    return has;
-  }();
+  static constexpr bool has_short_offsets = !Device::dictionary.any_of_entries([](entry::Word word) {
+    return (word & (entry::tpdo | entry::rpdo)) != 0 && entry::place_of(word) <= entry::Place::rom &&
+           entry::offset_of(word) >= 0xFFF;
+  });
 
   using Word = std::conditional_t<has_short_offsets && !has_bits, std::uint16_t, std::uint32_t>;
   static constexpr unsigned length_shift = sizeof(Word) == 2 ? 12 : 24;

@@ -50,7 +50,8 @@ enum class RpdoEvent : std::uint8_t {
 template <class Device>
 class RpdoService {
  public:
-  using Pdos = ServedPdos<Device::dictionary, rpdo_indices, typename Device::Rpdos>;
+  struct Listed : Device::Rpdos {};
+  struct Pdos : ServedPdos<Device::dictionary, rpdo_indices, Listed> {};
   using Mapped = MappedPlaces<Device, rpdo_indices, Pdos>;
   static constexpr std::size_t count = Pdos::count;
   static constexpr bool has_dynamic_mapping = Mapped::any;
@@ -320,7 +321,7 @@ class RpdoService {
     if constexpr (has_dynamic_mapping) {
       if (Mapped::is_dynamic(which)) take_mapped(which, data, host);
     }
-    take_static(which, data, host, Pdos{}, std::make_index_sequence<count>{});
+    if constexpr (Mapped::any_static) take_static(which, data, host, Pdos{}, std::make_index_sequence<count>{});
     host.happened(RpdoEvent::taken, number_of(which, host));
   }
 

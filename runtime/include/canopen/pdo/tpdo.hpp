@@ -45,7 +45,8 @@ struct NoRefresh {
 template <class Device>
 class TpdoService {
  public:
-  using Pdos = ServedPdos<Device::dictionary, tpdo_indices, typename Device::Tpdos>;
+  struct Listed : Device::Tpdos {};
+  struct Pdos : ServedPdos<Device::dictionary, tpdo_indices, Listed> {};
   using Mapped = MappedPlaces<Device, tpdo_indices, Pdos>;
   using Static = StaticTpdos<Device, Pdos>;
   static constexpr std::size_t count = Pdos::count;
@@ -398,7 +399,7 @@ class TpdoService {
     if constexpr (has_dynamic_mapping) {
       if (Mapped::is_dynamic(which)) pack_mapped(which, store.entries(), data);
     }
-    Static::pack(which, store, data, Pdos{}, std::make_index_sequence<count>{});
+    if constexpr (Mapped::any_static) Static::pack(which, store, data, Pdos{}, std::make_index_sequence<count>{});
   }
 
   void pack_mapped(std::size_t which, EntryAccess<Device> entries, Data& data) const {

@@ -103,7 +103,7 @@ class ParameterLayout {
   template <class Pdos>
   static constexpr std::size_t entries_of = [] {
     std::size_t entries = 0;
-    Pdos::for_each([&]<class Pdo, std::size_t>() { entries += Pdo::entries; });
+    for (const std::span<const std::uint32_t> keys : Pdos::keys) entries += keys.size();
     return entries;
   }();
 
@@ -111,11 +111,13 @@ class ParameterLayout {
   static constexpr auto carried = [] {
     std::array<std::uint32_t, entries_of<typename Device::Rpdos> + entries_of<typename Device::Tpdos>> keys{};
     std::size_t i = 0;
-    const auto add = [&]<class Pdo, std::size_t>() {
-      Pdo::for_each([&]<class Object, std::size_t>() { keys[i++] = object_key(Object::index, Object::sub_index); });
+    const auto add = [&](const auto& lists) {
+      for (const std::span<const std::uint32_t> mapped : lists) {
+        for (const std::uint32_t key : mapped) keys[i++] = key;
+      }
     };
-    Device::Rpdos::for_each(add);
-    Device::Tpdos::for_each(add);
+    add(Device::Rpdos::keys);
+    add(Device::Tpdos::keys);
     return keys;
   }();
 

@@ -79,10 +79,10 @@ class StoredValueCheck {
 
   template <class Visit>
   static constexpr void for_each_checked(Visit&& visit) {
-    Device::dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
-      if (entry::place_of(word) != entry::Place::ram || !Layout::stores(index, sub_index)) return;
+    Device::dictionary.for_each_communication_entry([&](std::uint16_t index, std::uint8_t sub_index, entry::Word word) {
+      if (entry::place_of(word) != entry::Place::ram) return;
       const std::uint8_t what = what_is(index, sub_index);
-      if (what != plain_value) visit(Checked{index, sub_index, what});
+      if (what != plain_value && Layout::stores(index, sub_index)) visit(Checked{index, sub_index, what});
     });
   }
 

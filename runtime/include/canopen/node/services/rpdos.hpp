@@ -29,7 +29,7 @@ inline constexpr ServiceErrors rpdo_errors =
 /// Whether an RPDO can map a mapping parameter.
 [[nodiscard]] constexpr bool has_mappable_mapping(const Dictionary& dictionary) {
   bool any = false;
-  dictionary.for_each_entry([&](std::uint16_t index, std::uint8_t, entry::Word word) {
+  dictionary.for_each_communication_entry([&](std::uint16_t index, std::uint8_t, entry::Word word) {
     any = any || ((is_rpdo_mapping(index) || is_tpdo_mapping(index)) && (word & entry::rpdo) != 0);
   });
   return any;

@@ -38,7 +38,9 @@ class DefaultValues : public ServiceDefaults<DefaultValues<Device, Handlers...>>
 /// Stored values, if the application provides a storage.
 template <class Device, class... Handlers>
 class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
-  using Stored = ParameterStorage<Device>;
+  struct NoStorage {};
+  /// A node without a storage does not make the compiler lay out the stored values.
+  using Stored = std::conditional_t<storage_detail::has_storage<Handlers...>, ParameterStorage<Device>, NoStorage>;
   static constexpr bool has_hook = (handler_detail::has_event_function<function::OnStoredValue, Handlers> || ...);
 
   /// Passes a stored value to the application.
