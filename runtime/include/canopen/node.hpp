@@ -130,7 +130,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
     report_call();
     now_ = now;
     idle_.end();
-    services_.on_frame_without_node_id(host(), frame);
+    if constexpr (Services::has_any_without_node_id) services_.on_frame_without_node_id(host(), frame);
     if (state_ == NmtState::initialisation) return serve_without_node_id();
     if (attention_) serve();
     const std::uint32_t cob_id = cob_id_of(frame);
