@@ -8,12 +8,12 @@
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/optimization.hpp"
+#include "canopen/node/handler_calls.hpp"
 #include "canopen/node/services/drive_modes.hpp"
 #include "canopen/node/value_check.hpp"
 #include "canopen/od/closed_objects.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object_store.hpp"
-#include "canopen/od/sheet.hpp"
 
 namespace canopen {
 
@@ -23,16 +23,13 @@ template <class Host>
 [[nodiscard]] inline AbortCode before_write(Host& host, std::uint16_t index, std::uint8_t sub_index,
                                             std::span<std::uint8_t> bytes) {
   using Device = typename Host::Device;
-  const auto is_in_enumeration = [&](const auto&... of_node) {
-    return is_closed<Device>(index, sub_index, of_node...);
-  };
   if (is_communication_index(index) || service::DriveModes<Device>::checks(index, sub_index) ||
-      with_sheet<Device>(host.store(), is_in_enumeration)) {
+      is_closed<Device>(index, sub_index, host.store())) {
     if (const AbortCode code = host.check_write(index, sub_index, bytes); code != ok) return code;
   }
   if constexpr (Host::Handlers::has_write_handlers) {
     const std::uint32_t key = object_key(index, sub_index);
-    [[maybe_unused]] const auto call = host.handler_calls().call(key);
+    const HandlerCall call{host.handler_calls(), key};
     return host.handlers().before_write(host.node(), key, bytes);
   }
   return ok;
@@ -44,7 +41,7 @@ template <class Host>
 inline void notify_written([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t index,
                            [[maybe_unused]] std::uint8_t sub_index) {
   if constexpr (Host::Handlers::has_written_handlers) {
-    [[maybe_unused]] const auto call = host.handler_calls().call();
+    const HandlerCall call{host.handler_calls()};
     host.handlers().after_write(host.node(), object_key(index, sub_index), host.store());
   }
 }
@@ -77,7 +74,7 @@ inline void take_received(Host& host, const typename Object::type& value) {
   if (check_limits<Object>(value) != ok) return;
   if constexpr (Host::Handlers::template handles_write<Object>) {
     {
-      [[maybe_unused]] const auto call = host.handler_calls().call(object_key(Object::index, Object::sub_index));
+      const HandlerCall call{host.handler_calls(), object_key(Object::index, Object::sub_index)};
       if (host.handlers().template before_write<Object>(host.node(), value) != ok) return;
     }
     if (host.handler_calls().set_by_handler()) return notify_written(host, Object::index, Object::sub_index);

@@ -11,6 +11,7 @@
 #include "canopen/emcy/error_register.hpp"
 #include "canopen/node/application.hpp"
 #include "canopen/node/functions.hpp"
+#include "canopen/node/handler_calls.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/node/services/emergency.hpp"
 #include "canopen/od/object_store.hpp"
@@ -113,7 +114,7 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
     const std::uint32_t key = object_key(index, sub_index);
     AbortCode code = check_storage_command(host.entries(), index, sub_index, bytes);
     if (code == ok) {
-      [[maybe_unused]] const auto call = host.handler_calls().call(key);
+      const HandlerCall call{host.handler_calls(), key};
       code = host.handlers().before_write(host.node(), key, bytes);
     }
     if (code != ok || (Stored::Layout::sections_of(sub_index) == 0 && host.handlers().handles(key))) return code;
