@@ -85,7 +85,7 @@ struct ServiceDefaults {
   static bool serve(Host&) {
     return true;
   }
-  /// Returns when `on_time` or `serve` is next due; not later than `host.now()` if it is already due.
+  /// Returns when `on_time` or `serve` is next due; not later than `host.now` if it is already due.
   template <class Host>
   static std::optional<TimePoint> deadline(Host&) {
     return std::nullopt;
@@ -295,7 +295,7 @@ class ServiceSet : private service_detail::Present<Services>... {
   void consider(std::optional<TimePoint>& next, Host& host, bool all) const {
     if (!all && !Present<ServiceType>::runs_without_node_id) return;
     const std::optional<TimePoint> other = Present<ServiceType>::deadline(host);
-    if (other) next = next ? earlier_deadline(*next, *other, host.now()) : *other;
+    if (other) next = next ? earlier_deadline(*next, *other, host.now) : *other;
   }
 
   /// Not a fold: with one return for each service, an image is smaller.

@@ -26,9 +26,8 @@ class ClosedValues : public ServiceDefaults<ClosedValues<Device>> {
   }
   template <class Host>
   static AbortCode check_write(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
-    return with_sheet<Device>(host.store(), [&](const auto&... of_node) {
-      return check_closed<Device>(index, sub_index, bytes, of_node...);
-    });
+    return with_sheet<Device>(
+        host.store, [&](const auto&... of_node) { return check_closed<Device>(index, sub_index, bytes, of_node...); });
   }
 };
 
