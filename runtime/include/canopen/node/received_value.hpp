@@ -9,9 +9,7 @@
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/optimization.hpp"
 #include "canopen/node/handler_calls.hpp"
-#include "canopen/node/services/drive_modes.hpp"
 #include "canopen/node/value_check.hpp"
-#include "canopen/od/closed_objects.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object_store.hpp"
 
@@ -20,11 +18,9 @@ namespace canopen {
 /// Checks whether a received value, whose length and limits are correct, may be written: asks the services, then calls
 /// the write handlers of the object. Both may change the bytes.
 template <class Host>
-[[nodiscard]] inline AbortCode before_write(Host& host, std::uint16_t index, std::uint8_t sub_index,
-                                            std::span<std::uint8_t> bytes) {
-  using Device = typename Host::Device;
-  if (is_communication_index(index) || service::DriveModes<Device>::checks(index, sub_index) ||
-      is_closed<Device>(index, sub_index, host.store)) {
+[[nodiscard]] inline AbortCode check_received(Host& host, std::uint16_t index, std::uint8_t sub_index,
+                                              std::span<std::uint8_t> bytes) {
+  if (is_communication_index(index) || host.services.checks_application_object(index, sub_index)) {
     if (const AbortCode code = host.services.check_write(host, index, sub_index, bytes); code != ok) return code;
   }
   if constexpr (Host::Handlers::has_write_handlers) {
@@ -54,7 +50,7 @@ inline void take_received(Host& host, std::uint16_t index, std::uint8_t sub_inde
   const entry::Word word = host.store.entries().find(index, sub_index);
   if (Entries::kinds.booleans && entry::is_boolean(word)) bytes[0] = bytes[0] != 0 ? 1 : 0;
   if (host.store.entries().check(index, sub_index, word, bytes) != ok) return;
-  if (before_write(host, index, sub_index, bytes) != ok) return;
+  if (check_received(host, index, sub_index, bytes) != ok) return;
   if (!host.handler_calls.set_by_handler() && !host.store.entries().holds(word, bytes)) {
     host.store.entries().write(word, bytes);
     host.after_write(index, sub_index, true);

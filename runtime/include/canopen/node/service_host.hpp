@@ -89,7 +89,7 @@ class ServiceHost {
     reset_communication();
   }
 
-  void reset_communication() {
+  [[gnu::noinline]] void reset_communication() {
     services.reset_communication(*this);
     initialise();
   }

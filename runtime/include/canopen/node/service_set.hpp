@@ -107,6 +107,8 @@ struct ServiceDefaults {
   static constexpr bool checks([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
     return false;
   }
+  /// Whether it does so for objects outside of 1000h..1FFFh.
+  static constexpr bool checks_application_objects = false;
   /// Checks whether these bytes, whose length and limits are correct, may be written; may change them.
   template <class Host>
   static AbortCode check_write(Host&, std::uint16_t, std::uint8_t, std::span<std::uint8_t>) {
@@ -255,6 +257,10 @@ class ServiceSet : private service_detail::Present<Services>... {
     return static_cast<ServiceErrors>((unsigned{Present<Services>::errors()} | ...));
   }
 
+  /// Whether a service checks writes to an entry outside of 1000h..1FFFh.
+  [[nodiscard]] static constexpr bool checks_application_object(std::uint16_t index, std::uint8_t sub_index) {
+    return ((Present<Services>::checks_application_objects && Present<Services>::checks(index, sub_index)) || ...);
+  }
   template <class Host>
   [[nodiscard]] AbortCode check_write(Host& host, std::uint16_t index, std::uint8_t sub_index,
                                       std::span<std::uint8_t> bytes) {

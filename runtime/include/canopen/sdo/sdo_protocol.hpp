@@ -82,7 +82,7 @@ inline constexpr std::uint8_t block_end_mask = 0xE3;             ///< of an end 
   return std::uint32_t{index} << 8 | std::uint32_t{sub_index} << 24;
 }
 [[nodiscard]] constexpr std::uint32_t multiplexer_of(const Data& data) {
-  return std::uint32_t{data[1]} << 8 | std::uint32_t{data[2]} << 16 | std::uint32_t{data[3]} << 24;
+  return std::uint32_t{index_of(data)} << 8 | std::uint32_t{data[3]} << 24;
 }
 
 /// Whether a response contains an index and sub-index: initiate responses and aborts.

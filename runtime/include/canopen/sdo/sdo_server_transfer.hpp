@@ -384,7 +384,7 @@ class SdoServerTransfer {
     if (const AbortCode code = hooks.before_write(index(), sub_index(), bytes); code != ok) return code;
     // A handler may have bound a DOMAIN to other memory: the application has then taken the bytes.
     const bool in_place = !Entries::is_domain(word_) || entries.domain(word_).data == bytes.data();
-    if (in_place) hooks.store_value(word_, bytes);
+    if (in_place && hooks.is_new(word_, bytes)) entries.write(word_, bytes);
     hooks.after_write(index(), sub_index());
     return ok;
   }

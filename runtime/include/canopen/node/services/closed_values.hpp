@@ -17,6 +17,7 @@ class ClosedValues : public ServiceDefaults<ClosedValues<Device>> {
  public:
   static constexpr bool exists = HasClosedObjects<Device> || has_sheet<Device>;
 
+  static constexpr bool checks_application_objects = true;
   static constexpr bool checks([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
     if constexpr (has_sheet<Device>) {
       return true;  // `check_write` decides

@@ -50,18 +50,18 @@ struct SdoHooks {
     return ok;
   }
   [[nodiscard]] AbortCode before_write(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
-    const AbortCode code = canopen::before_write(host, index, sub_index, bytes);
+    const AbortCode code = check_received(host, index, sub_index, bytes);
     if constexpr (StoredValues<Device, Parts...>::exists) {
       if (code == ok && !host.handler_calls.set_by_handler())
         StoredValues<Device, Parts...>::before_change(host, index, sub_index, bytes);
     }
     return code;
   }
-  /// Stores a value, unless the object already has it or its handler has set it.
-  void store_value(entry::Word word, std::span<const std::uint8_t> bytes) {
+  /// Whether a value must be written.
+  [[nodiscard]] bool is_new(entry::Word word, std::span<const std::uint8_t> bytes) {
     if (host.handler_calls.set_by_handler()) {
       new_value = false;
-      return;
+      return false;
     }
     const bool mappable = (word & entry::tpdo) != 0;  // not a DOMAIN
     if constexpr (MpdoService<Device>::sends_source) {
@@ -70,11 +70,11 @@ struct SdoHooks {
     } else if constexpr (!prefers_size && Tpdos<Device>::exists && EntryAccess<Device>::has_plain_numbers) {
       // Saves 5 instructions of a download on a Cortex-M4, takes 16 bytes of a Cortex-M0+.
       new_value = mappable && entries().replace(word, bytes);
-      if (mappable) return;
+      return !mappable;
     } else if constexpr (Tpdos<Device>::exists) {
       new_value = mappable && !entries().holds(word, bytes);
     }
-    if (new_value || !mappable) entries().write(word, bytes);
+    return new_value || !mappable;
   }
   void after_write(std::uint16_t index, std::uint8_t sub_index) {
     host.after_write(index, sub_index, new_value);

@@ -43,8 +43,9 @@ class Sync : public ServiceDefaults<Sync<Device>> {
   }
 
   /// Sends a SYNC, which this node consumes itself. More important frames are sent before the PDOs of the SYNC.
+  /// Inlined: saves 16 bytes of stack on a Cortex-M0+.
   template <class Host>
-  bool serve([[maybe_unused]] Host& host) {
+  [[gnu::always_inline]] bool serve([[maybe_unused]] Host& host) {
     if constexpr (Producer::exists) {
       if (producer_.serve(host.store, host.bus, host.now)) {
         host.attention = true;
