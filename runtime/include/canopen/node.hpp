@@ -403,7 +403,8 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device, Bus
     if (Host::services.on_fixed_frame(host(), frame, cob_id)) return;
     if (cob_id == function_code::nmt) {
       if (is_nmt_command(frame, Host::node_id)) Host::carry_out(static_cast<NmtCommand>(frame.data[0]));
-    } else if (is_usable_by_pdo<Device>(cob_id, Host::store)) {
+    } else if (with_sheet<Device>(
+                   Host::store, [&](const auto&... of_node) { return is_usable_by_pdo<Device>(cob_id, of_node...); })) {
       static_cast<void>(Host::services.on_frame(host(), frame, cob_id));
     }
   }

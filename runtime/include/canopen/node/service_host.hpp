@@ -56,7 +56,7 @@ class ServiceHost {
   // NMT
 
   /// Executes a command; an invalid code has no effect. The newest command replaces one that a handler has requested.
-  [[gnu::noinline]] void carry_out(NmtCommand command) {
+  void carry_out(NmtCommand command) {
     handler_calls.discard_deferred();
     switch (command) {
       case NmtCommand::start: enter(NmtState::operational); break;

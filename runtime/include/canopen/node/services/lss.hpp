@@ -44,8 +44,9 @@ class Lss : public ServiceDefaults<Lss<Device, Handlers...>> {
     slave_.enter(state);
   }
 
+  /// Not inlined: saves 44 bytes of a Cortex-M0+.
   template <class Host>
-  bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
+  [[gnu::noinline]] bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
     if constexpr (has_sheet<Device>) {
       if (!Device::sheet_of(host.store).lss_options) return false;
     }
