@@ -14,26 +14,27 @@ help() {
   test      a release build with all tests but those of the other gears
   asan      the GoogleTest programs (unit and trace tests) and a short run of each fuzz target with AddressSanitizer
             and the checks of UBSan that compile fast
-  firmware  the images of the reference devices for Cortex-M under QEMU
+  firmware  the images of the reference devices under QEMU: each for the Cortex-M0+, half of them for the M3, half for the M4
   odr       no two sources of edsc define different types of one name (g++ with -flto)
-  long      before a release: odr; the packages of the static programs for x86-64 and Arm, what the programs write in an
-            empty root folder compared with the release build, and the packages of builds in two folders; edsc.exe under
-            wine with all files of the repository; a cold demo; projects that compile edsc, and what they rebuild; each
-            header of the runtime alone; the headers of 65,000 entries and of 1024 PDOs with both compilers; what is generated for each
-            file of the corpus; `edsc node` with each of them; each planted fault of a device; plants in a virtual machine with SocketCAN; the whole page of footprints; ten hours of each plant under
-            `edsc watch`; each wrong program and value with both compilers; the programs of asan with all checks of UBSan, each fuzz
-            target for a minute
+  long      before a release: odr; the packages of the static programs for x86-64 and Arm, what the programs write in an empty
+            root folder compared with the release build, and the packages of builds in two folders; edsc.exe under wine with all
+            files of the repository; a cold demo; projects that compile edsc, and what they rebuild; each header of the runtime
+            alone; the headers of 65,000 entries and of 1024 PDOs with both compilers; what is generated for each file of the
+            corpus; `edsc node` with each of them; each planted fault of a device; each image for each board; plants in a virtual
+            machine with SocketCAN; the whole page of footprints; ten hours of each plant under `edsc watch`; each wrong program
+            and value with both compilers; the programs of asan with all checks of UBSan, each fuzz target for a minute
 
 Without a gear: gates, test, asan, firmware. The last two use the program edsc of the release build, and build it there
-if it is missing. They are built while tests of the release build wait; the output is in build/ahead.log. The time of each test is printed at the end of a gear, slowest first.
+if it is missing. They are built while tests of the release build wait; the output is in build/ahead.log. The time of each test
+is printed at the end of a gear, slowest first.
 HELP
 }
 
 # Seconds on two processors: of a build from nothing, and of the tests.
-declare -A build_seconds=([gates]=0 [sources]=0 [quick]=700 [unit]=500 [odr]=300 [test]=700 [asan]=500 [firmware]=300 [static]=400
-                          [static-arm64]=400 [long]=0 [sanitize]=900)
-declare -A test_seconds=([gates]=100 [sources]=1500 [quick]=60 [unit]=60 [odr]=0 [test]=1000 [asan]=350 [firmware]=100 [static]=0
-                         [static-arm64]=0 [long]=3000 [sanitize]=1250)
+declare -A build_seconds=([gates]=0 [sources]=0 [quick]=700 [unit]=500 [odr]=300 [test]=650 [asan]=500 [firmware]=400
+                          [firmware-sample]=250 [static]=400 [static-arm64]=400 [long]=0 [sanitize]=900)
+declare -A test_seconds=([gates]=100 [sources]=1500 [quick]=60 [unit]=60 [odr]=0 [test]=900 [asan]=300 [firmware]=180
+                         [firmware-sample]=100 [static]=0 [static-arm64]=0 [long]=3000 [sanitize]=1250)
 
 build_of() {
   case $1 in
@@ -87,7 +88,8 @@ run() {
 parts() {
   case $1 in
     quick) echo gates quick unit ;;
-    long) echo static static-arm64 odr long sanitize ;;
+    firmware) echo firmware-sample ;;
+    long) echo static static-arm64 odr long firmware sanitize ;;
     *) echo "$1" ;;
   esac
 }
@@ -105,7 +107,7 @@ done
 ahead=()
 if [[ " ${gears[*]} " == *" test "* ]]; then
   for gear in "${gears[@]}"; do
-    case $gear in asan | firmware) ahead+=("$gear") ;; esac
+    case $gear in asan | firmware) ahead+=("$(parts "$gear")") ;; esac
   done
 fi
 

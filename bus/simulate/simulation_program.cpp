@@ -81,17 +81,18 @@ class Compilation {
 
   std::string compile_if_needed(const std::string& source) const {
     const CompiledObject object{object_file(source)};
-    const std::vector<std::string> arguments{"-std=c++20",
-                                             "-O2",
-                                             "-I" + build_.folder,
-                                             "-I" + build_.include_folder,
-                                             "-MD",
-                                             "-MF",
-                                             object.dependency_file(),
-                                             "-c",
-                                             source,
-                                             "-o",
-                                             object.path()};
+    const std::vector<std::string> arguments{
+        "-std=c++20",
+        "-O1",  // compiles a fifth faster, and the simulation takes less than half a second
+        "-I" + build_.folder,
+        "-I" + build_.include_folder,
+        "-MD",
+        "-MF",
+        object.dependency_file(),
+        "-c",
+        source,
+        "-o",
+        object.path()};
     std::vector<std::string> command = compiler();
     command.insert(command.end(), arguments.begin(), arguments.end());
     if (object.is_up_to_date(command)) return {};

@@ -103,7 +103,7 @@ apply(request("textDocument/rename", params))
         text = self.wrong_count().replace("ObjectType=", "ObjectType = ")
         self.run_in_neovim(text, """
 local edits = request("textDocument/formatting", { textDocument = vim.lsp.util.make_text_document_params(), options = { tabSize = 2, insertSpaces = true } })
-vim.lsp.util.apply_text_edits(edits, 0, vim.lsp.get_client_by_id(client).offset_encoding)
+vim.lsp.util.apply_text_edits(edits, vim.api.nvim_get_current_buf(), vim.lsp.get_client_by_id(client).offset_encoding)
 """)
         wanted = self.folder / "wanted.eds"
         wanted.write_text(text, encoding="utf-8")
