@@ -63,9 +63,12 @@ UNCOUNTED void print(const char* name, int frames, const Step& step) {
   for (std::size_t i = 0; i < count; ++i) std::printf("%d %p\n", calls[i].depth, calls[i].function);
 }
 
+UNCOUNTED constexpr canopen::TimePoint at(std::uint32_t microseconds) {
+  return canopen::TimePoint{canopen::Duration{microseconds}};
+}
+
 UNCOUNTED void receive(const char* name, int frames, const canopen::Frame& frame) {
-  constexpr canopen::TimePoint later{canopen::Duration{1}};
-  print(name, frames, [&]() UNCOUNTED { node.on_frame(frame, later); });
+  print(name, frames, [&]() UNCOUNTED { node.on_frame(frame, at(1)); });
 }
 
 }  // namespace
@@ -79,5 +82,13 @@ UNCOUNTED int main() {
   receive("SDO upload", 1, canopen::make_frame(0x605, 8, {0x0060'8340, 0}));
   receive("RPDO", 0, canopen::make_frame(0x305, 8, {1, 2}));
   receive("SYNC", 4, canopen::make_frame(0x080, 0, {0, 0}));
+  // TPDO 1 becomes event-driven, and is sent once.
+  constexpr std::uint8_t event_driven[] = {255};
+  if (node.set(0x1800, 2, event_driven) != canopen::ok) return 1;
+  node.on_time(at(2));
+  print("TPDO", 1, []() UNCOUNTED {
+    static_cast<void>(node.set<device::od::drive_6064>(1234));
+    node.on_time(at(3));
+  });
   return 0;
 }

@@ -5,7 +5,7 @@
 
 Compiles bench/footprint/paths.cpp for this machine without optimization, with -finstrument-functions, for the device of
 bench/ref.eds with dynamic mapping, and runs it. Prints for an SDO download, from `on_frame` to the function of the application and the
-response, an SDO upload, an RPDO and a SYNC with four TPDOs the number of different functions that are called, and how deep the
+response, an SDO upload, an RPDO, a SYNC with four TPDOs, and an event-driven TPDO from the `set` of the application on, the number of different functions that are called, and how deep the
 calls are. A template is one function, and so are the generic lambdas of a line; functions of the standard library are not counted.
 The files are those of the functions, without the vocabulary of `base`, `can` and `od` that all paths share. With the name of a
 path, prints its calls.

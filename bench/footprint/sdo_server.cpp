@@ -22,6 +22,7 @@ struct Hooks {
   static auto entries() { return store.entries(); }
   static canopen::AbortCode before_read(std::uint16_t, std::uint8_t) { return canopen::ok; }
   static canopen::AbortCode before_write(std::uint16_t, std::uint8_t, std::span<std::uint8_t>) { return canopen::ok; }
+  static bool is_new(canopen::entry::Word, std::span<const std::uint8_t>) { return true; }
   static void after_write(std::uint16_t, std::uint8_t) {}
   static canopen::AbortCode command(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
     return canopen::AbortCode::not_stored;

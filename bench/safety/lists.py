@@ -221,7 +221,7 @@ def short_name(label: str) -> str:
         depth -= character in ">)]"
     words = kept.split()
     short = words[-1].removeprefix("canopen::") if words else ""
-    plumbing = r"std::|__|\w*handler_detail|HandlerSet\b|HandlerCalls\b|ObjectList\b|ServiceHost\b|_"
+    plumbing = r"std::|__|\w*handler_detail|HandlerSet\b|HandlerCalls?\b|ObjectList\b|_"
     return "" if re.match(plumbing, short) else short
 
 

@@ -29,7 +29,7 @@ class StoredValues<edsc::DynamicDevice, Handlers...>
 
   template <class Host>
   void on_start(Host& host) {
-    auto& storage = host.handlers().storage();
+    auto& storage = host.handlers.storage();
     damaged_ = storage.open() == StorageState::damaged;
     std::vector<std::uint8_t> image(storage.size());
     const bool readable = storage.read(0, image);
@@ -40,17 +40,17 @@ class StoredValues<edsc::DynamicDevice, Handlers...>
   }
   template <class Host>
   void reset_application(Host& host) {
-    host.store().reset_application(host.node_id());
+    host.store.reset_application(host.node_id);
     load(host, false);
   }
   template <class Host>
   void reset_communication(Host& host) {
-    host.store().reset_communication(host.node_id());
+    host.store.reset_communication(host.node_id);
     load(host, true);
     if (!damaged_) return;
     constexpr std::uint16_t code = emergency_code::data_set;
-    host.template service<Emergency<Device>>().report(host, code, ErrorRegister::generic,
-                                                      emergency_info<Device>(host.store(), code));
+    host.services.template get<Emergency<Device>>().report(host, code, ErrorRegister::generic,
+                                                           emergency_info<Device>(host.store, code));
   }
 
   static constexpr bool has_command(std::uint16_t index) {
@@ -58,7 +58,7 @@ class StoredValues<edsc::DynamicDevice, Handlers...>
   }
   template <class Host>
   AbortCode command(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
-    const AbortCode code = check_storage_command(host.entries(), index, sub_index, bytes);
+    const AbortCode code = check_storage_command(host.store.entries(), index, sub_index, bytes);
     if (code != ok) return code;
     return index == store_parameters ? save(host, sub_index) : restore(host, sub_index);
   }
@@ -66,7 +66,7 @@ class StoredValues<edsc::DynamicDevice, Handlers...>
   /// Stores the parameters of a sub-index of 1010h.
   template <class Host>
   [[nodiscard]] AbortCode save(Host& host, std::uint8_t sub_index) {
-    const edsc::Sheet& sheet = Device::sheet_of(host.store());
+    const edsc::Sheet& sheet = Device::sheet_of(host.store);
     SectionSet sections = edsc::stored_sections(sheet, sub_index);
     if (sections == 0) return AbortCode::hardware;
     sections = static_cast<SectionSet>(sections | set_of(ParameterSection::configuration));
@@ -85,7 +85,7 @@ class StoredValues<edsc::DynamicDevice, Handlers...>
   /// Restores the default values of a sub-index of 1011h.
   template <class Host>
   [[nodiscard]] AbortCode restore(Host& host, std::uint8_t sub_index) {
-    const edsc::Sheet& sheet = Device::sheet_of(host.store());
+    const edsc::Sheet& sheet = Device::sheet_of(host.store);
     const SectionSet sections = edsc::stored_sections(sheet, sub_index);
     if (sections == 0) return AbortCode::hardware;
     constexpr SectionSet kept = set_of(ParameterSection::with_node_id);
@@ -110,11 +110,11 @@ class StoredValues<edsc::DynamicDevice, Handlers...>
   static void before_change(Host& host, std::uint16_t index, std::uint8_t sub_index,
                             std::span<const std::uint8_t> bytes) {
     if (index == verify_configuration) return;
-    const edsc::Sheet& sheet = Device::sheet_of(host.store());
+    const edsc::Sheet& sheet = Device::sheet_of(host.store);
     const auto* const entry = edsc::find_stored(sheet, index, sub_index);
     if (entry == nullptr) return;
     std::array<std::uint8_t, 8> scratch;
-    if (!std::ranges::equal(host.entries().read(entry->word, scratch), bytes)) clear_configuration(host);
+    if (!std::ranges::equal(host.store.entries().read(entry->word, scratch), bytes)) clear_configuration(host);
   }
   template <DictionaryObject Object, class Host>
   static void after_change(Host&) {}
@@ -123,12 +123,12 @@ class StoredValues<edsc::DynamicDevice, Handlers...>
   /// Sets 1020h to 0, if it is stored.
   template <class Host>
   static void clear_configuration(Host& host) {
-    const edsc::Sheet& sheet = Device::sheet_of(host.store());
+    const edsc::Sheet& sheet = Device::sheet_of(host.store);
     const auto* const date = edsc::find_stored(sheet, verify_configuration, 1);
     const auto* const time = edsc::find_stored(sheet, verify_configuration, 2);
     if (date == nullptr || time == nullptr) return;
     for (const auto* const entry : {date, time}) {
-      std::memset(host.entries().ram(entry->word), 0, entry::wire_bytes(entry->word));
+      std::memset(host.store.entries().ram(entry->word), 0, entry::wire_bytes(entry->word));
     }
   }
 
@@ -139,9 +139,9 @@ class StoredValues<edsc::DynamicDevice, Handlers...>
     row.record.index = entry.index;
     row.record.sub_index = entry.sub_index;
     row.record.type = stored_format::type_of(entry.word);
-    const unsigned version = Device::sheet_of(host.store()).options.storage_version;
-    row.record.context = static_cast<std::uint16_t>(host.node_id().value() | version << 8);
-    const std::uint8_t* value = host.entries().ram(entry.word);
+    const unsigned version = Device::sheet_of(host.store).options.storage_version;
+    row.record.context = static_cast<std::uint16_t>(host.node_id.value() | version << 8);
+    const std::uint8_t* value = host.store.entries().ram(entry.word);
     row.record.size = entry::wire_bytes(entry.word);
     if (entry::is_string(entry.word)) {
       std::memcpy(&row.record.size, value, sizeof row.record.size);
@@ -154,7 +154,7 @@ class StoredValues<edsc::DynamicDevice, Handlers...>
   /// Writes a new image. Returns false if the storage has failed.
   template <class Host>
   [[nodiscard]] bool replace(Host& host, std::vector<Row> rows) {
-    auto& storage = host.handlers().storage();
+    auto& storage = host.handlers.storage();
     const std::vector<std::uint8_t> image = edsc::stored_image(rows);
     if (!storage.begin(static_cast<std::uint32_t>(image.size())) || !storage.write(image) || !storage.commit())
       return false;
@@ -172,11 +172,11 @@ class StoredValues<edsc::DynamicDevice, Handlers...>
         damaged_ = true;
         continue;
       }
-      const edsc::Sheet& sheet = Device::sheet_of(host.store());
+      const edsc::Sheet& sheet = Device::sheet_of(host.store);
       const auto& entry = *edsc::find_stored(sheet, record.index, record.sub_index);
       const bool is_of_node_id = entry.section == static_cast<std::uint8_t>(ParameterSection::with_node_id);
-      if (record.node_id() == host.node_id().value() || !(is_of_node_id || follows_node_id(host, entry.word, row)))
-        host.entries().write(entry.word, bytes);
+      if (record.node_id() == host.node_id.value() || !(is_of_node_id || follows_node_id(host, entry.word, row)))
+        host.store.entries().write(entry.word, bytes);
     }
   }
 
@@ -184,11 +184,11 @@ class StoredValues<edsc::DynamicDevice, Handlers...>
   template <class Host>
   [[nodiscard]] static bool is_possible(Host& host, const Row& row) {
     const auto& [record, bytes] = row;
-    const edsc::Sheet& sheet = Device::sheet_of(host.store());
+    const edsc::Sheet& sheet = Device::sheet_of(host.store);
     const auto* const entry = edsc::find_stored(sheet, record.index, record.sub_index);
     if (entry == nullptr) return false;
     if (((stored_format::type_of(entry->word) ^ record.type) & stored_format::type_mask) != 0) return false;
-    return host.entries().check(record.index, record.sub_index, entry->word, bytes) == ok &&
+    return host.store.entries().check(record.index, record.sub_index, entry->word, bytes) == ok &&
            sheet.check_closed(record.index, record.sub_index, bytes) == ok;
   }
 
@@ -196,12 +196,13 @@ class StoredValues<edsc::DynamicDevice, Handlers...>
   /// stays.
   template <class Host>
   [[nodiscard]] static bool follows_node_id(Host& host, entry::Word word, const Row& row) {
-    for (const edsc::SheetNodeIdRow& relative : Device::sheet_of(host.store()).node_id_rows) {
+    for (const edsc::SheetNodeIdRow& relative : Device::sheet_of(host.store).node_id_rows) {
       if (relative.offset != entry::offset_of(word)) continue;
       std::uint64_t stored = 0, by_default = 0;
       std::memcpy(&stored, row.bytes.data(), std::min(row.bytes.size(), sizeof stored));
-      std::memcpy(&by_default, host.entries().ram(word), std::min<std::size_t>(row.bytes.size(), sizeof by_default));
-      return stored + host.node_id().value() == by_default + row.record.node_id();
+      std::memcpy(&by_default, host.store.entries().ram(word),
+                  std::min<std::size_t>(row.bytes.size(), sizeof by_default));
+      return stored + host.node_id.value() == by_default + row.record.node_id();
     }
     return false;
   }

@@ -27,9 +27,9 @@ OTHERS = ("node.hpp", "indicator/indicator.hpp", "lss/lss_handler.hpp", "sdo/dom
 CLASSES = {"Node": "Node", "ObjectValues": "Node", "ObjectSetters": "Node", "Locked": "Locked", "Mailbox": "Mailbox",
            "Indicators": "Indicators", "SdoClient": "SdoClient"}
 # Of the runtime itself: not called by an application.
-INTERNAL_CLASSES = {"AcceptedFrame", "Composition", "DomainHandlerSet", "EventHandler", "HandlerCalls", "HandlerSet", "ServiceDefaults", "ServiceHost",
-                    "ServiceSet"}
-INTERNAL = {"before_write", "check_limits", "checked_handlers", "is_communication_index", "notify_written",
+INTERNAL_CLASSES = {"AcceptedFrame", "Composition", "DomainHandlerSet", "EventHandler", "HandlerCall", "HandlerCalls", "HandlerSet",
+                    "ServiceDefaults", "ServiceHost", "ServiceSet"}
+INTERNAL = {"check_limits", "check_received", "checked_handlers", "is_communication_index", "notify_written",
             "take_received"}
 ROW = re.compile(r"^\| ((?:`[^`]+`(?:, )?)+) \|", re.MULTILINE)
 

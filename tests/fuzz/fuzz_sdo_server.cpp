@@ -56,6 +56,7 @@ class Application {
     [[nodiscard]] AbortCode before_write(std::uint16_t, std::uint8_t, std::span<std::uint8_t>) const {
       return application.answer;
     }
+    [[nodiscard]] static bool is_new(canopen::entry::Word, std::span<const std::uint8_t>) { return true; }
     void after_write(std::uint16_t, std::uint8_t) const {}
     static canopen::AbortCode command(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
       return canopen::AbortCode::not_stored;

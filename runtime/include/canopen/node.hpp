@@ -56,8 +56,7 @@ namespace canopen {
 /// handlers, storage, LSS port, in any order (node/parts.hpp). A stateless bus is kept by value, any other by
 /// reference; it must outlive the node.
 template <class Device, class BusType, class... Handlers>
-class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
-                                 HandlerSet<Device, Node<Device, BusType, Handlers...>, Handlers...>>,
+class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device, BusType, Handlers...>,
              public ObjectValues<Node<Device, BusType, Handlers...>> {
  public:
   using DeviceType = Device;
@@ -86,14 +85,14 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// parameters of handlers are checked here, where the node is complete: the compiler instantiates generic lambdas.
   template <class... Given>
   constexpr Node(BusType& can_bus, NodeId node_id, Given&&... parts)
-      : bus_{can_bus}, handlers_{std::forward_as_tuple(std::forward<Given>(parts)...)}, node_id_{node_id} {
+      : Host{can_bus, std::forward_as_tuple(std::forward<Given>(parts)...), node_id} {
     static_assert(sizeof(part_detail::CheckedParts<std::tuple<Handlers...>, Given&&...>) != 0);
     (handler_detail::check_parameters<Node, Handlers>(), ...);
   }
   /// For a node-ID passed to `start`. With a bus by value such a node is all zeros, without initial values in flash.
   template <class... Given>
   constexpr explicit Node(BusType& can_bus, Given&&... parts)
-      : bus_{can_bus}, handlers_{std::forward_as_tuple(std::forward<Given>(parts)...)} {
+      : Host{can_bus, std::forward_as_tuple(std::forward<Given>(parts)...)} {
     static_assert(sizeof(part_detail::CheckedParts<std::tuple<Handlers...>, Given&&...>) != 0);
     (handler_detail::check_parameters<Node, Handlers>(), ...);
   }
@@ -105,60 +104,60 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// Initialisation, which `state()` returns: an LSS master can give it a node-ID.
   void start(TimePoint now) {
     report_call();
-    now_ = now;
-    services_.on_start(host());
+    Host::now = now;
+    Host::services.on_start(host());
     if constexpr (HandlerTypes::template has_event_function<function::Start>) {
-      services_.reset_application(host());
-      services_.reset_communication(host());
-      state_ = NmtState::initialisation;
-      handlers_.template notify<function::Start>(*this);
-      initialise();
+      Host::services.reset_application(host());
+      Host::services.reset_communication(host());
+      Host::state = NmtState::initialisation;
+      Host::handlers.template notify<function::Start>(*this);
+      Host::initialise();
     } else {
-      reset_node();
+      Host::reset_node();
     }
-    serve();
+    Host::serve();
   }
 
   /// The same with a node-ID that is known only at run time: `NodeId::from` checks it.
   void start(NodeId node_id, TimePoint now) {
-    node_id_ = node_id;
+    Host::node_id = node_id;
     start(now);
   }
 
   /// Processes a frame from the bus. Frames that are not for this node are ignored.
   void on_frame(const Frame& frame, TimePoint now) {
     report_call();
-    now_ = now;
-    idle_.end();
-    services_.on_frame_without_node_id(host(), frame);
-    if (state_ == NmtState::initialisation) return serve_without_node_id();
-    if (attention_) serve();
+    Host::now = now;
+    Host::idle.end();
+    if constexpr (Services::has_any_without_node_id) Host::services.on_frame_without_node_id(host(), frame);
+    if (Host::state == NmtState::initialisation) return serve_without_node_id();
+    if (Host::attention) Host::serve();
     const std::uint32_t cob_id = cob_id_of(frame);
-    const bool taken =
-        !frame.remote && (services_.on_frequent_frame(host(), frame, cob_id) || !services_.may_take(host(), cob_id));
+    const bool taken = !frame.remote && (Host::services.on_frequent_frame(host(), frame, cob_id) ||
+                                         !Host::services.may_take(host(), cob_id));
     if (!taken) on_other_frame(frame);
-    if (attention_) serve();
+    if (Host::attention) Host::serve();
   }
 
   /// Processes elapsed time. Call it at `next_deadline()`, when the bus has room again, and at least every half hour.
   /// In an image for size, heartbeats, timeouts and events may be up to 128 us late (node/idle_time.hpp).
   void on_time(TimePoint now) {
     report_call();
-    now_ = now;
-    if (!attention_ && !needs_exact_time() && idle_.lasts(now)) return;
-    const bool was_idle = idle_.has_begun();
-    services_.on_time_without_node_id(host());
-    if (state_ == NmtState::initialisation) return serve_without_node_id();
-    services_.on_time(host());
-    serve();
-    if (!attention_) was_idle ? idle_.begin(now, next_deadline()) : idle_.begin();
+    Host::now = now;
+    if (!Host::attention && !needs_exact_time() && Host::idle.lasts(now)) return;
+    const bool was_idle = Host::idle.has_begun();
+    Host::services.on_time_without_node_id(host());
+    if (Host::state == NmtState::initialisation) return serve_without_node_id();
+    Host::services.on_time(host());
+    Host::serve();
+    if (!Host::attention) was_idle ? Host::idle.begin(now, next_deadline()) : Host::idle.begin();
   }
 
   /// Returns when `on_time` is next due; not later than the time of the last call if it is already due. Empty: only a
   /// frame or the application makes this node send.
   [[nodiscard]] std::optional<TimePoint> next_deadline() const {
-    const bool all = state_ != NmtState::initialisation && !services_.silent();
-    return services_.deadline(static_cast<const Host&>(*this), all);
+    const bool all = Host::state != NmtState::initialisation && !Host::services.silent();
+    return Host::services.deadline(static_cast<const Host&>(*this), all);
   }
 
   /// Returns when a periodic function of the application is next due, which is also a `next_deadline`: a loop that
@@ -166,7 +165,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   [[nodiscard]] std::optional<TimePoint> next_periodic_call() const {
     using Periodic = service::Periodic<Device, Handlers...>;
     if constexpr (Periodic::exists) {
-      return services_.template get<Periodic>().deadline(static_cast<const Host&>(*this));
+      return Host::services.template get<Periodic>().deadline(static_cast<const Host&>(*this));
     } else {
       return std::nullopt;
     }
@@ -188,29 +187,29 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// Returns the application of this class that was given to the node.
   template <class Application>
   [[nodiscard]] Application& application() {
-    return std::get<Application>(handlers_.all());
+    return std::get<Application>(Host::handlers.all());
   }
 
-  [[nodiscard]] NmtState state() const { return state_; }
-  [[nodiscard]] NodeId node_id() const { return node_id_; }
+  [[nodiscard]] NmtState state() const { return Host::state; }
+  [[nodiscard]] NodeId node_id() const { return Host::node_id; }
   /// Returns the time that was passed to the function of the node that runs, or ran last.
   [[nodiscard]] TimePoint now() const {
-    if constexpr (reports_to_bus<BusType>) return bus_.time_of_node(now_);
-    return now_;
+    if constexpr (reports_to_bus<BusType>) return Host::bus.time_of_node(Host::now);
+    return Host::now;
   }
 
   /// Executes an NMT command by local control (CiA 301, 7.3.2). Has no effect before `start` or without a node-ID. In a
   /// read or write handler, the command is executed after the response of the SDO server has been sent.
   void request(NmtCommand command, TimePoint now) {
     report_call();
-    now_ = now;
-    if (state_ == NmtState::initialisation) return;
-    if (handler_calls_.defer(command)) {
-      attention_ = true;
+    Host::now = now;
+    if (Host::state == NmtState::initialisation) return;
+    if (Host::handler_calls.defer(command)) {
+      Host::attention = true;
       return;
     }
-    carry_out(command);
-    serve();
+    Host::carry_out(command);
+    Host::serve();
   }
 
   /// `set` sets an object, whatever its access type: node/object_setters.hpp. If the value has changed, the TPDOs that
@@ -228,7 +227,7 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
     static_assert(!is_of_another_device<Object, Device>,
                   "get: this is an object of another device; this device has another one at its index");
     AccessProbe<Device>::uses(Object::index, Object::sub_index);
-    if constexpr (is_in_dictionary<Object, Device>) return store_.template get<Object>();
+    if constexpr (is_in_dictionary<Object, Device>) return Host::store.template get<Object>();
     return {};
   }
 
@@ -238,27 +237,27 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   [[nodiscard]] AbortCode set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
     AccessProbe<Device>::uses(index, sub_index);
     report_use();
-    const entry::Word word = host().entries().find(index, sub_index);
+    const entry::Word word = Host::store.entries().find(index, sub_index);
     if (word == Dictionary::no_object) return AbortCode::no_object;
     if (word == Dictionary::no_sub_index) return AbortCode::no_sub_index;
     if (entry::place_of(word) != entry::Place::ram) return AbortCode::read_only;
-    if (const AbortCode code = host().entries().check(index, sub_index, word, bytes); code != ok) return code;
+    if (const AbortCode code = Host::store.entries().check(index, sub_index, word, bytes); code != ok) return code;
     if constexpr (service::DriveModes<Device>::exists) {
       if (service::DriveModes<Device>::checks(index, sub_index) && !accepts_mode<Device>(index, bytes[0]))
         return AbortCode::invalid_value;
     }
     const AbortCode closed = with_sheet<Device>(
-        store_, [&](const auto&... of_node) { return check_closed<Device>(index, sub_index, bytes, of_node...); });
+        Host::store, [&](const auto&... of_node) { return check_closed<Device>(index, sub_index, bytes, of_node...); });
     if (closed != ok) return closed;
-    handler_calls_.object_is_set(object_key(index, sub_index));
-    if (!entry::is_domain(word) && host().entries().holds(word, bytes)) return ok;
+    Host::handler_calls.object_is_set(object_key(index, sub_index));
+    if (!entry::is_domain(word) && Host::store.entries().holds(word, bytes)) return ok;
     // Values set in Initialisation belong to the configuration of the device after a reset.
     if constexpr (StoredValues::exists) {
-      if ((word & entry::writable) != 0 && state_ != NmtState::initialisation)
+      if ((word & entry::writable) != 0 && Host::state != NmtState::initialisation)
         StoredValues::before_change(host(), index, sub_index, bytes);
     }
-    host().entries().write(word, bytes);
-    after_write(index, sub_index, true);
+    Host::store.entries().write(word, bytes);
+    Host::after_write(index, sub_index, true);
     return ok;
   }
 
@@ -267,14 +266,14 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// the next `on_time` or `on_frame`: `next_deadline` is due at once. A device without 1014h sends none.
   void emergency(EmergencyCode code, ErrorRegister bits, const EmergencyInfo& info = no_emergency_info) {
     report_use();
-    emergencies().report(host(), code.value(), bits, info);
+    Host::emergencies().report(host(), code.value(), bits, info);
   }
 
   /// Sets bits of 1001h without an EMCY: an error that has been reported keeps them until they are passed to
   /// `emergency_over`.
   void hold_error(ErrorRegister bits) {
     report_use();
-    emergencies().hold(host(), bits);
+    Host::emergencies().hold(host(), bits);
   }
 
   /// Reports that an error of the application has disappeared, and clears `bits` of 1001h. Pass the bits that no other
@@ -282,57 +281,59 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   /// no error had set `bits`.
   void emergency_over(ErrorRegister bits) {
     report_use();
-    emergencies().end(host(), bits);
+    Host::emergencies().end(host(), bits);
   }
   /// The same, with the manufacturer-specific bytes of EMCY 0000h for the errors that remain.
   void emergency_over(ErrorRegister bits, const EmergencyInfo& remaining) {
     report_use();
-    emergencies().end(host(), bits, remaining);
+    Host::emergencies().end(host(), bits, remaining);
   }
 
   /// Returns the number of EMCYs lost since power-on because too many were waiting while the bus had no room, the
   /// inhibit time 1015h ran or the node was Stopped. 1003h, if it exists, records them nevertheless. At most 65,535.
   [[nodiscard]] std::uint16_t lost_emergencies() const {
-    return services_.template get<service::Emergency<Device>>().lost();
+    return Host::services.template get<service::Emergency<Device>>().lost();
   }
 
   /// Handles a change of the CAN controller's state, or lost frames.
   void on_bus_status(const BusStatus& status, TimePoint now) {
     report_call();
-    now_ = now;
-    services_.template get<service::BusErrors<Device>>().on_bus_status(host(), status);
-    if (attention_) serve();
+    Host::now = now;
+    Host::services.template get<service::BusErrors<Device>>().on_bus_status(host(), status);
+    if (Host::attention) Host::serve();
   }
 
   /// Returns the last NMT state that a node of 1016h reported; empty while it is unknown or lost.
   [[nodiscard]] std::optional<NmtState> state_of(NodeId other) const
       requires(service::HeartbeatConsumer<Device>::exists) {
-    return services_.template get<service::HeartbeatConsumer<Device>>().state_of(other);
+    return Host::services.template get<service::HeartbeatConsumer<Device>>().state_of(other);
   }
 
   /// Sends TIME with this time of day. Returns false if 1012h does not enable production, in a state without TIME, or
   /// if the bus has no room.
-  bool send_time(TimeOfDay time) { return serves_sync(state_) && TimeStamp<Device>::send(store_, bus_, time); }
+  bool send_time(TimeOfDay time) {
+    return serves_sync(Host::state) && TimeStamp<Device>::send(Host::store, Host::bus, time);
+  }
 
   /// Stores parameters like "save" to this sub-index of 1010h: storage/parameter_ranges.hpp lists
   /// them. hardware: the storage has failed, or the range is not one of these. With a storage that is written
   /// in steps, `ok` means that it has begun; device_state: the command before it has not ended yet.
   [[nodiscard]] AbortCode save(std::uint8_t sub_index = 1) requires(storage_detail::has_storage<Handlers...>) {
     report_use();
-    return services_.template get<StoredValues>().save(host(), sub_index);
+    return Host::services.template get<StoredValues>().save(host(), sub_index);
   }
 
   /// Restores parameters like "load" to this sub-index of 1011h: the next reset sets their default values.
   [[nodiscard]] AbortCode restore(std::uint8_t sub_index = 1) requires(storage_detail::has_storage<Handlers...>) {
     report_use();
-    return services_.template get<StoredValues>().restore(host(), sub_index);
+    return Host::services.template get<StoredValues>().restore(host(), sub_index);
   }
 
   /// Calls `visit(const StoredValue&)` for each stored value that is not loaded since the last reset, for example those
   /// of another version of this device. The next "save" of all parameters removes them.
   template <class Visit>
   void for_each_not_loaded(Visit visit) requires(storage_detail::has_storage<Handlers...>) {
-    services_.template get<StoredValues>().for_each_not_loaded(host(), visit);
+    Host::services.template get<StoredValues>().for_each_not_loaded(host(), visit);
   }
 
   /// Sends a value to an object of another node, or of all nodes, as a DAM-MPDO (CiA 301, 7.2.2.5), with the next
@@ -342,42 +343,33 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
     static_assert(MpdoService<Device>::sends_destination,
                   "no TPDO of this device is a multiplex PDO or can be made one");
     report_use();
-    return services_.template get<service::Mpdos<Device>>().put(host(), to, value.value());
+    return Host::services.template get<service::Mpdos<Device>>().put(host(), to, value.value());
   }
 
   /// Returns the values in RAM. Changes here do not send TPDOs or restart timers. Do not change mapping parameters
   /// here: services keep data derived from them.
   [[nodiscard]] typename Device::Values& values() {
     report_exposure();
-    return store_.values();
+    return Host::store.values();
   }
-  [[nodiscard]] const typename Device::Values& values() const { return store_.values(); }
+  [[nodiscard]] const typename Device::Values& values() const { return Host::store.values(); }
 
   /// Returns access by index and sub-index, for tools.
   [[nodiscard]] EntryAccess<Device> entries() {
     report_exposure();
-    return store_.entries();
+    return Host::store.entries();
   }
 
  private:
   using HandlerTypes = HandlerSet<Device, Node, Handlers...>;
-  using Host = ServiceHost<Node, Device, HandlerTypes>;
+  using Host = ServiceHost<Node, Device, BusType, Handlers...>;
   friend Host;
   friend ObjectValues<Node>;
   friend ObjectSetters<Node>;
 
-  using BusMember = std::conditional_t<std::is_empty_v<BusType>, BusType, BusType&>;
   using Services = NodeServices<Device, Handlers...>;
   using StoredValues = service::StoredValues<Device, Handlers...>;
   using Sdo = service::Sdo<Device, Handlers...>;
-  static constexpr bool calls_handlers = HandlerTypes::has_access_handlers || DomainHandlerSet<Handlers...>::any;
-
-  /// Whether `on_time` has something to check at each call: a value can be posted to a mailbox at any time. An image
-  /// for size does not wait for the next slot of time with periodic functions, and while parameters are stored in
-  /// steps. This costs nothing in a device without them.
-  static constexpr bool checks_each_call =
-      service::PostedValues<Device, Handlers...>::exists ||
-      (prefers_size && (service::Periodic<Device, Handlers...>::exists || StoredValues::is_stepped));
 
   /// Whether the bus knows each use of its nodes by the application, like the VirtualBus. A node on any other bus does
   /// not contain these reports.
@@ -388,83 +380,33 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
 
   /// The application calls the node with the present time.
   void report_call() {
-    if constexpr (reports_to_bus<BusType>) bus_.node_is_called();
+    if constexpr (reports_to_bus<BusType>) Host::bus.node_is_called();
   }
   /// The application uses the node, which did not get all frames that it ignores.
   void report_use() {
     if constexpr (reports_to_bus<BusType>) {
-      if (bus_.node_is_used(now_)) idle_.end();
+      if (Host::bus.node_is_used(Host::now)) Host::idle.end();
     }
   }
   /// The application gets access to the values.
   void report_exposure() {
     report_use();
-    if constexpr (reports_to_bus<BusType>) bus_.node_is_exposed();
+    if constexpr (reports_to_bus<BusType>) Host::bus.node_is_exposed();
   }
 
   [[nodiscard]] Host& host() { return *this; }
-  [[nodiscard]] auto& emergencies() { return services_.template get<service::Emergency<Device>>(); }
 
   /// Handles a frame that is not one of the frequent ones.
   [[gnu::noinline]] void on_other_frame(const Frame& frame) {
-    if (frame.remote) return static_cast<void>(services_.on_remote_frame(host(), frame));
+    if (frame.remote) return static_cast<void>(Host::services.on_remote_frame(host(), frame));
     const std::uint32_t cob_id = cob_id_of(frame);
-    if (services_.on_fixed_frame(host(), frame, cob_id)) return;
+    if (Host::services.on_fixed_frame(host(), frame, cob_id)) return;
     if (cob_id == function_code::nmt) {
-      if (is_nmt_command(frame, node_id_)) carry_out(static_cast<NmtCommand>(frame.data[0]));
+      if (is_nmt_command(frame, Host::node_id)) Host::carry_out(static_cast<NmtCommand>(frame.data[0]));
     } else if (with_sheet<Device>(
-                   store_, [&](const auto&... of_node) { return is_usable_by_pdo<Device>(cob_id, of_node...); })) {
-      static_cast<void>(services_.on_frame(host(), frame, cob_id));
+                   Host::store, [&](const auto&... of_node) { return is_usable_by_pdo<Device>(cob_id, of_node...); })) {
+      static_cast<void>(Host::services.on_frame(host(), frame, cob_id));
     }
-  }
-
-  /// Executes a command; an invalid code has no effect. The newest command replaces one that a handler has requested.
-  [[gnu::noinline]] void carry_out(NmtCommand command) {
-    handler_calls_.discard_deferred();
-    switch (command) {
-      case NmtCommand::start: enter(NmtState::operational); break;
-      case NmtCommand::stop: enter(NmtState::stopped); break;
-      case NmtCommand::enter_pre_operational: enter(NmtState::pre_operational); break;
-      case NmtCommand::reset_node:
-        emergencies().announce_reset(host());
-        reset_node();
-        break;
-      case NmtCommand::reset_communication:
-        emergencies().announce_reset(host());
-        reset_communication();
-        break;
-    }
-  }
-
-  void enter(NmtState next) {
-    const NmtState before = state_;
-    if (before == next && next != NmtState::initialisation) return;
-    state_ = next;
-    services_.on_state(host(), before, next);
-    attention_ = true;
-    handlers_.template notify_while<function::OnState>(
-        *this, [&] { return state_ == next; }, next);
-  }
-
-  void reset_node() {
-    services_.reset_application(host());
-    reset_communication();
-  }
-
-  void reset_communication() {
-    services_.reset_communication(host());
-    initialise();
-  }
-
-  /// Initialisation after the values have been set (CiA 301, 7.3.2.2.1).
-  void initialise() {
-    enter(NmtState::initialisation);
-    service::BootUp<Device>& boot_up = services_.template get<service::BootUp<Device>>();
-    boot_up.reset();
-    if (!node_id_.valid()) return;
-    boot_up.start();
-    enter(NmtState::pre_operational);
-    if (starts_itself(store_)) enter(NmtState::operational);
   }
 
   /// Checks a value and sets it.
@@ -479,7 +421,8 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
                   std::is_integral_v<RawOf<typename Object::type>>) {
       typename Object::type checked = value;
       const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&checked), (Object::bits + 7) / 8};
-      if (const AbortCode code = host().check_write(Object::index, Object::sub_index, bytes); code != ok) return code;
+      const AbortCode code = Host::services.check_write(host(), Object::index, Object::sub_index, bytes);
+      if (code != ok) return code;
       return take_over_number<Object>(checked);
     } else {
       return take_over_number<Object>(value);
@@ -498,92 +441,39 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device,
   template <DictionaryObject Object>
   AbortCode take_over(const typename Object::type& value) {
     if constexpr (HandlerTypes::template handles_write<Object>) {
-      handler_calls_.object_is_set(object_key(Object::index, Object::sub_index));
+      Host::handler_calls.object_is_set(object_key(Object::index, Object::sub_index));
     }
-    if (!store_.template set<Object>(value)) return ok;
+    if (!Host::store.template set<Object>(value)) return ok;
     if constexpr (StoredValues::exists) {
-      if (state_ != NmtState::initialisation) StoredValues::template after_change<Object>(host());
+      if (Host::state != NmtState::initialisation) StoredValues::template after_change<Object>(host());
     }
-    on_new_value<Object>();
+    Host::template on_new_value<Object>();
     return ok;
   }
 
   template <DictionaryObject Object>
   void bind_domain(const Domain& memory) {
     report_use();
-    store_.template set<Object>(memory);
-    services_.template get<Sdo>().domain_rebound(Object::index, Object::sub_index);
-    attention_ = true;
-  }
-
-  /// Notifies the services that an object has been written, with a new or the same value.
-  void after_write(std::uint16_t index, std::uint8_t sub_index, bool new_value) {
-    const bool concerns_services = new_value || is_communication_index(index);
-    if (new_value || is_communication_index(index)) attention_ = true;  // not by the variable: 12 bytes less
-    if (is_communication_index(index)) services_.after_write(host(), index, sub_index);
-    if (serves_pdo(state_) && concerns_services) services_.after_operational_write(host(), index, sub_index, new_value);
-  }
-  template <DictionaryObject Object>
-  void on_new_value() {
-    if constexpr (is_communication_index(Object::index)) after_write(Object::index, Object::sub_index, true);
-    if (serves_pdo(state_) && services_.template on_new_value<Object>(host())) attention_ = true;
-  }
-
-  /// Sends what is due, in order of importance; what the bus has no room for remains due. A command that a handler has
-  /// requested is executed after the response of the SDO server.
-  [[gnu::noinline]] void serve() {
-    do {
-      attention_ = false;
-      idle_.end();
-      if (services_.silent()) return;
-      if (!services_.serve(host())) keep_attention();
-    } while (carry_out_deferred());
-  }
-
-  /// Returns whether a handler had requested a command.
-  bool carry_out_deferred() {
-    if constexpr (calls_handlers) {
-      if (!handler_calls_.has_deferred() || services_.template get<Sdo>().has_reply()) return false;
-      carry_out(handler_calls_.deferred());
-      return true;
-    }
-    return false;
+    Host::store.template set<Object>(memory);
+    Host::services.template get<Sdo>().domain_rebound(Object::index, Object::sub_index);
+    Host::attention = true;
   }
 
   /// Whether an image for size may not wait for the next slot of time (node/idle_time.hpp): 4 to 8 bytes of a
   /// Cortex-M0+.
   [[nodiscard]] bool needs_exact_time() const {
     if constexpr (prefers_size && service::Sync<Device>::exists)
-      return services_.template get<service::Sync<Device>>().needs_exact_time();
+      return Host::services.template get<service::Sync<Device>>().needs_exact_time();
     return false;
-  }
-
-  /// What the bus had no room for remains due.
-  [[gnu::noinline]] void keep_attention() {
-    attention_ = true;
-    services_.keep_deadlines(host());
   }
 
   /// The whole function of a node without node-ID.
   void serve_without_node_id() {
     if constexpr (Services::sends_without_node_id) {
-      attention_ = !services_.serve_without_node_id(host());
-      if (state_ != NmtState::initialisation) serve();
+      Host::attention = !Host::services.serve_without_node_id(host());
+      if (Host::state != NmtState::initialisation) Host::serve();
     }
   }
-
-  // Most used members first, the values last: a Cortex-M0+ accesses bytes at offsets up to 31 with one instruction.
-  [[no_unique_address]] BusMember bus_;
-  [[no_unique_address]] HandlerTypes handlers_;
-  TimePoint now_{};
-  NodeId node_id_{};
-  NmtState state_ = NmtState::initialisation;
-  bool attention_ = false;  ///< something may have become due since the last check
-  [[no_unique_address]] IdleTimeOf<checks_each_call> idle_{};
-  [[no_unique_address]] HandlerCalls<calls_handlers, HandlerTypes::has_write_handlers, HandlerTypes::has_read_handlers>
-      handler_calls_{};
-  [[no_unique_address]] Services services_{};
-  ObjectStore<Device> store_{};
 };
 
 /// A node with the parts of a composition, followed by those that depend on the hardware.

@@ -27,6 +27,7 @@ class StreamBench {
     [[nodiscard]] AbortCode before_write(std::uint16_t, std::uint8_t, std::span<std::uint8_t>) const {
       return canopen::ok;
     }
+    [[nodiscard]] static bool is_new(canopen::entry::Word, std::span<const std::uint8_t>) { return true; }
     void after_write(std::uint16_t, std::uint8_t) const { ++bench.written; }
     static canopen::AbortCode command(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
       return canopen::AbortCode::not_stored;

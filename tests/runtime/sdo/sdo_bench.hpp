@@ -57,6 +57,7 @@ struct PlainHooks {
                                                 std::span<std::uint8_t> /*bytes*/) const {
     return refuse ? refuse(index, sub_index) : canopen::ok;
   }
+  [[nodiscard]] static bool is_new(canopen::entry::Word, std::span<const std::uint8_t>) { return true; }
   void after_write(std::uint16_t /*index*/, std::uint8_t /*sub_index*/) const {}
   [[nodiscard]] static canopen::AbortCode command(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
     return canopen::AbortCode::not_stored;

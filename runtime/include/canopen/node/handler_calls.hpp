@@ -8,6 +8,9 @@
 
 namespace canopen {
 
+template <bool exist, bool write, bool supply, bool for_tpdo = false>
+class HandlerCall;
+
 /// Records what a read or write handler does with its node: an NMT command is executed after the response of the SDO
 /// server, and a value that the handler sets itself replaces the received one.
 /// `exist`: whether the node has handlers that are called for accesses; if not, this class is empty. `write`, `supply`:
@@ -15,19 +18,10 @@ namespace canopen {
 template <bool exist, bool write, bool supply>
 class HandlerCalls {
  public:
-  /// Handlers of an object are called as long as the result exists. `written` is the key of the object if it is
-  /// written, otherwise 0.
-  [[nodiscard]] auto call([[maybe_unused]] std::uint32_t written = 0) {
-    if constexpr (exist) {
-      if constexpr (write) state_.has_set = false;
-      return Call<false>{state_, written};
-    } else {
-      return NoState{};
-    }
+  /// Returns a call of the read handlers of an object for a TPDO.
+  [[nodiscard]] auto call_for_tpdo(std::uint32_t key) requires(supply) {
+    return HandlerCall<exist, write, supply, true>{*this, key};
   }
-
-  /// The same for the read handlers of an object for a TPDO.
-  [[nodiscard]] auto call_for_tpdo(std::uint32_t key) requires(supply) { return Call<true>{state_, key}; }
 
   /// Whether an object is set by its own read handler for a TPDO.
   [[nodiscard]] bool is_supplied([[maybe_unused]] std::uint32_t key) const {
@@ -77,28 +71,34 @@ class HandlerCalls {
     std::uint32_t key;  ///< of the object that is being written, or read for a TPDO
   };
   using State = std::conditional_t<write || supply, CalledForObject, std::conditional_t<exist, Called, NoState>>;
-
-  /// A call of handlers, which also ends if one of them throws an exception, as on a host.
-  template <bool for_tpdo>
-  class Call {
-   public:
-    Call(State& state, [[maybe_unused]] std::uint32_t key) : state_{state} {
-      if constexpr (write || supply) state_.key = key;
-      state_.active = true;
-      if constexpr (for_tpdo) state_.for_tpdo = true;
-    }
-    ~Call() {
-      if constexpr (for_tpdo) state_.for_tpdo = false;
-      state_.active = false;
-    }
-    Call(const Call&) = delete;
-    Call& operator=(const Call&) = delete;
-
-   private:
-    State& state_;
-  };
+  template <bool, bool, bool, bool>
+  friend class HandlerCall;
 
   [[no_unique_address]] State state_{};
+};
+
+/// Handlers of an object are called as long as this exists; also if one of them throws an exception, as on a host.
+/// `for_tpdo`: they are its read handlers, for a TPDO.
+template <bool exist, bool write, bool supply, bool for_tpdo>
+class HandlerCall {
+ public:
+  /// `key` is that of the object if it is written, or read for a TPDO; otherwise 0.
+  explicit HandlerCall(HandlerCalls<exist, write, supply>& calls, [[maybe_unused]] std::uint32_t key = 0)
+      : calls_{calls} {
+    if constexpr (write && !for_tpdo) calls_.state_.has_set = false;
+    if constexpr (write || supply) calls_.state_.key = key;
+    if constexpr (exist) calls_.state_.active = true;
+    if constexpr (for_tpdo) calls_.state_.for_tpdo = true;
+  }
+  ~HandlerCall() {
+    if constexpr (for_tpdo) calls_.state_.for_tpdo = false;
+    if constexpr (exist) calls_.state_.active = false;
+  }
+  HandlerCall(const HandlerCall&) = delete;
+  HandlerCall& operator=(const HandlerCall&) = delete;
+
+ private:
+  HandlerCalls<exist, write, supply>& calls_;
 };
 
 }  // namespace canopen

@@ -94,44 +94,32 @@ class HandlerSet {
   /// Calls the write handlers of the object with this key; returns the first abort code.
   AbortCode before_write(Node& node, std::uint32_t key, std::span<std::uint8_t> bytes) {
     AbortCode code = ok;
-    for_each([&]<class Handler>(Handler& handler) {
-      if constexpr (Handled<Handler>::takes_any_object) {
-        if (code == ok) code = handler.before_write(key, bytes);
-      }
-      check_value(handler, typename Handled<Handler>::BeforeWrite{}, node, key, bytes, code);
-    });
+    std::apply(
+        [&](Handlers&... handler) {
+          (check_value(handler, typename Handled<Handlers>::BeforeWrite{}, node, key, bytes, code), ...);
+        },
+        handlers_);
     return code;
   }
 
-  /// Calls the handlers of `Object` after it has been written.
-  template <DictionaryObject Object>
-  void after_write([[maybe_unused]] Node& node, [[maybe_unused]] const typename Object::type& value) {
-    for_each([&]<class Handler>([[maybe_unused]] Handler& handler) {
-      if constexpr (handler_detail::has_object<Object, typename Handled<Handler>::AfterWrite>) {
-        AccessProbe<Device>::uses(Object::index, Object::sub_index);
-        Handled<Handler>::template after_write<Object>(handler, node, value);
-      }
-    });
-  }
-
-  /// The same for the object with this key; `store` has its value.
+  /// Calls the handlers of the object with this key after it has been written; `store` has its value.
   template <class Store>
   void after_write(Node& node, std::uint32_t key, const Store& store) {
-    for_each([&]<class Handler>(Handler& handler) {
-      if constexpr (Handled<Handler>::takes_any_object) handler.after_write(key);
-      use_value(handler, typename Handled<Handler>::AfterWrite{}, node, key, store);
-    });
+    std::apply(
+        [&](Handlers&... handler) {
+          (use_value(handler, typename Handled<Handlers>::AfterWrite{}, node, key, store), ...);
+        },
+        handlers_);
   }
 
   /// Calls the read handlers of the object with this key; returns the first abort code.
   AbortCode before_read(Node& node, std::uint32_t key) {
     AbortCode code = ok;
-    for_each([&]<class Handler>(Handler& handler) {
-      if constexpr (Handled<Handler>::takes_any_object) {
-        if (code == ok) code = handler.before_read(key);
-      }
-      supply_value(handler, typename Handled<Handler>::Read{}, node, key, code);
-    });
+    std::apply(
+        [&](Handlers&... handler) {
+          (supply_value(handler, typename Handled<Handlers>::Read{}, node, key, code), ...);
+        },
+        handlers_);
     return code;
   }
 
@@ -165,16 +153,18 @@ class HandlerSet {
   /// Calls all functions of an event, a row of node/functions.hpp.
   template <class Event, class... Arguments>
   void notify(Node& node, const Arguments&... arguments) {
-    for_each([&]<class Handler>(Handler& handler) {
-      Handled<Handler>::template notify<Event>(handler, node, arguments...);
-    });
+    std::apply(
+        [&](Handlers&... handler) { (Handled<Handlers>::template notify<Event>(handler, node, arguments...), ...); },
+        handlers_);
   }
   /// The same while `holds()` is true: a function may end what it learns of.
   template <class Event, class Holds, class... Arguments>
   void notify_while(Node& node, const Holds& holds, const Arguments&... arguments) {
-    for_each([&]<class Handler>(Handler& handler) {
-      if (holds()) Handled<Handler>::template notify<Event>(handler, node, arguments...);
-    });
+    std::apply(
+        [&](Handlers&... handler) {
+          ((holds() ? Handled<Handlers>::template notify<Event>(handler, node, arguments...) : void()), ...);
+        },
+        handlers_);
   }
 
  private:
@@ -195,6 +185,9 @@ class HandlerSet {
   static constexpr void check_value([[maybe_unused]] Handler& handler, ObjectList<Os...>, [[maybe_unused]] Node& node,
                                     [[maybe_unused]] std::uint32_t key, [[maybe_unused]] std::span<std::uint8_t> bytes,
                                     [[maybe_unused]] AbortCode& code) {
+    if constexpr (Handled<Handler>::takes_any_object) {
+      if (code == ok) code = handler.before_write(key, bytes);
+    }
     (static_cast<void>(code == ok && is_for<Os>(key) &&
                        (code = Handled<Handler>::template before_write<Os>(handler, node,
                                                                            value_detail::value_from<Os>(bytes))) == ok),
@@ -203,12 +196,16 @@ class HandlerSet {
   template <class Handler, class... Os, class Store>
   static constexpr void use_value([[maybe_unused]] Handler& handler, ObjectList<Os...>, [[maybe_unused]] Node& node,
                                   [[maybe_unused]] std::uint32_t key, [[maybe_unused]] const Store& store) {
+    if constexpr (Handled<Handler>::takes_any_object) handler.after_write(key);
     ((is_for<Os>(key) ? Handled<Handler>::template after_write<Os>(handler, node, store.template get<Os>()) : void()),
      ...);
   }
   template <class Handler, class... Os>
   static constexpr void supply_value([[maybe_unused]] Handler& handler, ObjectList<Os...>, [[maybe_unused]] Node& node,
                                      [[maybe_unused]] std::uint32_t key, [[maybe_unused]] AbortCode& code) {
+    if constexpr (Handled<Handler>::takes_any_object) {
+      if (code == ok) code = handler.before_read(key);
+    }
     (static_cast<void>(code == ok && is_for<Os>(key) &&
                        (code = Handled<Handler>::template read<Os>(handler, node)) == ok),
      ...);

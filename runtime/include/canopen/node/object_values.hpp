@@ -47,10 +47,10 @@ class ObjectValues : public ObjectSetters<NodeType> {
   requires object_values_detail::Arithmetic<Array<whole_array>>
   [[nodiscard]] Result<typename Array<whole_array>::type> get(Array<whole_array>, std::uint8_t sub_index) {
     using Element = Array<whole_array>;
-    const entry::Word word = node().host().entries().find(Element::index, sub_index);
+    const entry::Word word = node().host().store.entries().find(Element::index, sub_index);
     if (sub_index == 0 || word <= Dictionary::no_sub_index) return AbortCode::no_sub_index;
     std::array<std::uint8_t, 8> bytes{};
-    std::ranges::copy(node().host().entries().read(word, bytes), bytes.begin());
+    std::ranges::copy(node().host().store.entries().read(word, bytes), bytes.begin());
     return value_detail::value_from<Element>(bytes);
   }
 
@@ -64,7 +64,9 @@ class ObjectValues : public ObjectSetters<NodeType> {
     RawOf<typename Element::type> element = to_raw(value.value());
     const std::span<std::uint8_t> bytes{reinterpret_cast<std::uint8_t*>(&element), (Element::bits + 7) / 8};
     if constexpr (is_communication_index(Element::index)) {
-      if (const AbortCode code = node().host().check_write(Element::index, sub_index, bytes); code != ok) return code;
+      if (const AbortCode code = node().host().services.check_write(node().host(), Element::index, sub_index, bytes);
+          code != ok)
+        return code;
     }
     return node().set(Element::index, sub_index, bytes);
   }
@@ -95,7 +97,7 @@ class ObjectValues : public ObjectSetters<NodeType> {
     return Remapping<Device, Number, Layout>::map(
         [this](std::uint16_t index, std::uint8_t sub_index, std::uint32_t value, std::size_t size) {
           const std::span bytes{reinterpret_cast<std::uint8_t*>(&value), size};
-          const AbortCode code = node().host().check_write(index, sub_index, bytes);
+          const AbortCode code = node().host().services.check_write(node().host(), index, sub_index, bytes);
           return code != ok ? code : node().set(index, sub_index, bytes);
         });
   }

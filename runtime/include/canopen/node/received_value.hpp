@@ -8,32 +8,25 @@
 
 #include "canopen/base/abort_code.hpp"
 #include "canopen/base/optimization.hpp"
-#include "canopen/node/services/drive_modes.hpp"
+#include "canopen/node/handler_calls.hpp"
 #include "canopen/node/value_check.hpp"
-#include "canopen/od/closed_objects.hpp"
 #include "canopen/od/dictionary.hpp"
 #include "canopen/od/object_store.hpp"
-#include "canopen/od/sheet.hpp"
 
 namespace canopen {
 
 /// Checks whether a received value, whose length and limits are correct, may be written: asks the services, then calls
 /// the write handlers of the object. Both may change the bytes.
 template <class Host>
-[[nodiscard]] inline AbortCode before_write(Host& host, std::uint16_t index, std::uint8_t sub_index,
-                                            std::span<std::uint8_t> bytes) {
-  using Device = typename Host::Device;
-  const auto is_in_enumeration = [&](const auto&... of_node) {
-    return is_closed<Device>(index, sub_index, of_node...);
-  };
-  if (is_communication_index(index) || service::DriveModes<Device>::checks(index, sub_index) ||
-      with_sheet<Device>(host.store(), is_in_enumeration)) {
-    if (const AbortCode code = host.check_write(index, sub_index, bytes); code != ok) return code;
+[[nodiscard]] inline AbortCode check_received(Host& host, std::uint16_t index, std::uint8_t sub_index,
+                                              std::span<std::uint8_t> bytes) {
+  if (is_communication_index(index) || host.services.checks_application_object(index, sub_index)) {
+    if (const AbortCode code = host.services.check_write(host, index, sub_index, bytes); code != ok) return code;
   }
   if constexpr (Host::Handlers::has_write_handlers) {
     const std::uint32_t key = object_key(index, sub_index);
-    [[maybe_unused]] const auto call = host.handler_calls().call(key);
-    return host.handlers().before_write(host.node(), key, bytes);
+    const HandlerCall call{host.handler_calls, key};
+    return host.handlers.before_write(host.node(), key, bytes);
   }
   return ok;
 }
@@ -44,8 +37,8 @@ template <class Host>
 inline void notify_written([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t index,
                            [[maybe_unused]] std::uint8_t sub_index) {
   if constexpr (Host::Handlers::has_written_handlers) {
-    [[maybe_unused]] const auto call = host.handler_calls().call();
-    host.handlers().after_write(host.node(), object_key(index, sub_index), host.store());
+    const HandlerCall call{host.handler_calls};
+    host.handlers.after_write(host.node(), object_key(index, sub_index), host.store);
   }
 }
 
@@ -54,12 +47,12 @@ inline void notify_written([[maybe_unused]] Host& host, [[maybe_unused]] std::ui
 template <class Host>
 inline void take_received(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
   using Entries = EntryAccess<typename Host::Device>;
-  const entry::Word word = host.entries().find(index, sub_index);
+  const entry::Word word = host.store.entries().find(index, sub_index);
   if (Entries::kinds.booleans && entry::is_boolean(word)) bytes[0] = bytes[0] != 0 ? 1 : 0;
-  if (host.entries().check(index, sub_index, word, bytes) != ok) return;
-  if (before_write(host, index, sub_index, bytes) != ok) return;
-  if (!host.handler_calls().set_by_handler() && !host.entries().holds(word, bytes)) {
-    host.entries().write(word, bytes);
+  if (host.store.entries().check(index, sub_index, word, bytes) != ok) return;
+  if (check_received(host, index, sub_index, bytes) != ok) return;
+  if (!host.handler_calls.set_by_handler() && !host.store.entries().holds(word, bytes)) {
+    host.store.entries().write(word, bytes);
     host.after_write(index, sub_index, true);
   }
   notify_written(host, index, sub_index);
@@ -72,17 +65,17 @@ inline void take_received(Host& host, const typename Object::type& value) {
   // instructions of a Cortex-M4, takes 12 bytes of a Cortex-M0+.
   if constexpr (!prefers_size && requires { Object::accepted; } && !Host::Handlers::template handles_write<Object> &&
                 !Host::Handlers::template handles_written<Object>) {
-    if (value == host.store().template get<Object>()) return;
+    if (value == host.store.template get<Object>()) return;
   }
   if (check_limits<Object>(value) != ok) return;
   if constexpr (Host::Handlers::template handles_write<Object>) {
     {
-      [[maybe_unused]] const auto call = host.handler_calls().call(object_key(Object::index, Object::sub_index));
-      if (host.handlers().template before_write<Object>(host.node(), value) != ok) return;
+      const HandlerCall call{host.handler_calls, object_key(Object::index, Object::sub_index)};
+      if (host.handlers.template before_write<Object>(host.node(), value) != ok) return;
     }
-    if (host.handler_calls().set_by_handler()) return notify_written(host, Object::index, Object::sub_index);
+    if (host.handler_calls.set_by_handler()) return notify_written(host, Object::index, Object::sub_index);
   }
-  if (host.store().template set<Object>(value)) host.template on_new_value<Object>();
+  if (host.store.template set<Object>(value)) host.template on_new_value<Object>();
   if constexpr (Host::Handlers::template handles_written<Object>)
     notify_written(host, Object::index, Object::sub_index);
 }

@@ -85,7 +85,7 @@ struct ServiceDefaults {
   static bool serve(Host&) {
     return true;
   }
-  /// Returns when `on_time` or `serve` is next due; not later than `host.now()` if it is already due.
+  /// Returns when `on_time` or `serve` is next due; not later than `host.now` if it is already due.
   template <class Host>
   static std::optional<TimePoint> deadline(Host&) {
     return std::nullopt;
@@ -107,6 +107,8 @@ struct ServiceDefaults {
   static constexpr bool checks([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
     return false;
   }
+  /// Whether it does so for objects outside of 1000h..1FFFh.
+  static constexpr bool checks_application_objects = false;
   /// Checks whether these bytes, whose length and limits are correct, may be written; may change them.
   template <class Host>
   static AbortCode check_write(Host&, std::uint16_t, std::uint8_t, std::span<std::uint8_t>) {
@@ -141,8 +143,6 @@ namespace service_detail {
 
 template <class Service>
 struct Absent : ServiceDefaults<Absent<Service>> {};
-template <class Service>
-inline constexpr Absent<Service> absent;
 
 /// The service, or nothing if the device does not have it.
 template <class Service>
@@ -173,76 +173,76 @@ class ServiceSet : private service_detail::Present<Services>... {
 
   template <class Host>
   void on_start(Host& host) {
-    (present<Services>().on_start(host), ...);
+    (Present<Services>::on_start(host), ...);
   }
   template <class Host>
   void reset_application(Host& host) {
-    (present<Services>().reset_application(host), ...);
+    (Present<Services>::reset_application(host), ...);
   }
   template <class Host>
   void reset_communication(Host& host) {
-    (present<Services>().reset_communication(host), ...);
+    (Present<Services>::reset_communication(host), ...);
   }
   template <class Host>
   void on_state(Host& host, NmtState before, NmtState state) {
-    (present<Services>().on_state(host, before, state), ...);
+    (Present<Services>::on_state(host, before, state), ...);
   }
 
   template <class Host>
   [[nodiscard]] bool on_frequent_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
-    return (present<Services>().on_frequent_frame(host, frame, cob_id) || ...);
+    return (Present<Services>::on_frequent_frame(host, frame, cob_id) || ...);
   }
   /// Whether the CAN-ID of a frame that is not a frequent one may be that of any service.
   template <class Host>
   [[nodiscard]] bool may_take(const Host& host, std::uint32_t cob_id) const {
-    return !is_pdo_can_id(cob_id) || (present<Services>().may_take(host, cob_id) || ...);
+    return !is_pdo_can_id(cob_id) || (Present<Services>::may_take(host, cob_id) || ...);
   }
   /// Passes each frame to the services that work without node-ID; others may process it as well.
   template <class Host>
   void on_frame_without_node_id(Host& host, const Frame& frame) {
-    (static_cast<void>(
-         present<Services, Present<Services>::runs_without_node_id>().on_frame(host, frame, cob_id_of(frame))),
+    (static_cast<void>(Present<Services>::runs_without_node_id &&
+                       Present<Services>::on_frame(host, frame, cob_id_of(frame))),
      ...);
   }
   /// Passes a frame with a CAN-ID of the pre-defined connection set.
   template <class Host>
   [[nodiscard]] bool on_fixed_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
-    return (present<Services, Present<Services>::has_fixed_can_id>().on_frame(host, frame, cob_id) || ...);
+    return ((Present<Services>::has_fixed_can_id && Present<Services>::on_frame(host, frame, cob_id)) || ...);
   }
   /// Passes a frame whose CAN-ID may be that of a configured COB-ID.
   template <class Host>
   [[nodiscard]] bool on_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
-    return (present<Services, is_configured<Services>>().on_frame(host, frame, cob_id) || ...);
+    return ((is_configured<Services> && Present<Services>::on_frame(host, frame, cob_id)) || ...);
   }
   template <class Host>
   [[nodiscard]] bool on_remote_frame(Host& host, const Frame& frame) {
-    return (present<Services>().on_remote_frame(host, frame) || ...);
+    return (Present<Services>::on_remote_frame(host, frame) || ...);
   }
   template <class Host>
   void on_sync(Host& host, Sync sync) {
-    (present<Services>().on_sync(host, sync), ...);
+    (Present<Services>::on_sync(host, sync), ...);
   }
 
   template <class Host>
   void on_time_without_node_id(Host& host) {
-    (present<Services, Present<Services>::runs_without_node_id>().on_time(host), ...);
+    ((Present<Services>::runs_without_node_id ? Present<Services>::on_time(host) : void()), ...);
   }
   template <class Host>
   void on_time(Host& host) {
-    (present<Services, !Present<Services>::runs_without_node_id>().on_time(host), ...);
+    ((Present<Services>::runs_without_node_id ? void() : Present<Services>::on_time(host)), ...);
   }
   /// Sends what is due, in the order of the services, until the bus has no room. Returns false if it has none.
   template <class Host>
   [[nodiscard]] bool serve(Host& host) {
-    return (present<Services>().serve(host) && ...);
+    return (Present<Services>::serve(host) && ...);
   }
   template <class Host>
   [[nodiscard]] bool serve_without_node_id(Host& host) {
-    return ((!Present<Services>::runs_without_node_id || present<Services>().serve(host)) && ...);
+    return ((!Present<Services>::runs_without_node_id || Present<Services>::serve(host)) && ...);
   }
   template <class Host>
   void keep_deadlines(Host& host) {
-    (present<Services>().keep_deadlines(host), ...);
+    (Present<Services>::keep_deadlines(host), ...);
   }
   /// Returns the earliest deadline; of those services only that work without node-ID if `all` is not set.
   template <class Host>
@@ -251,12 +251,16 @@ class ServiceSet : private service_detail::Present<Services>... {
     (consider<Services>(next, host, all), ...);
     return next;
   }
-  [[nodiscard]] bool silent() const { return (present<Services>().silent() || ...); }
+  [[nodiscard]] bool silent() const { return (Present<Services>::silent() || ...); }
 
   [[nodiscard]] ServiceErrors errors() const {
-    return static_cast<ServiceErrors>((unsigned{present<Services>().errors()} | ...));
+    return static_cast<ServiceErrors>((unsigned{Present<Services>::errors()} | ...));
   }
 
+  /// Whether a service checks writes to an entry outside of 1000h..1FFFh.
+  [[nodiscard]] static constexpr bool checks_application_object(std::uint16_t index, std::uint8_t sub_index) {
+    return ((Present<Services>::checks_application_objects && Present<Services>::checks(index, sub_index)) || ...);
+  }
   template <class Host>
   [[nodiscard]] AbortCode check_write(Host& host, std::uint16_t index, std::uint8_t sub_index,
                                       std::span<std::uint8_t> bytes) {
@@ -264,20 +268,20 @@ class ServiceSet : private service_detail::Present<Services>... {
   }
   template <class Host>
   void after_write(Host& host, std::uint16_t index, std::uint8_t sub_index) {
-    (present<Services>().after_write(host, index, sub_index), ...);
+    (Present<Services>::after_write(host, index, sub_index), ...);
   }
   template <class Host>
   void after_operational_write(Host& host, std::uint16_t index, std::uint8_t sub_index, bool new_value) {
-    (present<Services>().after_operational_write(host, index, sub_index, new_value), ...);
+    (Present<Services>::after_operational_write(host, index, sub_index, new_value), ...);
   }
   template <DictionaryObject Object, class Host>
   [[nodiscard]] bool on_new_value(Host& host) {
-    return (static_cast<unsigned>(present<Services>().template on_new_value<Object>(host)) | ...) != 0;
+    return (static_cast<unsigned>(Present<Services>::template on_new_value<Object>(host)) | ...) != 0;
   }
   template <class Host>
   [[nodiscard]] AbortCode before_read(Host& host, std::uint16_t index, std::uint8_t sub_index) {
     AbortCode code = ok;
-    static_cast<void>((((code = present<Services>().before_read(host, index, sub_index)) == ok) && ...));
+    static_cast<void>((((code = Present<Services>::before_read(host, index, sub_index)) == ok) && ...));
     return code;
   }
   template <class Host>
@@ -293,25 +297,11 @@ class ServiceSet : private service_detail::Present<Services>... {
   static constexpr bool is_configured =
       !Present<ServiceType>::has_fixed_can_id && !Present<ServiceType>::runs_without_node_id;
 
-  /// The service; one that does nothing if the device does not have it, or if it is not to be called.
-  template <class ServiceType, bool called = true>
-  [[nodiscard]] auto& present() {
-    if constexpr (called) {
-      return static_cast<Present<ServiceType>&>(*this);
-    } else {
-      return service_detail::absent<ServiceType>;
-    }
-  }
-  template <class ServiceType>
-  [[nodiscard]] const Present<ServiceType>& present() const {
-    return *this;
-  }
-
   template <class ServiceType, class Host>
   void consider(std::optional<TimePoint>& next, Host& host, bool all) const {
     if (!all && !Present<ServiceType>::runs_without_node_id) return;
-    const std::optional<TimePoint> other = present<ServiceType>().deadline(host);
-    if (other) next = next ? earlier_deadline(*next, *other, host.now()) : *other;
+    const std::optional<TimePoint> other = Present<ServiceType>::deadline(host);
+    if (other) next = next ? earlier_deadline(*next, *other, host.now) : *other;
   }
 
   /// Not a fold: with one return for each service, an image is smaller.
@@ -319,7 +309,7 @@ class ServiceSet : private service_detail::Present<Services>... {
   [[nodiscard]] AbortCode check_first(Host& host, std::uint16_t index, std::uint8_t sub_index,
                                       std::span<std::uint8_t> bytes) {
     if (Present<ServiceType>::checks(index, sub_index))
-      return present<ServiceType>().check_write(host, index, sub_index, bytes);
+      return Present<ServiceType>::check_write(host, index, sub_index, bytes);
     if constexpr (sizeof...(Rest) != 0) return check_first<Rest...>(host, index, sub_index, bytes);
     return ok;
   }
@@ -328,7 +318,7 @@ class ServiceSet : private service_detail::Present<Services>... {
   [[nodiscard]] bool command_if(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes,
                                 AbortCode& code) {
     if (!Present<ServiceType>::has_command(index)) return false;
-    code = present<ServiceType>().command(host, index, sub_index, bytes);
+    code = Present<ServiceType>::command(host, index, sub_index, bytes);
     return true;
   }
 };

@@ -55,11 +55,11 @@ struct Kinds {
 
 }  // namespace entry
 
-/// The tables in which entries are found at run time: those of the type, by static functions.
+/// The values of one node, and the tables in which entries are found at run time: those of the type, by static
+/// functions.
 template <class Device>
-class EntryDirectory {
- public:
-  constexpr explicit EntryDirectory(ObjectStore<Device>& store) : store_{&store} {}
+struct EntryDirectory {
+  ObjectStore<Device>* values;
 
   [[nodiscard]] static constexpr const Dictionary& dictionary() { return Device::dictionary; }
 
@@ -67,25 +67,18 @@ class EntryDirectory {
   [[nodiscard, gnu::noinline]] static entry::Word find(std::uint16_t index, std::uint8_t sub_index) {
     return Device::dictionary.sub_word(EntrySearch<Device>::find(index), sub_index);
   }
-
- protected:
-  ObjectStore<Device>* store_;
 };
 
-/// Those of the sheet of the node.
+/// The same with the tables of the sheet of the node.
 template <class Device>
 requires has_sheet<Device>
-class EntryDirectory<Device> {
- public:
-  constexpr explicit EntryDirectory(ObjectStore<Device>& store) : store_{&store} {}
+struct EntryDirectory<Device> {
+  ObjectStore<Device>* values;
 
-  [[nodiscard]] const Dictionary& dictionary() const { return Device::sheet_of(*store_).dictionary; }
+  [[nodiscard]] const Dictionary& dictionary() const { return Device::sheet_of(*values).dictionary; }
   [[nodiscard]] entry::Word find(std::uint16_t index, std::uint8_t sub_index) const {
     return dictionary().find(index, sub_index);
   }
-
- protected:
-  ObjectStore<Device>* store_;
 };
 
 /// Access to the entries of one node by index and sub-index, as an SDO server needs it. A reference to an ObjectStore,
@@ -93,12 +86,12 @@ class EntryDirectory<Device> {
 template <class Device>
 class EntryAccess : public EntryDirectory<Device> {
   using Directory = EntryDirectory<Device>;
-  using Directory::store_;
+  using Directory::values;
 
  public:
   static constexpr entry::Kinds kinds = entry::kinds_of(Device::dictionary);
 
-  using Directory::Directory, Directory::dictionary, Directory::find;
+  using Directory::dictionary, Directory::find;
 
   /// Returns the bytes of an entry as SDO sends them. Immediate values are copied to `scratch`, others are referenced
   /// in place. An unbound domain: no bytes, null pointer.
@@ -127,24 +120,24 @@ class EntryAccess : public EntryDirectory<Device> {
   }
 
   /// Returns an unsigned value of up to 32 bits.
-  [[nodiscard]] std::uint32_t number(entry::Word word) const { return number_of(store_, word); }
+  [[nodiscard]] std::uint32_t number(entry::Word word) const { return number_of(values, word); }
 
   /// Returns an unsigned value of up to 32 bits; the entry must exist.
   [[nodiscard]] std::uint32_t number(std::uint16_t index, std::uint8_t sub_index) const {
-    return number_of(store_, find(index, sub_index));
+    return number_of(values, find(index, sub_index));
   }
 
   /// Returns an unsigned value of up to 32 bits of an entry that is known at compile time.
   template <std::uint16_t Index, std::uint8_t SubIndex>
   [[nodiscard]] std::uint32_t number() const {
     AccessProbe<Device>::uses(Index, SubIndex);
-    return store_->template number<Index, SubIndex>();
+    return values->template number<Index, SubIndex>();
   }
 
   /// Returns an unsigned value of `Size` bytes at an offset in RAM.
   template <std::uint8_t Size>
   [[nodiscard]] std::uint32_t number_at(std::size_t offset) const {
-    const std::uint8_t* const where = reinterpret_cast<const std::uint8_t*>(store_) + offset;
+    const std::uint8_t* const where = reinterpret_cast<const std::uint8_t*>(values) + offset;
     if constexpr (Size == 1) {
       return *where;
     } else if constexpr (Size == 2) {
@@ -159,7 +152,7 @@ class EntryAccess : public EntryDirectory<Device> {
 
   /// Returns the address of an entry in RAM.
   [[nodiscard]] std::uint8_t* ram(entry::Word word) const {
-    return reinterpret_cast<std::uint8_t*>(store_) + entry::offset_of(word);
+    return reinterpret_cast<std::uint8_t*>(values) + entry::offset_of(word);
   }
 
   /// Returns the address of an entry in the constants.
@@ -294,7 +287,7 @@ class EntryAccess : public EntryDirectory<Device> {
  private:
   /// One copy in an image, with the address of the values in a register.
   [[nodiscard, gnu::noinline]] static std::uint32_t number_of(ObjectStore<Device>* store, entry::Word word) {
-    const EntryAccess entries{*store};
+    const EntryAccess entries{{store}};
     if (is_immediate(word)) return entries.immediate_value(word);
     const std::uint8_t* const where = entries.address(word);
     if (entry::size_of(word) == 1) return *where;
@@ -349,7 +342,7 @@ class EntryAccess : public EntryDirectory<Device> {
 
   [[nodiscard]] std::uint32_t immediate_value(entry::Word word) const {
     const std::uint32_t value = entry::offset_of(word);
-    if (entry::place_of(word) == entry::Place::immediate_plus_node_id) return value + store_->node_id().value();
+    if (entry::place_of(word) == entry::Place::immediate_plus_node_id) return value + values->node_id().value();
     return is_negative(word) ? value | 0xFFFF'0000 : value;
   }
 

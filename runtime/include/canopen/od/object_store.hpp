@@ -113,7 +113,7 @@ class ObjectStore {
   }
 
   [[nodiscard]] NodeId node_id() const { return node_id_; }
-  [[nodiscard]] EntryAccess<Device> entries() { return EntryAccess<Device>{*this}; }
+  [[nodiscard]] EntryAccess<Device> entries() { return {{this}}; }
   [[nodiscard]] typename Device::Values& values() { return values_; }
   [[nodiscard]] const typename Device::Values& values() const { return values_; }
 

@@ -365,9 +365,7 @@ class TpdoService {
       }
       return send_configured(bus, cob_id, slot.size, words.first, words.second);
     } else {
-      const bool usable = with_sheet<Device>(
-          store.entries(), [&](auto... of_node) { return is_usable_by_pdo<Device>(cob_id, of_node...); });
-      if (!usable) return true;
+      if (!is_usable_by_pdo<Device>(cob_id, store)) return true;
       Frame frame;
       frame.id = cob_id & 0x1FFF'FFFF;
       frame.extended = (cob_id & CobId::extended_bit) != 0;
@@ -397,7 +395,7 @@ class TpdoService {
   /// Writes the values of the mapped objects to data, which must be zero and aligned to four bytes.
   void pack(std::size_t which, ObjectStore<Device>& store, Data& data) const {
     if constexpr (has_dynamic_mapping) {
-      if (Mapped::is_dynamic(which)) pack_mapped(which, store.entries(), data);
+      if (Mapped::is_dynamic(which)) return pack_mapped(which, store.entries(), data);
     }
     if constexpr (Mapped::any_static) Static::pack(which, store, data, Pdos{}, std::make_index_sequence<count>{});
   }

@@ -81,7 +81,9 @@ inline constexpr std::uint8_t block_end_mask = 0xE3;             ///< of an end 
 [[nodiscard]] constexpr std::uint32_t multiplexer(std::uint16_t index, std::uint8_t sub_index) {
   return std::uint32_t{index} << 8 | std::uint32_t{sub_index} << 24;
 }
-[[nodiscard]] constexpr std::uint32_t multiplexer_of(const Data& data) { return multiplexer(index_of(data), data[3]); }
+[[nodiscard]] constexpr std::uint32_t multiplexer_of(const Data& data) {
+  return std::uint32_t{index_of(data)} << 8 | std::uint32_t{data[3]} << 24;
+}
 
 /// Whether a response contains an index and sub-index: initiate responses and aborts.
 [[nodiscard]] constexpr bool has_multiplexer(const Data& response) {

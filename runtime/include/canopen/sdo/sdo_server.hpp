@@ -72,12 +72,6 @@ class SdoServer : private SdoServerTransfer<Device> {  // its bytes are first: t
     }
   }
 
-  /// The same for a device without block transfer.
-  void reply_sent() {
-    static_assert(!has_block, "the next segment of a block upload needs the hooks");
-    Transfer::drop_reply();
-  }
-
   /// The request has started a command that takes longer: its response waits for `command_ended`.
   using Transfer::hold_reply;
   /// The client does not wait for the response any more.
@@ -186,7 +180,7 @@ class SdoServer : private SdoServerTransfer<Device> {  // its bytes are first: t
   // Expedited and segmented download
 
   [[nodiscard]] AbortCode initiate_download(const sdo::Data& request, auto& hooks) {
-    if (const AbortCode code = Transfer::find_writable(hooks); code != ok) return code;
+    if (const AbortCode code = Transfer::find(entry::writable, AbortCode::read_only, hooks); code != ok) return code;
     const bool indicated = (request[0] & sdo::size_indicated) != 0;
     if ((request[0] & sdo::expedited) != 0) {
       const std::uint32_t size = indicated ? 4u - ((request[0] >> 2) & 3u) : Transfer::size_without_indication();

@@ -83,7 +83,7 @@ class SdoServerBlocks {
 
   /// Starts a block download.
   [[nodiscard]] static AbortCode initiate_download(const sdo::Data& request, Transfer& transfer, auto& hooks) {
-    if (const AbortCode code = transfer.find_writable(hooks); code != ok) return code;
+    if (const AbortCode code = transfer.find(entry::writable, AbortCode::read_only, hooks); code != ok) return code;
     const bool indicated = (request[0] & sdo::block_size_indicated) != 0;
     if (const AbortCode code = transfer.open_download(indicated, sdo::word_of(request), hooks); code != ok) return code;
     transfer.progress().begin(request[0]);

@@ -15,17 +15,18 @@ namespace canopen {
 ///   EntryAccess<Device> entries();
 ///   AbortCode before_read(index, sub_index);            may refresh the value, or reject the access
 ///   AbortCode before_write(index, sub_index, bytes);    the bytes fit the entry; may reject or change them
+///   bool is_new(word, bytes);                           after before_write: whether the bytes still need to be stored
 ///   void after_write(index, sub_index);
 ///   AbortCode command(index, sub_index, bytes);         a write to an entry without a value, such as 1010h
 /// and, optionally:
-///   bool is_new(word, bytes);                           after before_write: whether they still need to be stored
 ///   bool started_command();                             whether the request started a command that has not ended yet
 template <class Type, class Device>
-concept SdoServerHooks = requires(Type hooks, std::uint16_t index, std::uint8_t sub_index,
+concept SdoServerHooks = requires(Type hooks, std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                   std::span<std::uint8_t> bytes) {
   { hooks.entries() } -> std::same_as<EntryAccess<Device>>;
   { hooks.before_read(index, sub_index) } -> std::same_as<AbortCode>;
   { hooks.before_write(index, sub_index, bytes) } -> std::same_as<AbortCode>;
+  { hooks.is_new(word, bytes) } -> std::same_as<bool>;
   hooks.after_write(index, sub_index);
   { hooks.command(index, sub_index, bytes) } -> std::same_as<AbortCode>;
 };

@@ -29,6 +29,8 @@ namespace canopen {
 /// the protocols that use it.
 template <class Device>
 class SdoServerTransfer {
+  using Entries = EntryAccess<Device>;
+
  public:
   enum class State : std::uint8_t {
     idle,
@@ -72,6 +74,14 @@ class SdoServerTransfer {
   [[nodiscard]] auto& progress() { return progress_; }
   [[nodiscard]] const auto& progress() const { return progress_; }
 
+  /// Finds the entry of the request; returns `refusal` if it does not have this access right.
+  [[nodiscard]] AbortCode find(entry::Word right, AbortCode refusal, [[maybe_unused]] auto& hooks) {
+    word_ = hooks.entries().find(index(), sub_index());
+    if (word_ == Dictionary::no_object) return AbortCode::no_object;
+    if (word_ == Dictionary::no_sub_index) return AbortCode::no_sub_index;
+    return (word_ & right) != 0 ? ok : refusal;
+  }
+
   // Upload
 
   /// Finds an entry that can be read now.
@@ -95,7 +105,7 @@ class SdoServerTransfer {
     if constexpr (DomainStreamHooks<Hooks, Device>) {
       bytes_ = nullptr;
       size_ = sdo::unknown_size;
-      if (is_domain() && hooks.streams_upload(index(), sub_index())) return ok;
+      if (Entries::is_domain(word_) && hooks.streams_upload(index(), sub_index())) return ok;
     }
     std::span<const std::uint8_t> bytes;
     if constexpr (has_long_numbers) {
@@ -167,20 +177,17 @@ class SdoServerTransfer {
 
   // Download
 
-  /// Finds an entry that can be written.
-  [[nodiscard]] AbortCode find_writable(auto& hooks) { return find(entry::writable, AbortCode::read_only, hooks); }
-
   /// Returns the size of an expedited download that does not indicate it: that of the entry, or four bytes if it
   /// is variable.
   [[nodiscard]] std::uint32_t size_without_indication() const {
-    const std::uint32_t size = EntryAccess<Device>::bytes_of(word_);
+    const std::uint32_t size = Entries::bytes_of(word_);
     return size - 1u < 4u ? size : 4u;
   }
 
   /// Accepts four bytes, of which the first `size` are the value.
   [[nodiscard]] AbortCode take_expedited(const std::uint8_t* bytes, std::uint32_t size, auto& hooks) {
     std::memcpy(buffer_.data(), bytes, 4);
-    if (is_domain()) {
+    if (Entries::is_domain(word_)) {
       if (const AbortCode code = open_download(true, size, hooks); code != ok) return code;
       if (const AbortCode code = store(hooks, buffer_.data(), size, true); code != ok) return code;
       return finish(hooks);
@@ -197,12 +204,12 @@ class SdoServerTransfer {
     size_ = size_indicated_ ? announced : sdo::unknown_size;
     if constexpr (DomainStreamHooks<Hooks, Device>) {
       bytes_ = nullptr;
-      if (is_domain() && hooks.streams_download(index(), sub_index())) return ok;
+      if (Entries::is_domain(word_) && hooks.streams_download(index(), sub_index())) return ok;
     }
     bytes_ = buffer_.data();
     std::uint32_t room = room_in_buffer(hooks);
-    const EntryAccess<Device> entries = hooks.entries();
-    if (is_domain()) {
+    const Entries entries = hooks.entries();
+    if (Entries::is_domain(word_)) {
       const Domain memory = entries.domain(word_);
       if (memory.data == nullptr) return AbortCode::not_stored;
       bytes_ = memory.data;
@@ -214,14 +221,15 @@ class SdoServerTransfer {
     } else {
       size_ = room;
     }
-    if (is_domain()) entries.resize_domain(word_, 0);
+    if (Entries::is_domain(word_)) entries.resize_domain(word_, 0);
     return ok;
   }
 
   /// Checks whether this number of further bytes is accepted.
   [[nodiscard]] AbortCode check_room(std::uint32_t size) const {
     if (size <= size_ - position_) return ok;
-    if (buffer_is_short && size_ == buffer_bytes && !size_indicated_ && !is_domain()) return AbortCode::out_of_memory;
+    if (buffer_is_short && size_ == buffer_bytes && !size_indicated_ && !Entries::is_domain(word_))
+      return AbortCode::out_of_memory;
     return AbortCode::length_too_high;
   }
 
@@ -328,11 +336,10 @@ class SdoServerTransfer {
   }();
 
   /// Whether there are numbers of more than four bytes, or BOOLEANs, which `answer_number` cannot send.
-  static constexpr bool has_long_numbers =
-      EntryAccess<Device>::kinds.wide_numbers || EntryAccess<Device>::kinds.booleans;
+  static constexpr bool has_long_numbers = Entries::kinds.wide_numbers || Entries::kinds.booleans;
 
   /// Copies a number for a block upload.
-  [[nodiscard]] AbortCode open_number(EntryAccess<Device> entries) {
+  [[nodiscard]] AbortCode open_number(Entries entries) {
     const std::uint32_t value = entries.number(word_);
     std::memcpy(assume_aligned<4>(buffer_.data()), &value, sizeof value);
     bytes_ = buffer_.data();
@@ -342,7 +349,6 @@ class SdoServerTransfer {
 
   [[nodiscard]] std::uint16_t index() const { return static_cast<std::uint16_t>(multiplexer_ >> 8); }
   [[nodiscard]] std::uint8_t sub_index() const { return static_cast<std::uint8_t>(multiplexer_ >> 24); }
-  [[nodiscard]] bool is_domain() const { return EntryAccess<Device>::is_domain(word_); }
 
   /// Returns the bytes of the buffer that a download may use.
   [[nodiscard]] static std::uint32_t room_in_buffer([[maybe_unused]] auto& hooks) {
@@ -352,14 +358,6 @@ class SdoServerTransfer {
     } else {
       return buffer_bytes;
     }
-  }
-
-  /// Finds the entry and checks its access right; returns `refusal` if the right is missing.
-  [[nodiscard]] AbortCode find(entry::Word right, AbortCode refusal, [[maybe_unused]] auto& hooks) {
-    word_ = hooks.entries().find(index(), sub_index());
-    if (word_ == Dictionary::no_object) return AbortCode::no_object;
-    if (word_ == Dictionary::no_sub_index) return AbortCode::no_sub_index;
-    return (word_ & right) != 0 ? ok : refusal;
   }
 
   /// Writes bytes whose length fits. "save" needs much stack, so writing a value has a stack frame of its own.
@@ -376,7 +374,7 @@ class SdoServerTransfer {
 
   /// Writes a value, unless a check rejects it.
   [[nodiscard]] AbortCode write_value(std::span<std::uint8_t> bytes, auto& hooks) {
-    const EntryAccess<Device> entries = hooks.entries();
+    const Entries entries = hooks.entries();
     if constexpr (has_sheet<Device>) {
       if (const AbortCode code = entries.check_value(index(), sub_index(), word_, bytes, entries); code != ok)
         return code;
@@ -385,18 +383,13 @@ class SdoServerTransfer {
     }
     if (const AbortCode code = hooks.before_write(index(), sub_index(), bytes); code != ok) return code;
     // A handler may have bound a DOMAIN to other memory: the application has then taken the bytes.
-    const bool in_place = !is_domain() || entries.domain(word_).data == bytes.data();
-    if (in_place && is_new(bytes, hooks)) entries.write(word_, bytes);
+    const bool in_place = !Entries::is_domain(word_) || entries.domain(word_).data == bytes.data();
+    if (in_place && hooks.is_new(word_, bytes)) entries.write(word_, bytes);
     hooks.after_write(index(), sub_index());
     return ok;
   }
 
-  [[nodiscard]] bool is_new(std::span<const std::uint8_t> bytes, auto& hooks) const {
-    if constexpr (requires { hooks.is_new(word_, bytes); }) return hooks.is_new(word_, bytes);
-    return true;
-  }
-
-  [[nodiscard]] AbortCode check_length(EntryAccess<Device> entries) const {
+  [[nodiscard]] AbortCode check_length(Entries entries) const {
     return size_indicated_ ? ok : entries.check_length(index(), sub_index(), word_, position_);
   }
 

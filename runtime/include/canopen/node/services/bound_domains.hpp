@@ -15,7 +15,7 @@ class BoundDomains : public ServiceDefaults<BoundDomains<Device, Handlers...>> {
 
   template <class Host>
   static void on_start(Host& host) {
-    std::apply([&](auto&... handler) { (bind(host, handler), ...); }, host.handlers().all());
+    std::apply([&](auto&... handler) { (bind(host, handler), ...); }, host.handlers.all());
   }
 
  private:

@@ -17,6 +17,7 @@ class ClosedValues : public ServiceDefaults<ClosedValues<Device>> {
  public:
   static constexpr bool exists = HasClosedObjects<Device> || has_sheet<Device>;
 
+  static constexpr bool checks_application_objects = true;
   static constexpr bool checks([[maybe_unused]] std::uint16_t index, [[maybe_unused]] std::uint8_t sub_index) {
     if constexpr (has_sheet<Device>) {
       return true;  // `check_write` decides
@@ -26,9 +27,8 @@ class ClosedValues : public ServiceDefaults<ClosedValues<Device>> {
   }
   template <class Host>
   static AbortCode check_write(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
-    return with_sheet<Device>(host.store(), [&](const auto&... of_node) {
-      return check_closed<Device>(index, sub_index, bytes, of_node...);
-    });
+    return with_sheet<Device>(
+        host.store, [&](const auto&... of_node) { return check_closed<Device>(index, sub_index, bytes, of_node...); });
   }
 };
 

@@ -17,6 +17,7 @@ class DriveModes : public ServiceDefaults<DriveModes<Device>> {
  public:
   static constexpr bool exists = !Device::dictionary.accepted.empty();
 
+  static constexpr bool checks_application_objects = true;
   static constexpr bool checks([[maybe_unused]] std::uint16_t index, std::uint8_t) {
     if constexpr (exists) {
       if constexpr (has_one_axis<Device>) return index == Device::dictionary.accepted.front().index;

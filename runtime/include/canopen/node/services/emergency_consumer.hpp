@@ -23,9 +23,9 @@ class EmergencyConsumer : public ServiceDefaults<EmergencyConsumer<Device>> {
   }
   template <class Host>
   static bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
-    const std::optional<ConsumedEmergency> emergency = Consumer::take(host.entries(), frame);
+    const std::optional<ConsumedEmergency> emergency = Consumer::take(host.store.entries(), frame);
     if (!emergency) return false;
-    if (serves_emcy(host.state())) host.template notify<function::OnEmergency>(*emergency);
+    if (serves_emcy(host.state)) host.handlers.template notify<function::OnEmergency>(host.node(), *emergency);
     return true;
   }
 };

@@ -29,9 +29,9 @@ void communication_failed(Host& host) {
   host.serve();
   std::uint8_t behavior = 0;
   if constexpr (Host::Device::dictionary.has(0x1029, 1)) {
-    behavior = static_cast<std::uint8_t>(host.store().template number<0x1029, 1>());
+    behavior = static_cast<std::uint8_t>(host.store.template number<0x1029, 1>());
   }
-  if (const NmtState next = state_after_error(host.state(), behavior); next != host.state()) host.enter(next);
+  if (const NmtState next = state_after_error(host.state, behavior); next != host.state) host.enter(next);
 }
 
 /// Handles the loss of a monitored node or of the guarding master.

@@ -25,30 +25,30 @@ class NodeGuarding : public ServiceDefaults<NodeGuarding<Device>> {
 
   template <class Host>
   bool on_remote_frame(Host& host, const Frame& frame) {
-    if (!is_guarding_request(frame, host.node_id())) return false;
+    if (!is_guarding_request(frame, host.node_id)) return false;
     if constexpr (has_sheet<Device>) {
-      const Dictionary& dictionary = host.entries().dictionary();
+      const Dictionary& dictionary = host.store.entries().dictionary();
       if (!dictionary.has(0x100C, 0) || !dictionary.has(0x100D, 0)) return false;
     }
-    if (heartbeat_period(host.store()).count() != 0) return true;
+    if (heartbeat_period(host.store).count() != 0) return true;
     const bool was_lost = slave_.failed();
-    slave_.on_request(guard_time(host), life_time_factor(host), host.now());
+    slave_.on_request(guard_time(host), life_time_factor(host), host.now);
     if (was_lost) {
       host.end_if_gone(set_of(ServiceError::error_control));
-      host.template notify<function::OnLifeGuarding>(false);
+      host.handlers.template notify<function::OnLifeGuarding>(host.node(), false);
     }
-    host.attend();
+    host.attention = true;
     return true;
   }
 
   template <class Host>
   bool serve(Host& host) {
-    return slave_.serve(host.bus(), host.node_id(), host.state());
+    return slave_.serve(host.bus, host.node_id, host.state);
   }
 
   template <class Host>
   std::optional<TimePoint> deadline(Host& host) const {
-    return slave_.has_answer() ? host.now() : slave_.next_deadline();
+    return slave_.has_answer() ? host.now : slave_.next_deadline();
   }
 
   ServiceErrors errors() const { return slave_.failed() ? set_of(ServiceError::error_control) : ServiceErrors{}; }
@@ -57,7 +57,7 @@ class NodeGuarding : public ServiceDefaults<NodeGuarding<Device>> {
   template <class Host>
   void after_write(Host& host, std::uint16_t index, std::uint8_t) {
     if constexpr (Heartbeat<Device>::exists) {
-      if (index == 0x1017 && heartbeat_period(host.store()).count() != 0) slave_.reset();
+      if (index == 0x1017 && heartbeat_period(host.store).count() != 0) slave_.reset();
     }
     if (index == 0x100C || index == 0x100D) {
       slave_.configure(guard_time(host), life_time_factor(host));
@@ -68,17 +68,17 @@ class NodeGuarding : public ServiceDefaults<NodeGuarding<Device>> {
   /// Returns true if the life time has just elapsed.
   template <class Host>
   [[nodiscard]] bool life_time_over(Host& host) {
-    return slave_.on_time(guard_time(host), host.now());
+    return slave_.on_time(guard_time(host), host.now);
   }
 
  private:
   template <class Host>
   [[nodiscard]] static std::uint16_t guard_time(Host& host) {
-    return static_cast<std::uint16_t>(host.store().template number<0x100C, 0>());
+    return static_cast<std::uint16_t>(host.store.template number<0x100C, 0>());
   }
   template <class Host>
   [[nodiscard]] static std::uint8_t life_time_factor(Host& host) {
-    return static_cast<std::uint8_t>(host.store().template number<0x100D, 0>());
+    return static_cast<std::uint8_t>(host.store.template number<0x100D, 0>());
   }
 
   NodeGuardingSlave slave_{};
@@ -92,9 +92,9 @@ class LifeGuarding : public ServiceDefaults<LifeGuarding<Device>> {
 
   template <class Host>
   static void on_time(Host& host) {
-    if (!host.template service<NodeGuarding<Device>>().life_time_over(host)) return;
+    if (!host.services.template get<NodeGuarding<Device>>().life_time_over(host)) return;
     error_control_failed(host);
-    host.template notify<function::OnLifeGuarding>(true);
+    host.handlers.template notify<function::OnLifeGuarding>(host.node(), true);
   }
 };
 

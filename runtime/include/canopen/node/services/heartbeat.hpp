@@ -36,18 +36,18 @@ class BootUp : public ServiceDefaults<BootUp<Device>> {
 
   template <class Host>
   void keep_deadlines(Host& host) {
-    if constexpr (Device::dictionary.has(0x1017, 0)) producer_.keep_deadline(host.now());
+    if constexpr (Device::dictionary.has(0x1017, 0)) producer_.keep_deadline(host.now);
   }
   template <class Host>
   std::optional<TimePoint> deadline(Host& host) const {
-    return producer_.boot_up_due() ? host.now() : producer_.next_deadline();
+    return producer_.boot_up_due() ? host.now : producer_.next_deadline();
   }
 
   /// Sends the boot-up message or a heartbeat, if it is due.
   template <class Host>
   [[nodiscard, gnu::noinline]] static bool send(Host& host) {
-    HeartbeatProducer& producer = host.template service<BootUp>().producer_;
-    return producer.serve(host.bus(), host.node_id(), host.state(), heartbeat_period(host.store()), host.now());
+    HeartbeatProducer& producer = host.services.template get<BootUp>().producer_;
+    return producer.serve(host.bus, host.node_id, host.state, heartbeat_period(host.store), host.now);
   }
 
   void set_period(Duration period, TimePoint now) { producer_.set_period(period, now); }
@@ -69,7 +69,8 @@ class Heartbeat : public ServiceDefaults<Heartbeat<Device>> {
 
   template <class Host>
   static void after_write(Host& host, std::uint16_t index, std::uint8_t) {
-    if (index == 0x1017) host.template service<BootUp<Device>>().set_period(heartbeat_period(host.store()), host.now());
+    if (index == 0x1017)
+      host.services.template get<BootUp<Device>>().set_period(heartbeat_period(host.store), host.now);
   }
 };
 

@@ -24,20 +24,20 @@ class HeartbeatConsumer : public ServiceDefaults<HeartbeatConsumer<Device>> {
 
   template <class Host>
   void reset_communication(Host& host) {
-    consumer_.configure(host.entries());
+    consumer_.configure(host.store.entries());
   }
 
   template <class Host>
   bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
     const std::optional<ErrorControlMessage> message = error_control_message(frame);
     if (!message) return false;
-    consumer_.on_message(*message, host.now(), Events<Host>{host});
+    consumer_.on_message(*message, host.now, Events<Host>{host});
     return true;
   }
 
   template <class Host>
   void on_time(Host& host) {
-    consumer_.on_time(host.now(), Events<Host>{host});
+    consumer_.on_time(host.now, Events<Host>{host});
   }
   template <class Host>
   std::optional<TimePoint> deadline(Host&) const {
@@ -56,7 +56,7 @@ class HeartbeatConsumer : public ServiceDefaults<HeartbeatConsumer<Device>> {
   template <class Host>
   void after_write(Host& host, std::uint16_t index, std::uint8_t sub_index) {
     if (!checks(index, sub_index)) return;
-    consumer_.configure(sub_index - 1u, ConsumerHeartbeatTime{host.entries().number(index, sub_index)});
+    consumer_.configure(sub_index - 1u, ConsumerHeartbeatTime{host.store.entries().number(index, sub_index)});
     host.end_if_gone(set_of(ServiceError::error_control));
   }
 
@@ -71,7 +71,7 @@ class HeartbeatConsumer : public ServiceDefaults<HeartbeatConsumer<Device>> {
       if (event == HeartbeatEvent::lost) error_control_failed(host);
       if (event == HeartbeatEvent::back || event == HeartbeatEvent::boot_up)
         host.end_if_gone(set_of(ServiceError::error_control));
-      host.template notify<function::OnHeartbeat>(event, other, state);
+      host.handlers.template notify<function::OnHeartbeat>(host.node(), event, other, state);
     }
   };
 

@@ -34,20 +34,20 @@ class Mpdos : public ServiceDefaults<Mpdos<Device>> {
   }
   template <class Host>
   bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
-    if (serves_pdo(host.state())) mpdos_.on_frame(host.entries(), frame, host.node_id(), RpdoHooks<Host>{host});
+    if (serves_pdo(host.state)) mpdos_.on_frame(host.store.entries(), frame, host.node_id, RpdoHooks<Host>{host});
     return false;
   }
   template <class Host>
   bool serve(Host& host) {
-    return !serves_pdo(host.state()) || mpdos_.serve(host.entries(), host.node_id(), host.bus(), host.now());
+    return !serves_pdo(host.state) || mpdos_.serve(host.store.entries(), host.node_id, host.bus, host.now);
   }
   template <class Host>
   void keep_deadlines(Host& host) {
-    mpdos_.keep_deadlines(host.now());
+    mpdos_.keep_deadlines(host.now);
   }
   template <class Host>
   std::optional<TimePoint> deadline(Host& host) const {
-    return serves_pdo(host.state()) ? mpdos_.next_deadline(host.now()) : std::nullopt;
+    return serves_pdo(host.state) ? mpdos_.next_deadline(host.now) : std::nullopt;
   }
 
   ServiceErrors errors() const {
@@ -61,22 +61,22 @@ class Mpdos : public ServiceDefaults<Mpdos<Device>> {
   }
   template <class Host>
   static AbortCode check_write(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
-    return MpdoCheck<Device>::check(host.entries(), index, sub_index, bytes);
+    return MpdoCheck<Device>::check(host.store.entries(), index, sub_index, bytes);
   }
   template <class Host>
   void after_operational_write(Host& host, std::uint16_t index, std::uint8_t sub_index, bool new_value) {
-    if (new_value) mpdos_.changed(host.entries(), index, sub_index);
+    if (new_value) mpdos_.changed(host.store.entries(), index, sub_index);
   }
   template <DictionaryObject Object, class Host>
   bool on_new_value(Host& host) {
-    return mpdos_.changed(host.entries(), Object::index, Object::sub_index);
+    return mpdos_.changed(host.store.entries(), Object::index, Object::sub_index);
   }
 
   /// Queues a DAM-MPDO. Returns false if the node is not Operational or cannot send it.
   template <class Host>
   [[nodiscard]] bool put(Host& host, const MpdoDestination& to, std::uint32_t value) {
-    if (!serves_pdo(host.state()) || !mpdos_.put(host.entries(), to, value)) return false;
-    host.attend();
+    if (!serves_pdo(host.state) || !mpdos_.put(host.store.entries(), to, value)) return false;
+    host.attention = true;
     return true;
   }
 

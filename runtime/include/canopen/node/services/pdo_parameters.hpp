@@ -29,10 +29,10 @@ class PdoCommunication : public ServiceDefaults<PdoCommunication<Device>> {
   template <class Host>
   static AbortCode check_write(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
     if constexpr (MpdoService<Device>::exists) {
-      const AbortCode code = MpdoCheck<Device>::check(host.entries(), index, sub_index, bytes);
+      const AbortCode code = MpdoCheck<Device>::check(host.store.entries(), index, sub_index, bytes);
       if (code != ok) return code;
     }
-    if constexpr (is_writable) return check_pdo_parameter(host.entries(), index, sub_index, bytes);
+    if constexpr (is_writable) return check_pdo_parameter(host.store.entries(), index, sub_index, bytes);
     return ok;
   }
 };
@@ -52,14 +52,14 @@ class PdoMapping : public ServiceDefaults<PdoMapping<Device>> {
   template <class Host>
   static AbortCode check_write(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
     if constexpr (MpdoService<Device>::exists) {
-      const AbortCode code = MpdoCheck<Device>::check(host.entries(), index, sub_index, bytes);
+      const AbortCode code = MpdoCheck<Device>::check(host.store.entries(), index, sub_index, bytes);
       if (code != ok) return code;
     }
     if constexpr (is_dynamic) {
       const std::uint8_t capacity = is_tpdo_mapping(index)
-                                        ? TpdoService<Device>::Mapped::capacity_of(host.entries(), index)
-                                        : RpdoService<Device>::Mapped::capacity_of(host.entries(), index);
-      return check_pdo_mapping(host.entries(), capacity, index, sub_index, bytes);
+                                        ? TpdoService<Device>::Mapped::capacity_of(host.store.entries(), index)
+                                        : RpdoService<Device>::Mapped::capacity_of(host.store.entries(), index);
+      return check_pdo_mapping(host.store.entries(), capacity, index, sub_index, bytes);
     }
     return ok;
   }

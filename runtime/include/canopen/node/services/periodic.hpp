@@ -24,7 +24,7 @@ class Periodic : public ServiceDefaults<Periodic<Device, Handlers...>> {
   template <class Host>
   void on_start(Host& host) {
     auto next = next_.begin();
-    host.handlers().for_each_period(host.node(), [&](Duration period, auto&&) { *next++ = host.now() + period; });
+    host.handlers.for_each_period(host.node(), [&](Duration period, auto&&) { *next++ = host.now + period; });
     runs_ = true;
   }
 
@@ -32,8 +32,8 @@ class Periodic : public ServiceDefaults<Periodic<Device, Handlers...>> {
   void on_time(Host& host) {
     if (!runs_) return;
     auto next = next_.begin();
-    const TimePoint now = host.now();
-    host.handlers().for_each_period(host.node(), [&](Duration period, auto&& call) {
+    const TimePoint now = host.now;
+    host.handlers.for_each_period(host.node(), [&](Duration period, auto&& call) {
       TimePoint& due = *next++;
       if (is_within(due, period, now)) return;
       due = due + period;

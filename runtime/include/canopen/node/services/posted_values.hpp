@@ -19,13 +19,13 @@ class PostedValues : public ServiceDefaults<PostedValues<Device, Handlers...>> {
 
   template <class Host>
   static void on_time(Host& host) {
-    std::apply([&](const auto&... handlers) { (take_over(handlers, host), ...); }, host.handlers().all());
+    std::apply([&](const auto&... handlers) { (take_over(handlers, host), ...); }, host.handlers.all());
   }
   template <class Host>
   static std::optional<TimePoint> deadline(Host& host) {
     const bool any =
-        std::apply([](const auto&... handlers) { return (pending(handlers) || ...); }, host.handlers().all());
-    return any ? std::optional{host.now()} : std::nullopt;
+        std::apply([](const auto&... handlers) { return (pending(handlers) || ...); }, host.handlers.all());
+    return any ? std::optional{host.now} : std::nullopt;
   }
 
  private:

@@ -59,9 +59,9 @@ struct RpdoHooks {
 
   Host& host;
 
-  [[nodiscard]] auto entries() const { return host.entries(); }
-  [[nodiscard]] TimePoint now() const { return host.now(); }
-  [[nodiscard]] bool operational() const { return serves_pdo(host.state()); }
+  [[nodiscard]] auto entries() const { return host.store.entries(); }
+  [[nodiscard]] TimePoint now() const { return host.now; }
+  [[nodiscard]] bool operational() const { return serves_pdo(host.state); }
   [[nodiscard]] bool window_over() const { return sync_window_over(host); }
   template <DictionaryObject Object>
   void take(const typename Object::type& value) const {
@@ -78,7 +78,7 @@ struct RpdoHooks {
       case RpdoEvent::length_right:
       case RpdoEvent::in_time: host.end_if_gone(rpdo_errors); break;
     }
-    host.template notify<function::OnRpdo>(event, number);
+    host.handlers.template notify<function::OnRpdo>(host.node(), event, number);
   }
   void destination_missing(bool missing) const {
     missing ? host.report(ServiceError::mpdo_destination) : host.end_if_gone(rpdo_errors);
@@ -93,7 +93,7 @@ class Rpdos : public ServiceDefaults<Rpdos<Device>> {
   template <class Host>
   void on_state(Host& host, NmtState, NmtState state) {
     if (!serves_pdo(state)) return;
-    rpdos_.enter_operational(host.entries(), Watched<Host>{host});
+    rpdos_.enter_operational(host.store.entries(), Watched<Host>{host});
     host.end_if_gone(rpdo_errors);
   }
 
@@ -102,7 +102,7 @@ class Rpdos : public ServiceDefaults<Rpdos<Device>> {
   template <class Host>
   bool on_frequent_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
     if constexpr (MpdoService<Device>::exists) return false;
-    if (!is_pdo_can_id(cob_id) || !serves_pdo(host.state())) return false;
+    if (!is_pdo_can_id(cob_id) || !serves_pdo(host.state)) return false;
     return rpdos_.on_frame(frame, cob_id, RpdoHooks<Host>{host});
   }
   template <class Host>
@@ -112,7 +112,7 @@ class Rpdos : public ServiceDefaults<Rpdos<Device>> {
   /// An MPDO can have the same COB-ID.
   template <class Host>
   bool on_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
-    if (serves_pdo(host.state())) rpdos_.on_frame(frame, cob_id, RpdoHooks<Host>{host});
+    if (serves_pdo(host.state)) rpdos_.on_frame(frame, cob_id, RpdoHooks<Host>{host});
     return false;
   }
   template <class Host>
@@ -126,7 +126,7 @@ class Rpdos : public ServiceDefaults<Rpdos<Device>> {
   }
   template <class Host>
   std::optional<TimePoint> deadline(Host& host) const {
-    return serves_pdo(host.state()) ? rpdos_.next_deadline() : std::nullopt;
+    return serves_pdo(host.state) ? rpdos_.next_deadline() : std::nullopt;
   }
 
   ServiceErrors errors() const {
@@ -138,9 +138,9 @@ class Rpdos : public ServiceDefaults<Rpdos<Device>> {
   template <class Host>
   void after_operational_write(Host& host, std::uint16_t index, std::uint8_t, bool) {
     if (TpdoService<Device>::has_dynamic_mapping && is_tpdo_mapping(index))
-      rpdos_.watch_again(host.entries(), Watched<Host>{host});
+      rpdos_.watch_again(host.store.entries(), Watched<Host>{host});
     if (is_rpdo_communication(index) || (RpdoService<Device>::has_dynamic_mapping && is_rpdo_mapping(index))) {
-      rpdos_.parameter_changed(host.entries(), index, Watched<Host>{host});
+      rpdos_.parameter_changed(host.store.entries(), index, Watched<Host>{host});
       host.end_if_gone(rpdo_errors);
     }
   }
@@ -154,14 +154,14 @@ class Rpdos : public ServiceDefaults<Rpdos<Device>> {
     [[nodiscard]] bool operator()(MappedObject mapped) const {
       constexpr entry::Kinds kinds = EntryAccess<Device>::kinds;
       if (mapped.is_dummy()) return false;  // has already been marked
-      const entry::Word word = host.entries().find(mapped.index(), mapped.sub_index());
+      const entry::Word word = host.store.entries().find(mapped.index(), mapped.sub_index());
       const std::uint8_t size = EntryAccess<Device>::bytes_of(word);
       if ((word & entry::limited) != 0 || (kinds.booleans && entry::is_boolean(word)) ||
           (kinds.padded && (size & (size - 1)) != 0))
         return true;
       if (is_communication_index(mapped.index()) || Host::Handlers::watches(mapped.key())) return true;
       if (MpdoService<Device>::sends_source && (word & entry::tpdo) != 0) return true;
-      return TpdoService<Device>::carries(host.entries(), mapped.key());
+      return TpdoService<Device>::carries(host.store.entries(), mapped.key());
     }
   };
 

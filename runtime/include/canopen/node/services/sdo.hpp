@@ -13,6 +13,7 @@
 #include "canopen/base/result.hpp"
 #include "canopen/can/cob_id.hpp"
 #include "canopen/can/frame.hpp"
+#include "canopen/node/handler_calls.hpp"
 #include "canopen/node/received_value.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/node/services/tpdos.hpp"
@@ -38,27 +39,27 @@ struct SdoHooks {
   Host& host;
   bool new_value = true;  ///< the written value differs from the present one, and TPDOs may have to know
 
-  [[nodiscard]] EntryAccess<Device> entries() { return host.entries(); }
+  [[nodiscard]] EntryAccess<Device> entries() { return host.store.entries(); }
   [[nodiscard]] AbortCode before_read(std::uint16_t index, std::uint8_t sub_index) {
-    if (const AbortCode code = host.before_read(index, sub_index); code != ok) return code;
+    if (const AbortCode code = host.services.before_read(host, index, sub_index); code != ok) return code;
     if constexpr (Host::Handlers::has_upload_handlers) {
       const std::uint32_t key = object_key(index, sub_index);
-      [[maybe_unused]] const auto call = host.handler_calls().call();
-      return host.handlers().before_read(host.node(), key);
+      const HandlerCall call{host.handler_calls};
+      return host.handlers.before_read(host.node(), key);
     }
     return ok;
   }
   [[nodiscard]] AbortCode before_write(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
-    const AbortCode code = canopen::before_write(host, index, sub_index, bytes);
+    const AbortCode code = check_received(host, index, sub_index, bytes);
     if constexpr (StoredValues<Device, Parts...>::exists) {
-      if (code == ok && !host.handler_calls().set_by_handler())
+      if (code == ok && !host.handler_calls.set_by_handler())
         StoredValues<Device, Parts...>::before_change(host, index, sub_index, bytes);
     }
     return code;
   }
   /// Whether a value must be written.
   [[nodiscard]] bool is_new(entry::Word word, std::span<const std::uint8_t> bytes) {
-    if (host.handler_calls().set_by_handler()) {
+    if (host.handler_calls.set_by_handler()) {
       new_value = false;
       return false;
     }
@@ -80,12 +81,12 @@ struct SdoHooks {
     notify_written(host, index, sub_index);
   }
   [[nodiscard]] AbortCode command(std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
-    return host.command(index, sub_index, bytes);
+    return host.services.command(host, index, sub_index, bytes);
   }
 
   /// Whether the request started to store parameters in steps.
   [[nodiscard]] bool started_command() requires(StoredValues<Device, Parts...>::is_stepped) {
-    return host.template service<StoredValues<Device, Parts...>>().take_started();
+    return host.services.template get<StoredValues<Device, Parts...>>().take_started();
   }
 
   // DOMAINs that the application streams
@@ -96,8 +97,8 @@ struct SdoHooks {
   [[nodiscard]] Result<std::uint32_t> read_domain(std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset,
                                                   std::span<std::uint8_t> bytes) requires(Streams::any) {
     const std::uint32_t key = object_key(index, sub_index);
-    [[maybe_unused]] const auto call = host.handler_calls().call();
-    return Streams::read(host.handlers().all(), host.node(), key, offset, bytes);
+    const HandlerCall call{host.handler_calls};
+    return Streams::read(host.handlers.all(), host.node(), key, offset, bytes);
   }
   [[nodiscard]] bool streams_download(std::uint16_t index, std::uint8_t sub_index) const requires(Streams::any) {
     return Streams::streams_download(object_key(index, sub_index));
@@ -105,8 +106,8 @@ struct SdoHooks {
   [[nodiscard]] AbortCode write_domain(std::uint16_t index, std::uint8_t sub_index, std::uint32_t offset,
                                        std::span<const std::uint8_t> bytes, bool last) requires(Streams::any) {
     const std::uint32_t key = object_key(index, sub_index);
-    [[maybe_unused]] const auto call = host.handler_calls().call();
-    return Streams::write(host.handlers().all(), host.node(), key, offset, bytes, last);
+    const HandlerCall call{host.handler_calls};
+    return Streams::write(host.handlers.all(), host.node(), key, offset, bytes, last);
   }
 };
 
@@ -154,20 +155,20 @@ class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
   }
   template <class Host>
   bool on_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
-    if (!serves_sdo(host.state()) || !take(host, frame, cob_id)) return false;
+    if (!serves_sdo(host.state) || !take(host, frame, cob_id)) return false;
     // If nothing else is due, the response does not wait until all services have been asked what they have to send.
-    if (is_stepped || !host.may_send_at_once() || !send_replies(host)) host.attend();
+    if (is_stepped || !host.may_send_at_once() || !send_replies(host)) host.attention = true;
     return true;
   }
   template <class Host>
   void on_time(Host& host) {
-    for (SdoServer<Device>& server : servers_) server.on_time(host.now());
+    for (SdoServer<Device>& server : servers_) server.on_time(host.now);
   }
   template <class Host>
   bool serve(Host& host) {
     if constexpr (is_stepped) {
       // A command has ended: the response that waits for it is sent.
-      const auto result = host.template service<StoredValues<Device, Handlers...>>().take_result();
+      const auto result = host.services.template get<StoredValues<Device, Handlers...>>().take_result();
       if (result) {
         for (SdoServer<Device>& server : servers_) server.command_ended(*result);
       }
@@ -176,7 +177,7 @@ class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
   }
   template <class Host>
   std::optional<TimePoint> deadline(Host& host) const {
-    if (has_reply()) return host.now();
+    if (has_reply()) return host.now;
     std::optional<TimePoint> next;
     for (const SdoServer<Device>& server : servers_) {
       const std::optional<TimePoint> own = server.next_deadline();
@@ -193,7 +194,7 @@ class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
   template <class Host>
   static AbortCode check_write(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
     if (sub_index != request_sub_index && sub_index != response_sub_index) return ok;
-    EntryAccess<Device> entries = host.entries();
+    EntryAccess<Device> entries = host.store.entries();
     const CobId before{entries.number(entries.find(index, sub_index))};
     if constexpr (Device::dictionary.takes_writes(sdo_server_parameter, sdo_server_parameter)) {
       if (index == sdo_server_parameter) return before.value() == number_in(bytes) ? ok : AbortCode::invalid_value;
@@ -233,7 +234,7 @@ class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
   /// ignored.
   template <class Host>
   [[nodiscard]] bool take(Host& host, const Frame& frame, std::uint32_t cob_id) {
-    Store& store = host.store();
+    Store& store = host.store;
     for (std::size_t i = 0; i < count; ++i) {
       if (cob_id_of_server(i, request_sub_index, store) != cob_id) continue;
       if (i != 0 && cob_id_of_server(i, response_sub_index, store) == CobId::invalid_bit) continue;
@@ -243,7 +244,7 @@ class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
       }
       if constexpr (is_stepped) servers_[i].discard_held_reply();
       Hooks<Host> hooks{host};
-      servers_[i].on_request(frame.data, hooks, host.now());
+      servers_[i].on_request(frame.data, hooks, host.now);
       if constexpr (is_stepped) {
         if (hooks.started_command()) servers_[i].hold_reply();
       }
@@ -257,10 +258,10 @@ class Sdo : public ServiceDefaults<Sdo<Device, Handlers...>> {
   [[nodiscard]] bool send_replies(Host& host) {
     for (std::size_t i = 0; i < count; ++i) {
       while (servers_[i].has_reply()) {
-        const std::uint32_t cob_id = cob_id_of_server(i, response_sub_index, host.store());
+        const std::uint32_t cob_id = cob_id_of_server(i, response_sub_index, host.store);
         const bool gone = i != 0 && cob_id == CobId::invalid_bit;  // since the request
-        if (!gone && !send_data(host.bus(), cob_id, 8, servers_[i].reply().data())) return false;
-        servers_[i].reply_sent(Hooks<Host>{host}, host.now());
+        if (!gone && !send_data(host.bus, cob_id, 8, servers_[i].reply().data())) return false;
+        servers_[i].reply_sent(Hooks<Host>{host}, host.now);
       }
     }
     return true;

@@ -26,30 +26,31 @@ class Sync : public ServiceDefaults<Sync<Device>> {
       if (!serves_sync(state)) {
         producer_.stop();
       } else if (!serves_sync(before)) {
-        producer_.start(host.store(), host.now(), true);
+        producer_.start(host.store, host.now, true);
       }
     }
   }
 
   template <class Host>
   static bool may_take(const Host& host, std::uint32_t cob_id) {
-    return Consumer::takes(host.store(), cob_id);
+    return Consumer::takes(host.store, cob_id);
   }
   template <class Host>
   bool on_frame(Host& host, const Frame& frame, std::uint32_t cob_id) {
-    if (!Consumer::takes(host.store(), cob_id)) return false;
-    receive(host, Consumer::sync_of(host.store(), frame));
+    if (!Consumer::takes(host.store, cob_id)) return false;
+    receive(host, Consumer::sync_of(host.store, frame));
     return true;
   }
 
   /// Sends a SYNC, which this node consumes itself. More important frames are sent before the PDOs of the SYNC.
+  /// Inlined: saves 16 bytes of stack on a Cortex-M0+.
   template <class Host>
-  bool serve([[maybe_unused]] Host& host) {
+  [[gnu::always_inline]] bool serve([[maybe_unused]] Host& host) {
     if constexpr (Producer::exists) {
-      if (producer_.serve(host.store(), host.bus(), host.now())) {
-        host.set_attention(true);
-        receive(host, producer_.last(host.store()));
-        host.set_attention(false);
+      if (producer_.serve(host.store, host.bus, host.now)) {
+        host.attention = true;
+        receive(host, producer_.last(host.store));
+        host.attention = false;
       }
     }
     return true;
@@ -57,14 +58,13 @@ class Sync : public ServiceDefaults<Sync<Device>> {
 
   template <class Host>
   void on_time([[maybe_unused]] Host& host) {
-    window_.keep_deadline(host.now());
+    window_.keep_deadline(host.now);
   }
   template <class Host>
   std::optional<TimePoint> deadline([[maybe_unused]] Host& host) const {
-    std::optional<TimePoint> next = window_.next_deadline(host.now());
+    std::optional<TimePoint> next = window_.next_deadline(host.now);
     if constexpr (Producer::exists) {
-      if (const auto due = producer_.next_deadline(); due)
-        next = next ? earlier_deadline(*next, *due, host.now()) : due;
+      if (const auto due = producer_.next_deadline(); due) next = next ? earlier_deadline(*next, *due, host.now) : due;
     }
     return next;
   }
@@ -85,15 +85,14 @@ class Sync : public ServiceDefaults<Sync<Device>> {
   }
   template <class Host>
   static AbortCode check_write(Host& host, std::uint16_t index, std::uint8_t, std::span<std::uint8_t> bytes) {
-    return check_sync_parameter(host.entries(), index, bytes);
+    return check_sync_parameter(host.store.entries(), index, bytes);
   }
   template <class Host>
   void after_write([[maybe_unused]] Host& host, [[maybe_unused]] std::uint16_t index, std::uint8_t) {
     if constexpr (Producer::exists) {
-      if ((index == 0x1005 || index == 0x1006) && serves_sync(host.state()))
-        producer_.start(host.store(), host.now(), false);
+      if ((index == 0x1005 || index == 0x1006) && serves_sync(host.state)) producer_.start(host.store, host.now, false);
     }
-    if (index == 0x1007) window_.length_changed(host.store());
+    if (index == 0x1007) window_.length_changed(host.store);
   }
 
  private:
@@ -101,7 +100,7 @@ class Sync : public ServiceDefaults<Sync<Device>> {
 
   template <class Host>
   [[gnu::noinline]] static void receive(Host& host, canopen::Sync sync) {
-    if (!serves_sync(host.state())) return;
+    if (!serves_sync(host.state)) return;
     if constexpr (Consumer::has_overflow) {
       if (!sync.good) {
         host.report(ServiceError::sync_length);
@@ -109,9 +108,9 @@ class Sync : public ServiceDefaults<Sync<Device>> {
       }
       host.end(ServiceError::sync_length);
     }
-    host.template service<Sync>().window_.open(host.store(), host.now());
-    host.on_sync(sync);
-    host.template notify<function::OnSync>(sync.counter);
+    host.services.template get<Sync>().window_.open(host.store, host.now);
+    host.services.on_sync(host, sync);
+    host.handlers.template notify<function::OnSync>(host.node(), sync.counter);
   }
 
   [[no_unique_address]] std::conditional_t<Producer::exists, Producer, NoProducer> producer_{};
@@ -123,7 +122,7 @@ template <class Host>
 [[nodiscard]] bool sync_window_over([[maybe_unused]] Host& host) {
   using Device = typename Host::Device;
   if constexpr (SyncWindow<Device>::exists) {
-    return host.template service<Sync<Device>>().window_over(host.now());
+    return host.services.template get<Sync<Device>>().window_over(host.now);
   } else {
     return false;
   }

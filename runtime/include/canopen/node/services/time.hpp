@@ -25,16 +25,16 @@ class Time : public ServiceDefaults<Time<Device>> {
   }
   template <class Host>
   static bool on_frame(Host& host, const Frame& frame, std::uint32_t) {
-    const std::optional<TimeOfDay> time = TimeStamp<Device>::take(host.store(), frame);
+    const std::optional<TimeOfDay> time = TimeStamp<Device>::take(host.store, frame);
     if (!time) return false;
-    if (serves_sync(host.state())) host.template notify<function::OnTimeOfDay>(*time);
+    if (serves_sync(host.state)) host.handlers.template notify<function::OnTimeOfDay>(host.node(), *time);
     return true;
   }
 
   static constexpr bool checks(std::uint16_t index, std::uint8_t) { return index == 0x1012; }
   template <class Host>
   static AbortCode check_write(Host& host, std::uint16_t, std::uint8_t, std::span<std::uint8_t> bytes) {
-    return check_time_parameter(host.entries(), bytes);
+    return check_time_parameter(host.store.entries(), bytes);
   }
 };
 
@@ -48,13 +48,13 @@ class HighResolutionTime : public ServiceDefaults<HighResolutionTime<Device>> {
 
   template <class Host>
   void on_sync(Host& host, canopen::Sync) {
-    const std::uint32_t microseconds = host.now().since_start().count() + offset_;
-    std::uint8_t* const value = assume_aligned<alignof(std::uint32_t)>(host.entries().ram(word));
+    const std::uint32_t microseconds = host.now.since_start().count() + offset_;
+    std::uint8_t* const value = assume_aligned<alignof(std::uint32_t)>(host.store.entries().ram(word));
     std::memcpy(value, &microseconds, sizeof microseconds);
   }
   template <class Host>
   void after_write(Host& host, std::uint16_t index, std::uint8_t) {
-    if (index == 0x1013) offset_ = host.entries().number(word) - host.now().since_start().count();
+    if (index == 0x1013) offset_ = host.store.entries().number(word) - host.now.since_start().count();
   }
 
  private:

@@ -21,50 +21,50 @@ class Tpdos : public ServiceDefaults<Tpdos<Device>> {
 
   template <class Host>
   void on_state(Host& host, NmtState, NmtState state) {
-    if (serves_pdo(state)) tpdos_.enter_operational(host.store(), host.now());
+    if (serves_pdo(state)) tpdos_.enter_operational(host.store, host.now);
   }
 
   template <class Host>
   bool on_remote_frame([[maybe_unused]] Host& host, [[maybe_unused]] const Frame& frame) {
     if constexpr (Device::options.tpdo_remote_frames) {
-      if (!serves_pdo(host.state())) return false;
-      tpdos_.on_remote(host.entries(), cob_id_of(frame));
-      host.attend();
+      if (!serves_pdo(host.state)) return false;
+      tpdos_.on_remote(host.store.entries(), cob_id_of(frame));
+      host.attention = true;
     }
     return true;
   }
   /// Sends the TPDOs of a SYNC with the present values, at once if nothing else is waiting.
   template <class Host>
   void on_sync(Host& host, canopen::Sync sync) {
-    if (!serves_pdo(host.state())) return;
-    if (!tpdos_.on_sync(host.store(), host.bus(), sync, host.may_send_at_once(), Refresh<Host>{host})) host.serve();
+    if (!serves_pdo(host.state)) return;
+    if (!tpdos_.on_sync(host.store, host.bus, sync, host.may_send_at_once(), Refresh<Host>{host})) host.serve();
   }
 
   template <class Host>
   bool serve(Host& host) {
     if (sync_window_over(host)) tpdos_.miss_sync();
-    return !serves_pdo(host.state()) || tpdos_.serve(host.store(), host.bus(), host.now(), Refresh<Host>{host});
+    return !serves_pdo(host.state) || tpdos_.serve(host.store, host.bus, host.now, Refresh<Host>{host});
   }
   template <class Host>
   void keep_deadlines(Host& host) {
-    tpdos_.keep_deadlines(host.now());
+    tpdos_.keep_deadlines(host.now);
   }
   template <class Host>
   std::optional<TimePoint> deadline(Host& host) const {
-    return serves_pdo(host.state()) ? tpdos_.next_deadline(host.now()) : std::nullopt;
+    return serves_pdo(host.state) ? tpdos_.next_deadline(host.now) : std::nullopt;
   }
 
   template <class Host>
   void after_operational_write(Host& host, std::uint16_t index, std::uint8_t sub_index, bool new_value) {
     if (is_tpdo_communication(index) || (TpdoService<Device>::has_dynamic_mapping && is_tpdo_mapping(index)))
-      tpdos_.parameter_changed(host.store(), index, sub_index, host.now());
-    if (new_value && !host.handler_calls().is_supplied(object_key(index, sub_index)))
-      tpdos_.changed(host.entries(), index, sub_index);
+      tpdos_.parameter_changed(host.store, index, sub_index, host.now);
+    if (new_value && !host.handler_calls.is_supplied(object_key(index, sub_index)))
+      tpdos_.changed(host.store.entries(), index, sub_index);
   }
   template <DictionaryObject Object, class Host>
   bool on_new_value(Host& host) {
-    if (host.handler_calls().is_supplied(object_key(Object::index, Object::sub_index))) return false;
-    return tpdos_.template changed<Object>(host.entries());
+    if (host.handler_calls.is_supplied(object_key(Object::index, Object::sub_index))) return false;
+    return tpdos_.template changed<Object>(host.store.entries());
   }
 
  private:
@@ -75,9 +75,9 @@ class Tpdos : public ServiceDefaults<Tpdos<Device>> {
     Host& host;
     void operator()([[maybe_unused]] std::size_t which) const {
       if constexpr (Host::Handlers::has_read_handlers) {
-        TpdoService<Device>::for_each_object(which, host.entries(), [this](std::uint32_t key) {
-          const auto call = host.handler_calls().call_for_tpdo(key);
-          static_cast<void>(host.handlers().before_read(host.node(), key));
+        TpdoService<Device>::for_each_object(which, host.store.entries(), [this](std::uint32_t key) {
+          const auto call = host.handler_calls.call_for_tpdo(key);
+          static_cast<void>(host.handlers.before_read(host.node(), key));
         });
       }
     }

@@ -11,6 +11,7 @@
 #include "canopen/emcy/error_register.hpp"
 #include "canopen/node/application.hpp"
 #include "canopen/node/functions.hpp"
+#include "canopen/node/handler_calls.hpp"
 #include "canopen/node/service_set.hpp"
 #include "canopen/node/services/emergency.hpp"
 #include "canopen/od/object_store.hpp"
@@ -27,11 +28,11 @@ class DefaultValues : public ServiceDefaults<DefaultValues<Device, Handlers...>>
 
   template <class Host>
   static void reset_application(Host& host) {
-    host.store().reset_application(host.node_id());
+    host.store.reset_application(host.node_id);
   }
   template <class Host>
   static void reset_communication(Host& host) {
-    host.store().reset_communication(host.node_id());
+    host.store.reset_communication(host.node_id);
   }
 };
 
@@ -49,7 +50,9 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
     static constexpr bool exists = has_hook;
     static constexpr bool lists = false;
     Host* host;
-    void operator()(const StoredValue& value) const { host->template notify<function::OnStoredValue>(value); }
+    void operator()(const StoredValue& value) const {
+      host->handlers.template notify<function::OnStoredValue>(host->node(), value);
+    }
   };
 
  public:
@@ -59,31 +62,31 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
 
   template <class Host>
   void on_start(Host& host) {
-    stored_.open(host.handlers().storage());
+    stored_.open(host.handlers.storage());
   }
   template <class Host>
   void reset_application(Host& host) {
     finish(host);
     Hook<Host> hook{&host};
-    stored_.reset_application(host.handlers().storage(), host.store(), host.node_id(), hook);
+    stored_.reset_application(host.handlers.storage(), host.store, host.node_id, hook);
   }
   /// Reports stored values that have been lost, by EMCY 6300h.
   template <class Host>
   void reset_communication(Host& host) {
     finish(host);
     Hook<Host> hook{&host};
-    stored_.reset_communication(host.handlers().storage(), host.store(), host.node_id(), hook);
+    stored_.reset_communication(host.handlers.storage(), host.store, host.node_id, hook);
     if (!stored_.damaged()) return;
     constexpr std::uint16_t code = emergency_code::data_set;
-    host.template service<Emergency<Device>>().report(host, code, ErrorRegister::generic,
-                                                      emergency_info<Device>(host.store(), code));
+    host.services.template get<Emergency<Device>>().report(host, code, ErrorRegister::generic,
+                                                           emergency_info<Device>(host.store, code));
   }
 
   /// Writes the next part of an image.
   template <class Host>
   void on_time([[maybe_unused]] Host& host) {
     if constexpr (is_stepped) {
-      auto& storage = host.handlers().storage();
+      auto& storage = host.handlers.storage();
       if (!storage.busy() || !storage.ready()) return;
       storage.step();
       progress_.ended = !storage.busy();
@@ -93,8 +96,8 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
   template <class Host>
   static std::optional<TimePoint> deadline([[maybe_unused]] Host& host) {
     if constexpr (is_stepped) {
-      auto& storage = host.handlers().storage();
-      if (storage.busy()) return host.now() + (storage.ready() ? Duration{0} : poll_period);
+      auto& storage = host.handlers.storage();
+      if (storage.busy()) return host.now + (storage.ready() ? Duration{0} : poll_period);
     }
     return std::nullopt;
   }
@@ -113,14 +116,14 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
   template <class Host>
   AbortCode command(Host& host, std::uint16_t index, std::uint8_t sub_index, std::span<std::uint8_t> bytes) {
     const std::uint32_t key = object_key(index, sub_index);
-    AbortCode code = check_storage_command(host.entries(), index, sub_index, bytes);
+    AbortCode code = check_storage_command(host.store.entries(), index, sub_index, bytes);
     if (code == ok) {
-      [[maybe_unused]] const auto call = host.handler_calls().call(key);
-      code = host.handlers().before_write(host.node(), key, bytes);
+      const HandlerCall call{host.handler_calls, key};
+      code = host.handlers.before_write(host.node(), key, bytes);
     }
-    if (code != ok || (Stored::Layout::sections_of(sub_index) == 0 && host.handlers().handles(key))) return code;
+    if (code != ok || (Stored::Layout::sections_of(sub_index) == 0 && host.handlers.handles(key))) return code;
     code = index == store_parameters ? save(host, sub_index) : restore(host, sub_index);
-    if constexpr (is_stepped) progress_.started = code == ok && host.handlers().storage().busy();
+    if constexpr (is_stepped) progress_.started = code == ok && host.handlers.storage().busy();
     return code;
   }
 
@@ -130,14 +133,14 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
     if (is_writing(host)) return AbortCode::device_state;
     const SectionSet sections = Stored::Layout::sections_of(sub_index);
     Hook<Host> hook{&host};
-    const bool saved = sections != 0 && stored_.save(host.handlers().storage(), sections, host.store(), hook);
-    if constexpr (is_stepped) host.attend();
+    const bool saved = sections != 0 && stored_.save(host.handlers.storage(), sections, host.store, hook);
+    if constexpr (is_stepped) host.attention = true;
     return saved ? ok : AbortCode::hardware;
   }
   /// Calls `visit(StoredValue)` for each stored value that is not loaded.
   template <class Host, class Visit>
   void for_each_not_loaded(Host& host, Visit visit) {
-    stored_.for_each_not_loaded(host.handlers().storage(), host.store(), visit);
+    stored_.for_each_not_loaded(host.handlers.storage(), host.store, visit);
   }
   /// Restores the default values of a sub-index of 1011h.
   template <class Host>
@@ -145,8 +148,8 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
     if (is_writing(host)) return AbortCode::device_state;
     const SectionSet sections = Stored::Layout::sections_of(sub_index);
     Hook<Host> hook{&host};
-    const bool restored = sections != 0 && stored_.restore(host.handlers().storage(), sections, host.store(), hook);
-    if constexpr (is_stepped) host.attend();
+    const bool restored = sections != 0 && stored_.restore(host.handlers.storage(), sections, host.store, hook);
+    if constexpr (is_stepped) host.attention = true;
     return restored ? ok : AbortCode::hardware;
   }
 
@@ -154,12 +157,12 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
   template <class Host>
   static void before_change(Host& host, std::uint16_t index, std::uint8_t sub_index,
                             std::span<const std::uint8_t> bytes) {
-    Stored::before_write(host.store(), index, sub_index, bytes);
+    Stored::before_write(host.store, index, sub_index, bytes);
   }
   /// The same after the value of an object has changed.
   template <DictionaryObject Object, class Host>
   static void after_change([[maybe_unused]] Host& host) {
-    if constexpr (Stored::template is_configuration<Object>) Stored::clear_configuration(host.store());
+    if constexpr (Stored::template is_configuration<Object>) Stored::clear_configuration(host.store);
   }
 
  private:
@@ -174,16 +177,16 @@ class StoredValues : public ServiceDefaults<StoredValues<Device, Handlers...>> {
 
   template <class Host>
   [[nodiscard]] static bool is_writing([[maybe_unused]] Host& host) {
-    if constexpr (is_stepped) return host.handlers().storage().busy();
+    if constexpr (is_stepped) return host.handlers.storage().busy();
     return false;
   }
   /// Completes an image before it is read. The response to its command is not sent: a reset ends all transfers.
   template <class Host>
   void finish([[maybe_unused]] Host& host) {
     if constexpr (is_stepped) {
-      static_assert(std::remove_reference_t<decltype(host.handlers().storage())>::capacity >= Stored::Layout::max_image,
+      static_assert(std::remove_reference_t<decltype(host.handlers.storage())>::capacity >= Stored::Layout::max_image,
                     "the storage is smaller than the parameters of this device");
-      host.handlers().storage().finish();
+      host.handlers.storage().finish();
       progress_ = {};
     }
   }
