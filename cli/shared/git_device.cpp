@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "backend/cpp/identifier.hpp"
+#include "lint/allow_findings.hpp"
 #include "system/path.hpp"
 
 namespace edsc {
@@ -47,7 +48,7 @@ std::unique_ptr<LoadedDevice> load_git_device(GitFile committed, const std::stri
   };
   if (!apply_overlays(*loaded, {read, settings.needs_reasons, loaded->options.reading}, diagnostics)) return loaded;
   if (settings.keep_going) diagnostics.keep_going(loaded->source.get());
-  silence_by_options(*loaded, diagnostics);
+  silence_by_options(loaded->options, diagnostics);
   resolve_and_check(*loaded, settings, diagnostics);
   return loaded;
 }

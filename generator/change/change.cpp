@@ -53,6 +53,9 @@ constexpr std::tuple change_rows{
                        ChangeMember{"inhibit_time", &MapPdo::inhibit_time, false},
                        ChangeMember{"event_timer", &MapPdo::event_timer, false},
                        ChangeMember{"sync_start", &MapPdo::sync_start, false}),
+    change_row<AllowFinding>("allow", ChangeMember{"section", &AllowFinding::section},
+                             ChangeMember{"key", &AllowFinding::key, false}, ChangeMember{"rule", &AllowFinding::rule},
+                             ChangeMember{"reason", &AllowFinding::reason}),
 };
 
 constexpr std::string_view direction_names[] = {"receive", "transmit"};
@@ -212,6 +215,10 @@ struct ChangeTexts {
     }
     return fmt::format("map {} to {}", objects, pdo);
   }
+  std::string operator()(const AllowFinding& one) const {
+    if (one.key.empty()) return fmt::format("allow {} in {}", one.rule, part_text(one.section));
+    return fmt::format("allow {} at {} of {}", one.rule, one.key, part_text(one.section));
+  }
 };
 
 }  // namespace
@@ -251,7 +258,7 @@ std::optional<SheetChange> read_change(const nlohmann::json& value, std::string&
     is_known = true;
     change = read_row(value, row, problem);
   });
-  if (!is_known) problem = "missing or unknown \"do\": expected set, remove, rename, add or map";
+  if (!is_known) problem = "missing or unknown \"do\": expected set, remove, rename, add, map or allow";
   return change;
 }
 

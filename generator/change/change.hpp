@@ -28,7 +28,7 @@ struct SetValue {
 /// Removes a key, or without one a section; the section of an object with its other sections.
 struct RemovePart {
   std::string section;
-  std::string key;  ///< empty: the section
+  std::string key;  ///< empty: the section; `Granularity#2`: the second one with this name
 
   friend bool operator==(const RemovePart&, const RemovePart&) = default;
 };
@@ -73,7 +73,17 @@ struct MapPdo {
   friend bool operator==(const MapPdo&, const MapPdo&) = default;
 };
 
-using SheetChange = std::variant<SetValue, RemovePart, RenamePart, AddSections, MapPdo>;
+/// Adds a comment that allows the findings of a rule: `; edsc: allow RULE - reason`.
+struct AllowFinding {
+  std::string section;
+  std::string key;  ///< as in RemovePart; empty: the section
+  std::string rule;
+  std::string reason;
+
+  friend bool operator==(const AllowFinding&, const AllowFinding&) = default;
+};
+
+using SheetChange = std::variant<SetValue, RemovePart, RenamePart, AddSections, MapPdo, AllowFinding>;
 
 /// A change as JSON: `{"do": "set", "section": "2000", "key": "DefaultValue", "value": "5"}`. Members without a value
 /// are omitted.

@@ -164,7 +164,11 @@ const TextSection* ChangeApplier::find(std::string_view title) {
 
 std::optional<IniEntry> ChangeApplier::find_key(const TextSection& section, std::string_view title,
                                                 std::string_view key) {
-  const auto entry = step_->text.find_entry(section, key);
+  auto entry = step_->text.find_entry(section, key);
+  if (!entry) {
+    const CountedName counted = read_counted_name(key);
+    entry = step_->text.find_entry(section, counted.name, counted.occurrence);
+  }
   if (!entry) reject(fmt::format("[{}] does not have a key {}", title, key));
   return entry;
 }
@@ -365,6 +369,30 @@ void ChangeApplier::make(const AddSections& change) {
     step_->is_changed = true;
   }
   count_pdos({}, added);
+  flush();
+}
+
+void ChangeApplier::make(const AllowFinding& change) {
+  flush();
+  const TextSection* const section = find(change.section);
+  if (section == nullptr) return;
+  const std::string_view reason = trim(change.reason);
+  if (change.rule.empty() || change.rule.find_first_of(" \t") != std::string::npos ||
+      !text_problem(change.rule).empty()) {
+    return reject(fmt::format("{} is not a rule", change.rule));
+  }
+  if (reason.empty()) return reject("missing reason");
+  if (const std::string_view problem = text_problem(reason); !problem.empty()) {
+    return reject(fmt::format("the reason cannot have {}", problem));
+  }
+  std::uint32_t line = section->line;
+  if (!change.key.empty()) {
+    const auto entry = find_key(*section, change.section, change.key);
+    if (!entry) return;
+    line = entry->line;
+  }
+  step_->edit.add_comments(line, {{fmt::format("; edsc: allow {} - {}", change.rule, reason), source_->origin(line)}});
+  step_->is_changed = true;
   flush();
 }
 

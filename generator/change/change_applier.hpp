@@ -55,11 +55,13 @@ class ChangeApplier {
   void make(const RenamePart& change);
   void make(const AddSections& change);
   void make(const MapPdo& change);
+  void make(const AllowFinding& change);
 
   void flush();
   void reject(std::string problem);
   [[nodiscard]] const TextSection* find(std::string_view title);
-  /// Returns a key of a section that a change names by this title; rejects the change if it is missing.
+  /// Returns a key of a section that a change names by this title, such as `Granularity#2`; rejects the change if it
+  /// is missing.
   [[nodiscard]] std::optional<IniEntry> find_key(const TextSection& section, std::string_view title,
                                                  std::string_view key);
   void set(const TextSection& section, std::string_view key, std::string_view value);

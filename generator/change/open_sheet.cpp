@@ -5,6 +5,7 @@
 #include "device/pdo/locked_parameters.hpp"
 #include "device/resolve.hpp"
 #include "format/canonical_form.hpp"
+#include "lint/allow_findings.hpp"
 #include "lint/check_device.hpp"
 
 namespace edsc {
@@ -13,9 +14,14 @@ std::unique_ptr<OpenSheet> open_sheet(std::string name, std::string bytes, const
   auto open = std::make_unique<OpenSheet>();
   open->options = options;
   open->checks = checks;
-  if (checks == SheetChecks::all) open->diagnostics.collect_remedies();
   open->source = std::make_shared<SourceFile>(std::move(name), bytes, Packing::none, options.reading);
   open->bytes = std::move(bytes);
+  if (checks == SheetChecks::all) {
+    open->diagnostics.collect_remedies();
+    silence_by_options(options, open->diagnostics);
+    allow_by_options(options, open->diagnostics);
+    allow_by_comments(*open->source, options, open->diagnostics);
+  }
   open->ini = parse_ini(*open->source, open->diagnostics);
   open->sheet = read_data_sheet(open->ini, open->diagnostics);
   if (open->sheet.objects.empty()) return open;

@@ -28,7 +28,7 @@ struct OpenSheet {
   DataSheet sheet;
   std::optional<Device> device;   ///< nothing if the text does not have an object
   std::optional<CppNames> names;  ///< of the device
-  Diagnostics diagnostics;        ///< findings of `edsc check`, also allowed ones; with all checks also remedies
+  Diagnostics diagnostics;        ///< with all checks the findings of `edsc check`, and remedies
 };
 
 /// Reads and resolves an EDS or DCF, and with `SheetChecks::all` checks it.

@@ -92,8 +92,8 @@ void SheetEdit::replace_key(const IniEntry& entry, std::string_view key) {
   lines_[entry.line].replacement = std::move(changed);
 }
 
-void SheetEdit::add_comments(const IniEntry& entry, std::vector<NewLine> comments) {
-  if (!comments.empty()) std::ranges::move(comments, std::back_inserter(lines_[entry.line].before));
+void SheetEdit::add_comments(std::uint32_t line, std::vector<NewLine> comments) {
+  if (!comments.empty()) std::ranges::move(comments, std::back_inserter(lines_[line].before));
 }
 
 void SheetEdit::add_lines_at_start(std::vector<NewLine> lines) {

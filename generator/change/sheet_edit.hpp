@@ -34,8 +34,8 @@ class SheetEdit {
   void set_value(const IniEntry& entry, std::string_view value, const ValueOrigin& origin, bool with_comment = false);
   /// Adds lines before the first one.
   void add_lines_at_start(std::vector<NewLine> lines);
-  /// Adds comments before an entry.
-  void add_comments(const IniEntry& entry, std::vector<NewLine> comments);
+  /// Adds comments before the line of an entry or section.
+  void add_comments(std::uint32_t line, std::vector<NewLine> comments);
   void remove_entry(const IniEntry& entry);
   /// Renames a key. Its value remains.
   void rename_entry(const IniEntry& entry, std::string_view key);

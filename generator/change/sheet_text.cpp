@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "eds/number.hpp"
+#include "eds/sections/section_keys.hpp"
 #include "text/ascii.hpp"
 
 namespace edsc {
@@ -95,6 +96,28 @@ std::uint32_t SheetText::first_line(const TextSection& section) const {
 }
 
 bool SheetText::is_blank_line(std::uint32_t line) const { return trim(source_.line(line)).empty(); }
+
+std::string ListRows::count_key() const {
+  return std::string{stated ? stated->key : section_keys::supported_objects.name};
+}
+
+ListRows list_rows(const SheetText& text, const TextSection& list) {
+  const CountKey& usual = section_keys::supported_objects;
+  ListRows rows;
+  for (const IniEntry& entry : text.entries(list)) {
+    if (const auto number = parse_unsigned(entry.key)) {
+      rows.last_number = std::max(rows.last_number, *number);
+      ++rows.count;
+      continue;
+    }
+    const auto names = {usual.name, usual.misspelling, std::string_view{"NrOfEntries"},
+                        std::string_view{"ObjectLinks"}};
+    const bool states_count =
+        std::ranges::any_of(names, [&](std::string_view key) { return equal_ignoring_case(entry.key, key); });
+    if (states_count && !rows.stated) rows.stated = entry;
+  }
+  return rows;
+}
 
 CountedName read_counted_name(std::string_view text) {
   const std::size_t mark = text.rfind('#');

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -52,6 +53,17 @@ class SheetText {
   std::vector<TextSection> sections_;
   std::vector<IdentityPlace> places_;  ///< sorted
 };
+
+/// The numbered entries of a list, such as [OptionalObjects], and the key that states their number.
+struct ListRows {
+  std::size_t count = 0;
+  std::uint64_t last_number = 0;   ///< the highest one; 0 without entries
+  std::optional<IniEntry> stated;  ///< SupportedObjects, NrOfEntries, ObjectLinks
+
+  /// The key as written, else as usual for an object list.
+  [[nodiscard]] std::string count_key() const;
+};
+[[nodiscard]] ListRows list_rows(const SheetText& text, const TextSection& list);
 
 /// The key without `#N`, and N; 1 without it.
 struct CountedName {

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "change/fixes.hpp"
 #include "change/open_sheet.hpp"
-#include "change/sheet_text.hpp"
 
 namespace edsc::edit {
 
@@ -49,8 +49,8 @@ void add_standard_objects(const OpenSheet& sheet, SheetParts& parts);
 /// `findings`
 void add_findings(const OpenSheet& sheet, SheetParts& parts);
 
-/// A finding with the place in its file and, with `text`, its fixes.
-[[nodiscard]] Json finding_json(const OpenSheet& sheet, const Diagnostic& one, const SheetText* text);
+/// A finding with the place in its file and, if these are given, its fixes.
+[[nodiscard]] Json finding_json(const OpenSheet& sheet, const Diagnostic& one, const Fixes* fixes);
 
 /// The profile number in 1000h; 0 without one.
 [[nodiscard]] std::uint16_t profile_of(const OpenSheet& sheet);

@@ -14,9 +14,9 @@
 #include "device/resolve.hpp"
 #include "diagnostics/consequences.hpp"
 #include "diagnostics/quote.hpp"
-#include "diagnostics/unknown_rule.hpp"
 #include "eds/allow_comments.hpp"
 #include "eds/ini.hpp"
+#include "lint/allow_findings.hpp"
 #include "lint/check_device.hpp"
 #include "overlay/overlay_file.hpp"
 #include "overlay/search_overlays.hpp"
@@ -71,62 +71,13 @@ void read_options_file(const std::string& path, const ReadBase& read, LoadedDevi
   loaded.options_source = read_or_report(path, read, {}, loaded, diagnostics);
   if (loaded.unreadable) return;
   loaded.options = read_options(*loaded.options_source, is_identifier, diagnostics);
-  silence_by_options(loaded, diagnostics);
-}
-
-void report_former_id(RuleId rule, std::string_view id, const Position& position, Diagnostics& diagnostics) {
-  if (id != rule.row().former_id) return;
-  diagnostics.warning("deprecated-option", position,
-                      fmt::format("the rule {} is called {} now", quote(id), rule.text()));
-}
-
-void allow_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics) {
-  for (const AllowedFindings& allowed : loaded.options.allow) {
-    const auto rule = find_rule(check_rules, allowed.rule);
-    if (!rule) {
-      diagnostics.error("options", allowed.position, "allow: " + unknown_rule(allowed.rule, check_rules));
-      continue;
-    }
-    report_former_id(*rule, allowed.rule, allowed.position, diagnostics);
-    Allowance allowance{*rule, allowed.reason, allowed.position, false, {}};
-    if (allowed.object) {
-      const bool is_entry = allowed.object->sub_index.has_value();
-      allowance.scope.kind = is_entry ? AllowanceScope::Kind::entry : AllowanceScope::Kind::object;
-      allowance.scope.index = allowed.object->index;
-      allowance.scope.sub_index = allowed.object->sub_index.value_or(0);
-    }
-    diagnostics.allow(std::move(allowance));
-  }
-}
-
-void allow_by_comment(const AllowComment& comment, Diagnostics& diagnostics) {
-  const auto warning = [&](std::string message) {
-    diagnostics.warning("allow-comment", comment.position, std::move(message));
-  };
-  if (comment.rule.empty()) return warning("a comment of edsc has the form \"; edsc: allow RULE - reason\"");
-  const auto rule = find_rule(check_rules, comment.rule);
-  if (!rule) return warning(unknown_rule(comment.rule, check_rules));
-  if (comment.reason.empty()) return warning("missing reason: \"; edsc: allow RULE - reason\"");
-  if (!comment.has_target) return warning("no key or section follows to which this comment applies");
-  diagnostics.allow({*rule, std::string{comment.reason}, comment.position, true, comment.scope});
+  silence_by_options(loaded.options, diagnostics);
 }
 
 /// Whether a choice other than the encoding is stated.
 bool states_ini_choices(ReadingChoices choices) {
   choices.encoding.reset();
   return choices != ReadingChoices{};
-}
-
-/// Registers the allowances in the options and comments of the EDS. The parts of an XDD are known after reading it.
-void allow_findings(const LoadedDevice& loaded, Diagnostics& diagnostics) {
-  allow_by_options(loaded, diagnostics);
-  diagnostics.set_outline({loaded.source.get(), {}, {}});
-  if (is_xml(*loaded.source)) return;
-  const bool has_comments = loaded.source->text().find("edsc:") != std::string_view::npos;
-  if (!has_comments && loaded.options.allow.empty()) return;
-  AllowComments found = find_allow_comments(*loaded.source);
-  diagnostics.set_outline(std::move(found.outline));
-  for (const AllowComment& comment : found.comments) allow_by_comment(comment, diagnostics);
 }
 
 /// The outline of the data sheet is complete if the sheet is an XDD, or has allowances.
@@ -230,17 +181,6 @@ Device device_for(const LoadedDevice& loaded, std::optional<std::uint8_t> node_i
   return resolve_device(loaded.sheet, loaded.options, node_id, reported);
 }
 
-void silence_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics) {
-  for (const SilencedRule& silenced : loaded.options.silence) {
-    if (const auto rule = find_rule(check_rules, silenced.rule)) {
-      report_former_id(*rule, silenced.rule, silenced.position, diagnostics);
-      diagnostics.silence(*rule);
-    } else {
-      diagnostics.error("options", silenced.position, "silence: " + unknown_rule(silenced.rule, check_rules));
-    }
-  }
-}
-
 bool can_keep_going(const LoadedDevice& loaded, const Diagnostics& diagnostics) {
   const auto is_final = [&](const Diagnostic& one) {
     return one.severity == Severity::error && (one.position.file != loaded.source.get() || one.rule.row().is_fatal);
@@ -263,7 +203,9 @@ void report_unused_allowances(const LoadedDevice& loaded, Diagnostics& diagnosti
 }
 
 void read_sheet(LoadedDevice& loaded, Diagnostics& diagnostics) {
-  allow_findings(loaded, diagnostics);
+  allow_by_options(loaded.options, diagnostics);
+  diagnostics.set_outline({loaded.source.get(), {}, {}});  // the parts of an XDD are known after reading it
+  if (!is_xml(*loaded.source)) allow_by_comments(*loaded.source, loaded.options, diagnostics);
   for (const DeprecatedOption& one : loaded.options.deprecated) {
     diagnostics.warning("deprecated-option", one.position, one.message);
   }

@@ -68,9 +68,6 @@ struct ChoicesOfOptions {
 /// device were. `keep_going` as in its settings.
 [[nodiscard]] Device device_for(const LoadedDevice& loaded, std::optional<std::uint8_t> node_id, bool keep_going);
 
-/// Silences the rules that the options name. An unknown rule is an error.
-void silence_by_options(const LoadedDevice& loaded, Diagnostics& diagnostics);
-
 /// Whether `--keep-going` turns all errors into warnings.
 [[nodiscard]] bool can_keep_going(const LoadedDevice& loaded, const Diagnostics& diagnostics);
 

@@ -51,7 +51,11 @@ using Committed = std::function<std::shared_ptr<const LoadedDevice>(const std::s
 [[nodiscard]] Json formatting(const View& view);
 /// What the changes since the committed version break.
 [[nodiscard]] Json code_lenses(const View& view, const Committed& committed);
-[[nodiscard]] Json code_actions(const View& view, const TextRange& range, const Json& context);
+/// Fixes of the findings in a range. `is_resolved_later`: the editor asks for the edit of the one that the user
+/// selects.
+[[nodiscard]] Json code_actions(const View& view, const TextRange& range, const Json& context, bool is_resolved_later);
+/// The action with its edit.
+[[nodiscard]] Json resolved_action(const View& view, Json action);
 /// The range and the text of the index, or index and sub-index, that can be renamed.
 [[nodiscard]] Json prepare_rename(const View& view, const TextPosition& at);
 [[nodiscard]] Json rename(const View& view, const TextPosition& at, const std::string& new_name);

@@ -49,18 +49,15 @@ Json capabilities(PositionEncoding encoding) {
           {"documentFormattingProvider", true},
           {"inlayHintProvider", true},
           {"codeLensProvider", Json::object()},
-          {"codeActionProvider", {{"codeActionKinds", {"quickfix", "source.fixAll.edsc"}}}},
+          {"codeActionProvider", {{"codeActionKinds", {"quickfix", "source.fixAll.edsc"}}, {"resolveProvider", true}}},
           {"renameProvider", {{"prepareProvider", true}}}};
 }
 
-bool offers_utf8(const Json& params) {
-  const Json* at = &params;
-  for (const char* const name : {"capabilities", "general", "positionEncodings"}) {
-    const auto found = at->is_object() ? at->find(name) : at->end();
-    if (!at->is_object() || found == at->end()) return false;
-    at = &*found;
-  }
-  return at->is_array() && std::ranges::find(*at, Json("utf-8")) != at->end();
+/// Whether a list of the parameters of `initialize` has a text.
+bool lists(const Json& params, const Json::json_pointer& list, std::string_view text) {
+  if (!params.is_object() || !params.contains(list)) return false;
+  const Json& found = params.at(list);
+  return found.is_array() && std::ranges::find(found, Json(text)) != found.end();
 }
 
 TextPosition position_in(const Json& params) { return position_from(params.at("position")); }
@@ -144,8 +141,13 @@ const std::map<std::string_view, Server::Method>& Server::methods() {
        }}},
       {"textDocument/codeAction", {[](Server& server, const Json& params) {
          return server.with_view(params, [&](const View& view) {
-           return code_actions(view, range_from(params.at("range")), params.value("context", Json::object()));
+           return code_actions(view, range_from(params.at("range")), params.value("context", Json::object()),
+                               server.resolves_actions_);
          });
+       }}},
+      {"codeAction/resolve", {[](Server& server, const Json& params) {
+         const Json document{{"textDocument", {{"uri", params.at("data").at("uri")}}}};
+         return server.with_view(document, [&](const View& view) { return resolved_action(view, params); });
        }}},
       {"textDocument/prepareRename", {[](Server& server, const Json& params) {
          return server.with_view(params, [&](const View& view) { return prepare_rename(view, position_in(params)); });
@@ -227,7 +229,10 @@ Json Server::answer(const std::string& method, const Json& params, bool is_reque
 }
 
 Json Server::initialize(const Json& params) {
-  encoding_ = offers_utf8(params) ? PositionEncoding::utf8 : PositionEncoding::utf16;
+  encoding_ = lists(params, "/capabilities/general/positionEncodings"_json_pointer, "utf-8") ? PositionEncoding::utf8
+                                                                                             : PositionEncoding::utf16;
+  resolves_actions_ =
+      lists(params, "/capabilities/textDocument/codeAction/resolveSupport/properties"_json_pointer, "edit");
   is_initialized_ = true;
   return {{"capabilities", capabilities(encoding_)}, {"serverInfo", {{"name", "edsc"}, {"version", hooks_.version}}}};
 }

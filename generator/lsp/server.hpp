@@ -58,6 +58,7 @@ class Server {
   ServerHooks hooks_;
   Workspace workspace_;
   PositionEncoding encoding_ = PositionEncoding::utf16;
+  bool resolves_actions_ = false;  ///< the client asks for the edit of an action that the user selects
   bool is_initialized_ = false;
   bool was_shut_down_ = false;
   bool has_ended_ = false;

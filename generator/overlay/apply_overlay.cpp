@@ -233,7 +233,7 @@ class OverlayApplier {
       obsolete(line, place);
     } else {
       edit_.set_value(*entry, line.new_value, value_origin(line), line.old_value == value);
-      edit_.add_comments(*entry, comments_above(line.entry.line));
+      edit_.add_comments(entry->line, comments_above(line.entry.line));
     }
   }
 

@@ -12,12 +12,6 @@
 namespace edsc {
 namespace {
 
-/// `SupportedObjects`, in its usual misspelling too.
-bool is_count(std::string_view key) {
-  const CountKey& count = section_keys::supported_objects;
-  return equal_ignoring_case(key, count.name) || equal_ignoring_case(key, count.misspelling);
-}
-
 /// Rules whose remedies change how the whole file is read.
 bool is_of_the_file(RuleId rule) {
   static const AnyRule rules[] = {"shifted-data-types", "sub-index-base"};
@@ -100,24 +94,13 @@ void RepairPlan::add_lists(NewOverlay& overlay) const {
   for (const auto& [index, unlisted] : unlisted_) lists[unlisted.list].emplace_back(index, unlisted.reason);
   for (const auto& [list, objects] : lists) {
     const TextSection* const section = base_.find(list);
-    std::uint64_t last = 0;
-    std::size_t count = 0;
-    std::string key{section_keys::supported_objects.name};
-    std::optional<std::string> stated;
-    if (section != nullptr) {
-      for (const IniEntry& entry : base_.entries(*section)) {
-        if (is_count(entry.key)) {
-          key = entry.key;
-          stated = strip_inline_comment(entry.value);
-        } else if (const auto number = parse_unsigned(entry.key)) {
-          last = std::max(last, *number);
-          ++count;
-        }
-      }
-    }
-    overlay.changes.push_back({list, key, stated, fmt::format("{}", count + objects.size()), "number of the entries"});
+    ListRows rows = section == nullptr ? ListRows{} : list_rows(base_, *section);
+    const auto stated =
+        rows.stated ? std::optional{std::string{strip_inline_comment(rows.stated->value)}} : std::nullopt;
+    overlay.changes.push_back(
+        {list, rows.count_key(), stated, fmt::format("{}", rows.count + objects.size()), "number of the entries"});
     for (const auto& [index, reason] : objects) {
-      overlay.changes.push_back({list, fmt::format("{}", ++last), std::nullopt, index, reason});
+      overlay.changes.push_back({list, fmt::format("{}", ++rows.last_number), std::nullopt, index, reason});
     }
   }
 }

@@ -40,6 +40,19 @@ const askToForce = (rejected, changes) => {
   ] });
 };
 
+/* A finding is allowed with a reason, which becomes a comment of the file. */
+const askForReason = (fix) => {
+  const reason = make('input', { type: 'text', id: 'reason', maxlength: 200, required: true });
+  const allow = make('button', { type: 'button', class: 'main', text: 'Allow', onclick: async () => {
+    const message = reason.value.trim() ? await change(fix.changes.map((one) => ({ ...one, reason: reason.value.trim() })), { canAsk: false })
+      : 'State the reason.';
+    if (message) dialog.reject(message);
+    else dialog.close();
+  } });
+  const dialog = new Dialog({ title: fix.title, actions: [allow], body: [make('label', { for: 'reason', text: 'Reason' }), reason] });
+  reason.focus();
+};
+
 /* Edits of cells are one step. A rejected one does not stop the others. */
 const maxRejected = 50;
 const changeCells = async (edits, isForced) => {
@@ -248,6 +261,7 @@ const openPlace = (finding) => {
 const side = new SidePanel({
   client, announce, open: openPlace,
   fix: async (one) => {
+    if (one.needs_reason) return askForReason(one);
     const message = await change(one.changes);
     announce(message || `Done: ${one.title}.`);
   },

@@ -12,7 +12,7 @@ const findingElement = (finding, { open, fix }) => make('li', { class: finding.s
     open && finding.section && make('button', { type: 'button', class: 'link', text: `[${finding.section}], line ${finding.line}`, onclick: () => open(finding) }),
     !(open && finding.section) && finding.line > 0 && make('span', { class: 'quiet', text: `line ${finding.line}` }),
     finding.rule && make('span', { class: 'rule mono', text: finding.rule }),
-    ...(fix ? finding.fixes ?? [] : []).map((one) => make('button', { type: 'button', class: 'small', text: `Fix: ${one.title}`, onclick: (event) => fix(one, event) }))));
+    ...(fix ? finding.fixes ?? [] : []).map((one) => make('button', { type: 'button', class: 'small', text: one.needs_reason ? `${one.title} …` : `Fix: ${one.title}`, onclick: (event) => fix(one, event) }))));
 
 /* Findings, the text of the section, and the unsaved edits as a diff. */
 class SidePanel {

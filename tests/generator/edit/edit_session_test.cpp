@@ -223,6 +223,28 @@ TEST_F(EditSessionTest, JournalCanBeDiscarded) {
   EXPECT_EQ(part(session, "status")["journal"], nullptr);
 }
 
+TEST_F(EditSessionTest, FindingIsAllowedWithAReason) {
+  write("a.eds", replaced(small_eds, "RevisionNumber=0x00010000", "VendorNme=x"));
+  EditSession session = open();
+  const auto finding = [&]() -> nlohmann::json {
+    const nlohmann::json findings = part(session, "findings");
+    for (const auto& one : findings["list"]) {
+      if (one["rule"] == "unknown-key") return one;
+    }
+    return nullptr;
+  };
+  const nlohmann::json before = finding();
+  ASSERT_FALSE(before.is_null());
+  nlohmann::json allow = before["fixes"].back();
+  EXPECT_EQ(allow["needs_reason"], true);
+  EXPECT_TRUE(change(session, {allow["changes"][0]}).contains("rejected"));
+  allow["changes"][0]["reason"] = "the tool of the vendor needs it";
+  change(session, {allow["changes"][0]});
+  EXPECT_EQ(session.bytes(), replaced(small_eds, "RevisionNumber=0x00010000",
+                                      "; edsc: allow unknown-key - the tool of the vendor needs it\r\nVendorNme=x"));
+  EXPECT_TRUE(finding().is_null());
+}
+
 TEST_F(EditSessionTest, IncompleteRecordIsNotUsed) {
   write("a.eds", small_eds);
   std::string edited;

@@ -14,7 +14,8 @@ TIMEOUT = 60
 
 
 class Client:
-    def __init__(self, edsc: Path, *, encoding: str = "utf-16", folder: Path | None = None, initialize: bool = True) -> None:
+    def __init__(self, edsc: Path, *, encoding: str = "utf-16", folder: Path | None = None, initialize: bool = True,
+                 more: dict[str, Any] | None = None) -> None:
         self.process = subprocess.Popen([edsc, "lsp"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=folder)
         self.output: queue.Queue[bytes] = queue.Queue()
         self.log: list[bytes] = []
@@ -30,7 +31,7 @@ class Client:
         if initialize:
             self.capabilities = self.request("initialize", {
                 "processId": os.getpid(), "rootUri": None,
-                "capabilities": {"general": {"positionEncodings": [encoding]}}})["capabilities"]
+                "capabilities": {"general": {"positionEncodings": [encoding]}, **(more or {})}})["capabilities"]
             self.notify("initialized", {})
 
     def send_bytes(self, data: bytes) -> None:

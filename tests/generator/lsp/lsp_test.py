@@ -425,6 +425,7 @@ class LanguageServer(unittest.TestCase):
                 ("vendor-number", "VendorNumber=1", "VendorNumber=9", "VendorNumber=9"),
                 ("duplicate-key", "Granularity=8", "Granularity=8\nGranularity=9", "Granularity=9"),
                 ("pdo-count", "NrOfTXPDO=1", "NrOfTXPDO=5", "NrOfTXPDO=5"),
+                ("process-data-not-mappable", "AccessType=rw\nDefaultValue=0", "AccessType=rww\nDefaultValue=0", "AccessType=rww"),
                 ("sub-number", "SubNumber=2", "SubNumber=9", "SubNumber=9")):
             with self.subTest(rule):
                 wrong = text.replace(old, new, 1)
@@ -432,8 +433,24 @@ class LanguageServer(unittest.TestCase):
                 actions = [one for one in self.fixes(wrong, line) if one.get("isPreferred")]
                 self.assertIn(rule, [one["code"] for one in self.client.published(self.uri)])
                 self.assertTrue(actions)
-                path = self.write("small.eds", applied(wrong, actions[0]["edit"]["changes"][self.uri]))
+                edits = actions[0]["edit"]["changes"][self.uri]
+                path = self.write("small.eds", applied(wrong, edits))
                 self.assertNotIn(rule, [one["rule"] for one in check(path)])
+
+    def test_a_client_may_ask_for_the_edit_later(self) -> None:
+        wrong = SHEET.replace("NrOfTXPDO=1", "NrOfTXPDO=5")
+        path = self.write("small.eds", wrong)
+        client = Client(EDSC, more={"textDocument": {"codeAction": {"resolveSupport": {"properties": ["edit"]}}}})
+        uri, at = client.open(path), line_of(wrong, "NrOfTXPDO=5")
+        offered = client.request("textDocument/codeAction", {
+            "textDocument": {"uri": uri}, "context": {"diagnostics": []},
+            "range": {"start": {"line": at, "character": 0}, "end": {"line": at, "character": 99}}})
+        action = next(one for one in offered if one.get("isPreferred"))
+        self.assertNotIn("edit", action)
+        edit = client.request("codeAction/resolve", action)["edit"]
+        self.assertEqual(applied(wrong, edit["changes"][uri]), SHEET)
+        self.assertIn("code", client.error("codeAction/resolve", {"data": {"uri": uri, "changes": [{"do": "x"}]}}))
+        self.assertEqual(client.end()[0], 0)
 
     def test_allow_comment_is_accepted(self) -> None:
         self.uri, text = self.small()

@@ -78,7 +78,7 @@ local at = { line = found[1].lnum, character = 0 }
 local actions = request("textDocument/codeAction", { textDocument = vim.lsp.util.make_text_document_params(),
   range = { start = at, ["end"] = { line = at.line, character = 40 } }, context = { diagnostics = {} } })
 for _, action in ipairs(actions) do
-  if action.isPreferred then apply(action.edit) break end
+  if action.isPreferred then apply(action.edit or request("codeAction/resolve", action).edit) break end
 end
 wait(function()
   return #vim.tbl_filter(function(one) return one.code == "object-list-count" end, vim.diagnostic.get(0)) == 0
