@@ -5,6 +5,7 @@
 
 #include <ctime>
 #include <filesystem>
+#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -51,7 +52,7 @@ Options options_beside(const std::string& path) {
   std::error_code missing;
   if (!std::filesystem::exists(beside, missing)) return {};
   std::string error;
-  const auto source = read_source_file(from_native(beside), error);
+  std::shared_ptr<const SourceFile> source = read_source_file(from_native(beside), error);
   if (!source) fail(error);
   Diagnostics diagnostics;
   Options options = read_options(*source, is_identifier, diagnostics);
@@ -59,6 +60,7 @@ Options options_beside(const std::string& path) {
     print_findings(diagnostics, {});
     throw Exit{exit_input_has_errors};
   }
+  options.source = std::move(source);
   return options;
 }
 

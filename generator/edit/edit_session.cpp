@@ -322,7 +322,11 @@ void EditSession::apply(const nlohmann::json& requests, bool is_forced) {
   sheet_ = std::move(overlay_->sheet);
   if (!changed.problem.empty()) throw Rejection{read.requests.front(), changed.problem};
   EditStep step{name, bytes_between(bytes_, changed.bytes)};
-  if (step.edits.empty()) return;
+  if (step.edits.empty()) {
+    throw Rejection{
+        read.requests.front(),
+        "an overlay cannot hold this change, which changes no value; a finding is allowed in the options file"};
+  }
   take_step(std::move(step), std::move(changed.bytes), std::move(applied.after));
 }
 

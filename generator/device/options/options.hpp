@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -116,6 +117,8 @@ struct Options {
   MeaningDescriptions meaning;
   /// Values with a meaning have a type of their own in C++.
   bool typed_values = true;
+  /// The file of the positions, if nothing else keeps it.
+  std::shared_ptr<const SourceFile> source;
 
   [[nodiscard]] bool is_settable(std::uint16_t index, std::uint8_t sub_index) const {
     return std::ranges::binary_search(settable, EntryKey{index, sub_index});

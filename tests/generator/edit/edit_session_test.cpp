@@ -394,6 +394,19 @@ TEST_F(EditSessionTest, ChangesOfAnOverlayAreWrittenToIt) {
   EXPECT_EQ(read("a.eds"), small_eds);
 }
 
+TEST_F(EditSessionTest, AnOverlayDoesNotAllowFindings) {
+  write("a.eds", small_eds);
+  const std::string overlay =
+      "[Overlay]\nVersion=1\nBase=a.eds\n; the manual, page 8\n[1000]\nDefaultValue=0 => 0x191\n";
+  write("b.overlay", overlay);
+  EditSession session = open("b.overlay");
+  const auto answer =
+      change(session, {{{"do", "allow"}, {"section", "2000"}, {"rule", "unknown-key"}, {"reason", "as delivered"}}});
+  ASSERT_TRUE(answer.contains("rejected")) << answer;
+  EXPECT_NE(answer["rejected"]["message"].get<std::string>().find("options file"), std::string::npos) << answer;
+  EXPECT_EQ(session.bytes(), overlay);
+}
+
 TEST_F(EditSessionTest, FilesThatAreNotEdited) {
   write("a.xdd", "<?xml version=\"1.0\"?><ISO15745ProfileContainer/>");
   EXPECT_NE(open("a.xdd").problem(), "");
