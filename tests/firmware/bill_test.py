@@ -79,7 +79,8 @@ class Bill(unittest.TestCase):
         bill = self.bill(self.project)
         edsc = output(EDSC, "--version").split()[1]
         compiler = output(COMPILER, "-dumpfullversion").strip()
-        newlib = output("dpkg-query", "-W", "-f", "${Version}", "libnewlib-arm-none-eabi").split("-")[0]
+        package = output("dpkg-query", "-W", "-f", "${Version}", "libnewlib-arm-none-eabi").split("-")[0]
+        newlib = ".".join(package.split(".")[:3])  # Debian 13 adds the date
         libraries = {part["name"]: part["version"] for part in bill["components"] if part["type"] == "library"}
         self.assertEqual(libraries, {"edsc": edsc, "newlib": newlib, "libgcc": compiler})
         tools = {tool["name"]: (tool["version"], tool["description"]) for tool in bill["metadata"]["tools"]["components"]}
