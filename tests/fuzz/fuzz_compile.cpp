@@ -7,6 +7,7 @@
 #include "backend/json/device_view.hpp"
 #include "backend/render.hpp"
 #include "fuzz.hpp"
+#include "lint/allow_findings.hpp"
 #include "load/load_device.hpp"
 
 namespace edsc::fuzz {
@@ -23,7 +24,7 @@ void split(const std::string& input, LoadedDevice& loaded, Diagnostics& diagnost
   }
   loaded.options_source = std::make_unique<SourceFile>("fuzz.options.json", input.substr(0, end));
   loaded.options = read_options(*loaded.options_source, is_identifier, diagnostics);
-  silence_by_options(loaded, diagnostics);
+  silence_by_options(loaded.options, diagnostics);
   loaded.source = std::make_unique<SourceFile>("fuzz.eds", input.substr(end + options_end.size()));
 }
 

@@ -2,6 +2,7 @@
 #include "backend/cpp/cpp_view.hpp"
 #include "backend/cpp/identifier.hpp"
 #include "fuzz.hpp"
+#include "lint/allow_findings.hpp"
 #include "load/load_device.hpp"
 
 namespace edsc::fuzz {
@@ -26,7 +27,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Diagnostics diagnostics;
   loaded.options_source = std::make_unique<SourceFile>("fuzz.options.json", fuzz::text_of(data, size));
   loaded.options = read_options(*loaded.options_source, is_identifier, diagnostics);
-  silence_by_options(loaded, diagnostics);
+  silence_by_options(loaded.options, diagnostics);
   loaded.source = std::make_unique<SourceFile>("fuzz.eds", fuzz::sheet());
   LoadSettings settings;
   settings.name = "device";
