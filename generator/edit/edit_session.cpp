@@ -524,7 +524,7 @@ void EditSession::publish() {
   add_pdos(*sheet_, parts);
   add_choices(parts);
   add_standard_objects(*sheet_, parts);
-  add_findings(*sheet_, parts);
+  add_findings(*sheet_, !overlay_, parts);
 
   const std::uint64_t next = version_ + 1;
   bool is_changed = false;

@@ -15,15 +15,15 @@ namespace {
 
 constexpr std::size_t max_findings = 500;
 
+Json to_json(const Fix& fix) {
+  Json changes = Json::array();
+  for (const SheetChange& change : fix.changes) changes.push_back(change_as_json(change));
+  return {{"title", fix.title}, {"changes", std::move(changes)}, {"needs_reason", fix.needs_reason}};
+}
+
 Json fixes_json(const Fixes& fixes, const Diagnostic& one) {
-  std::vector<Fix> all = fixes.at(one.rule, one.position.line);
-  if (auto allowance = fixes.allowance(one.rule, one.position.line)) all.push_back(*std::move(allowance));
   Json list = Json::array();
-  for (const Fix& fix : all) {
-    Json changes = Json::array();
-    for (const SheetChange& change : fix.changes) changes.push_back(change_as_json(change));
-    list.push_back({{"title", fix.title}, {"changes", std::move(changes)}, {"needs_reason", fix.needs_reason}});
-  }
+  for (const Fix& fix : fixes.at(one.rule, one.position.line)) list.push_back(to_json(fix));
   return list;
 }
 
@@ -44,7 +44,7 @@ Json finding_json(const OpenSheet& sheet, const Diagnostic& one, const Fixes* fi
           {"fixes", section == nullptr ? Json::array() : fixes_json(*fixes, one)}};
 }
 
-void add_findings(const OpenSheet& sheet, SheetParts& parts) {
+void add_findings(const OpenSheet& sheet, bool can_allow, SheetParts& parts) {
   const SheetText text{*sheet.source};
   const Fixes fixes{text, sheet.diagnostics, sheet.device ? &*sheet.device : nullptr};
   const std::vector<Diagnostic>& all = sheet.diagnostics.all();
@@ -54,6 +54,11 @@ void add_findings(const OpenSheet& sheet, SheetParts& parts) {
       if (one.severity != severity || list.size() == max_findings) continue;
       Json finding = finding_json(sheet, one, &fixes);
       finding["id"] = list.size();
+      if (can_allow && !finding["section"].get_ref<const std::string&>().empty()) {
+        if (const auto allowance = fixes.allowance(one.rule, one.position.line)) {
+          finding["fixes"].push_back(to_json(*allowance));
+        }
+      }
       list.push_back(std::move(finding));
     }
   }

@@ -46,8 +46,8 @@ void add_pdos(const OpenSheet& sheet, SheetParts& parts);
 void add_choices(SheetParts& parts);
 /// `standard`: known objects that the file does not have.
 void add_standard_objects(const OpenSheet& sheet, SheetParts& parts);
-/// `findings`
-void add_findings(const OpenSheet& sheet, SheetParts& parts);
+/// `findings`. `can_allow`: a comment of the file can allow a finding.
+void add_findings(const OpenSheet& sheet, bool can_allow, SheetParts& parts);
 
 /// A finding with the place in its file and, if these are given, its fixes.
 [[nodiscard]] Json finding_json(const OpenSheet& sheet, const Diagnostic& one, const Fixes* fixes);

@@ -29,6 +29,9 @@ constexpr const char* small_eds =
     "[2000]\r\nParameterName=Speed\r\nObjectType=7\r\nDataType=0x0006\r\nAccessType=rww\r\nDefaultValue=0x0010\r\n"
     "PDOMapping=1\r\n";
 
+const std::string small_overlay =
+    "[Overlay]\nVersion=1\nBase=a.eds\n; the manual, page 8\n[1000]\nDefaultValue=0 => 0x191\n";
+
 std::string replaced(std::string text, const std::string& old_text, const std::string& new_text) {
   const std::size_t at = text.find(old_text);
   EXPECT_NE(at, std::string::npos) << old_text;
@@ -373,9 +376,7 @@ TEST_F(EditSessionTest, FixesOfFindingsAreChanges) {
 
 TEST_F(EditSessionTest, ChangesOfAnOverlayAreWrittenToIt) {
   write("a.eds", small_eds);
-  const std::string overlay =
-      "[Overlay]\nVersion=1\nBase=a.eds\n; the manual, page 8\n[1000]\nDefaultValue=0 => 0x191\n";
-  write("b.overlay", overlay);
+  write("b.overlay", small_overlay);
   EditSession session = open("b.overlay");
   ASSERT_EQ(session.problem(), "");
   EXPECT_EQ(part(session, "file")["kind"], "overlay");
@@ -383,12 +384,12 @@ TEST_F(EditSessionTest, ChangesOfAnOverlayAreWrittenToIt) {
   EXPECT_FALSE(part(session, "object/1000")["entries"][0]["from_base"].get<bool>());
   const auto answer = change(session, {set("2000", "DefaultValue", "17")});
   ASSERT_FALSE(answer.contains("rejected")) << answer;
-  EXPECT_EQ(session.bytes(), overlay + "\n[2000]\nDefaultValue=0x0010 => 0x0011\n");
+  EXPECT_EQ(session.bytes(), small_overlay + "\n[2000]\nDefaultValue=0x0010 => 0x0011\n");
   change(session, {set("2000", "DefaultValue", "18")});
-  EXPECT_EQ(session.bytes(), overlay + "\n[2000]\nDefaultValue=0x0010 => 0x0012\n");
+  EXPECT_EQ(session.bytes(), small_overlay + "\n[2000]\nDefaultValue=0x0010 => 0x0012\n");
   post(session, "undo");
   post(session, "undo");
-  EXPECT_EQ(session.bytes(), overlay);
+  EXPECT_EQ(session.bytes(), small_overlay);
   change(session, {set("1000", "DefaultValue", "0")});
   EXPECT_EQ(session.bytes().find("[1000]"), std::string::npos) << session.bytes();
   EXPECT_EQ(read("a.eds"), small_eds);
@@ -396,15 +397,18 @@ TEST_F(EditSessionTest, ChangesOfAnOverlayAreWrittenToIt) {
 
 TEST_F(EditSessionTest, AnOverlayDoesNotAllowFindings) {
   write("a.eds", small_eds);
-  const std::string overlay =
-      "[Overlay]\nVersion=1\nBase=a.eds\n; the manual, page 8\n[1000]\nDefaultValue=0 => 0x191\n";
-  write("b.overlay", overlay);
+  write("b.overlay", small_overlay);
   EditSession session = open("b.overlay");
+  const auto findings = part(session, "findings")["list"];
+  ASSERT_FALSE(findings.empty());
+  for (const auto& finding : findings) {
+    for (const auto& fix : finding["fixes"]) EXPECT_FALSE(fix["needs_reason"].get<bool>()) << finding;
+  }
   const auto answer =
       change(session, {{{"do", "allow"}, {"section", "2000"}, {"rule", "unknown-key"}, {"reason", "as delivered"}}});
   ASSERT_TRUE(answer.contains("rejected")) << answer;
   EXPECT_NE(answer["rejected"]["message"].get<std::string>().find("options file"), std::string::npos) << answer;
-  EXPECT_EQ(session.bytes(), overlay);
+  EXPECT_EQ(session.bytes(), small_overlay);
 }
 
 TEST_F(EditSessionTest, FilesThatAreNotEdited) {
