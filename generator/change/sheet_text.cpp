@@ -110,8 +110,8 @@ ListRows list_rows(const SheetText& text, const TextSection& list) {
       ++rows.count;
       continue;
     }
-    const auto names = {usual.name, usual.misspelling, std::string_view{"NrOfEntries"},
-                        std::string_view{"ObjectLinks"}};
+    const auto names = {usual.name, usual.misspelling, section_keys::nr_of_list_entries.name,
+                        section_keys::object_link_count.name};
     const bool states_count =
         std::ranges::any_of(names, [&](std::string_view key) { return equal_ignoring_case(entry.key, key); });
     if (states_count && !rows.stated) rows.stated = entry;
