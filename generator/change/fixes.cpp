@@ -73,7 +73,8 @@ const TextSection* Fixes::section_at(std::uint32_t line) const {
   return next == text_.sections().begin() ? nullptr : &*std::prev(next);
 }
 
-/// Changes name a section by its title, which is that of the first one.
+/// Nothing in the second of two sections with one title: changes name a section by its title, and so reach the first
+/// one.
 std::optional<Fixes::Place> Fixes::place_at(std::uint32_t line) const {
   const TextSection* const section = section_at(line);
   if (section == nullptr || text_.find(section->title) != section) return std::nullopt;
@@ -152,7 +153,7 @@ std::vector<Fix> Fixes::correct_key(const Place& place) const {
   return fixes;
 }
 
-/// Process data is mappable, or its access type is that of other values.
+/// rwr and rww are for mappable entries: the entry becomes mappable, or its access type becomes rw.
 std::vector<Fix> Fixes::change_access(const Place& place) const {
   if (!equal_ignoring_case(place.entry->key, "AccessType") || place.occurrence != 1) return {};
   return {{"Set PDOMapping=1", {SetValue{place.title, "PDOMapping", "1"}}},

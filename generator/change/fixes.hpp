@@ -26,7 +26,7 @@ struct Fix {
 /// meant.
 class Fixes {
  public:
-  /// `device` is that of the text; null without one. All must outlive the object.
+  /// `device`: what the text describes; null if it describes none. All must outlive the object.
   Fixes(const SheetText& text, const Diagnostics& diagnostics, const Device* device);
 
   /// The fixes of a finding of this rule in a line of the text, the best one first.

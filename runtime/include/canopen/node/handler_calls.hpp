@@ -82,7 +82,7 @@ class HandlerCalls {
 template <bool exist, bool write, bool supply, bool for_tpdo>
 class HandlerCall {
  public:
-  /// `key` is that of the object if it is written, or read for a TPDO; otherwise 0.
+  /// `key`: of the object that is checked before a write, or read for a TPDO; 0 in all other calls.
   explicit HandlerCall(HandlerCalls<exist, write, supply>& calls, [[maybe_unused]] std::uint32_t key = 0)
       : calls_{calls} {
     if constexpr (write && !for_tpdo) calls_.state_.has_set = false;
