@@ -132,6 +132,15 @@ std::vector<Fix> Fixes::count_entries(const Place& place) const {
 }
 
 std::vector<Fix> Fixes::remove_line(const Place& place) const {
+  // An overlay must not have a section without a line. With the section of an object, its other sections are removed.
+  const SectionName& name = place.section->name;
+  const bool is_alone =
+      !is_object_section(name.kind) || std::ranges::count_if(text_.sections(), [&](const TextSection& one) {
+                                         return is_object_section(one.name.kind) && one.name.index == name.index;
+                                       }) == 1;
+  if (is_alone && text_.entries(*place.section).size() == 1) {
+    return {{"Delete the section, which has no other line", {RemovePart{place.title, {}}}}};
+  }
   return {{"Delete the line", {RemovePart{place.title, place.key()}}}};
 }
 
