@@ -41,7 +41,7 @@ function(edsc_precompile_test_headers name)
   target_precompile_headers(${name} REUSE_FROM ${headers})
 endfunction()
 
-# edsc_join_sources(VARIABLE NAME): replaces the sources *_test.cpp in a list by joined ones, eight in each.
+# edsc_join_sources(VARIABLE NAME): replaces the sources *_test.cpp in a list by joined ones, up to sixteen in each.
 function(edsc_join_sources variable name)
   set(tests ${${variable}})
   list(FILTER tests INCLUDE REGEX "_test\\.cpp$")
@@ -51,7 +51,7 @@ function(edsc_join_sources variable name)
   endif()
   set(sources ${${variable}})
   list(REMOVE_ITEM sources ${tests})
-  math(EXPR files "(${count} + 7) / 8")
+  math(EXPR files "(${count} + 15) / 16")
   math(EXPR size "(${count} + ${files} - 1) / ${files}")
   set(script ${EDSC_TESTS_DIR}/support/joined_sources.py)
   foreach(file RANGE 1 ${files})
@@ -70,20 +70,27 @@ function(edsc_join_sources variable name)
   set(${variable} ${sources} PARENT_SCOPE)
 endfunction()
 
-# edsc_add_gtest(NAME SOURCES file... [LIBRARIES target...] [LONG] [NO_COVERAGE] [AS_ON_A_DEVICE]): a GoogleTest program. Its
-# includes are relative to tests/.
+# edsc_add_gtest(NAME SOURCES file... [LIBRARIES target...] [LONG] [NO_COVERAGE] [AS_ON_A_DEVICE] [IN_EDSC]): a GoogleTest program.
+# Its includes are relative to tests/. With the sanitizers its sources are compiled together, for time.
 # AS_ON_A_DEVICE: no exceptions, no RTTI, no warnings.
+# IN_EDSC: they are in namespaces of edsc, and cannot be put in others.
 # NO_COVERAGE: it does not cover the runtime, or covers no more than others that compile faster.
 function(edsc_add_gtest name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;NO_COVERAGE;AS_ON_A_DEVICE" "" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;NO_COVERAGE;AS_ON_A_DEVICE;IN_EDSC" "" "SOURCES;LIBRARIES")
   set(long)
   if(arg_LONG)
     set(long LONG)
   endif()
-  if(EDSC_SANITIZE AND arg_AS_ON_A_DEVICE AND NOT arg_LONG)
+  if(EDSC_SANITIZE AND NOT arg_IN_EDSC)
     edsc_join_sources(arg_SOURCES ${name})
   endif()
   edsc_add_test_program(${name} ${long} ${arg_SOURCES})
+  if(arg_IN_EDSC)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ${EDSC_UNITY_BUILD} UNITY_BUILD_BATCH_SIZE 16)
+    if(EDSC_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      target_compile_options(${name} PRIVATE -Wno-shadow -Wshadow=local)
+    endif()
+  endif()
   target_include_directories(${name} PRIVATE ${EDSC_TESTS_DIR})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gtest_main)
   set(flags "")
