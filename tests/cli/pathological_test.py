@@ -4,7 +4,7 @@ Also pages, comparisons, overlays and logs.
 
     pathological_test.py SOURCE_DIR EDSC [--times] [--large]
 
-Creates files of 0.4 to 1.6 MB in a temporary folder, 2.5 times as much with --large, and runs `edsc check`, `generate`, `dump`
+Creates files of 0.2 to 0.8 MB in a temporary folder, five times as much with --large, and runs `edsc check`, `generate`, `dump`
 and `format` on each. The limit of 10 s of CPU time per MB detects hangs and steps of quadratic cost, and is sufficient for a slow
 machine and sanitizers; bench/ measures the time of edsc. For files that grow in one part, the CPU time of two sizes is compared.
 """
@@ -26,7 +26,7 @@ MB = 1_000_000
 LARGE = "--large" in sys.argv
 if LARGE:
     sys.argv.remove("--large")
-SIZE = MB if LARGE else 400_000  # bytes for 1 in the table of files
+SIZE = MB if LARGE else 200_000  # bytes for 1 in the table of files
 SECONDS_PER_MB = 10
 
 

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import jsonschema
 
 SOURCE_DIR, EDSC, PROGRAMS = (Path(argument).resolve() for argument in sys.argv[1:4])
-# Ten hours; the twelve axes send 2,800 frames in a second, and get a twentieth of the time.
+# Ten hours if nothing else is given; the twelve axes send 2,800 frames in a second, and get a twentieth of the time.
 parser = argparse.ArgumentParser()
 parser.add_argument("--seconds", type=int, default=36_000)
 parser.add_argument("--twelve-axes-seconds", type=int)

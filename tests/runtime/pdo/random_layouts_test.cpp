@@ -1,5 +1,5 @@
-/// 10,000 random mappings, compared with bits that are copied one by one. A layout is a type: 300 of them are compiled
-/// (random_layouts/layouts_*.cpp). The 10,000 mappings known only at run time use bit_copy.hpp.
+/// 10,000 random mappings, compared with bits that are copied one by one. A layout is a type: 300 of them are compiled,
+/// or a sample of 100 (random_layouts/layouts_*.cpp). The 10,000 mappings known only at run time use bit_copy.hpp.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -114,9 +114,9 @@ void expect_sets_one_entry_only(const Codec& codec, Random& random) {
   }
 }
 
-TEST(RandomLayouts, AreSeveralHundredOfEveryKindAtManyBits) {
+TEST(RandomLayouts, AreManyOfEveryKindAtManyBits) {
   const std::vector<Codec> codecs = typed_layouts();
-  EXPECT_EQ(codecs.size(), 300U);
+  EXPECT_EQ(codecs.size(), random_layouts::layout_files * random_layouts::layouts_a_file);
   std::set<Kind> kinds;
   std::set<std::pair<unsigned, unsigned>> places;
   for (const Codec& codec : codecs) {
@@ -126,7 +126,7 @@ TEST(RandomLayouts, AreSeveralHundredOfEveryKindAtManyBits) {
     }
   }
   EXPECT_EQ(kinds.size(), 7U);
-  EXPECT_GT(places.size(), 500U);
+  EXPECT_GT(places.size(), codecs.size() * 5 / 3);
 }
 
 TEST(RandomLayouts, PackAndUnpackAsBitByBit) {

@@ -178,7 +178,11 @@ void add_codecs(std::vector<Codec>& codecs, std::index_sequence<I...>) {
   (codecs.push_back(codec_of<First + I>(std::make_index_sequence<fields_of<First + I>.count>{})), ...);
 }
 
-inline constexpr std::size_t layouts_a_file = 60;
+#ifndef EDSC_LAYOUTS_A_FILE
+#define EDSC_LAYOUTS_A_FILE 60
+#endif
+inline constexpr std::size_t layouts_a_file = EDSC_LAYOUTS_A_FILE;
+inline constexpr std::size_t layout_files = 5;
 
 // One translation unit each, so that they compile in parallel.
 void add_layouts_1(std::vector<Codec>& codecs);
