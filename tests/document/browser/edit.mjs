@@ -188,7 +188,7 @@ const stories = {
     await user.tabToLabel('Event timer');
     await user.replace('100');
     await user.press('Enter');
-    await user.until(() => document.querySelector('.pdo-list').textContent.includes('timer 100 ms'));
+    await user.until(() => document.querySelector('.item-list').textContent.includes('timer 100 ms'));
     await user.press('Alt+3', 'Tab', 'Tab', 'Enter');
     await user.until(() => document.getElementById('pdo-title').textContent.startsWith('RPDO 1'));
     await user.tabTo('.mappable input');
