@@ -11,7 +11,7 @@ class MemberDialog {
     const elements = (isFlag) => fields.filter((field) => (field.kind === 'flag') === isFlag).map((field) => this.inputs.get(field.member).element);
     const flags = elements(true);
     this.dialog = new Dialog({ title, actions: [this.button], onclose, body: [
-      make('div', {}, this.name?.element, ...elements(false), flags.length > 0 && make('div', { class: 'checks' }, ...flags)) ] });
+      make('div', { class: 'member-fields' }, this.name?.element, ...elements(false), flags.length > 0 && make('div', { class: 'checks' }, ...flags))] });
     this.dialog.element.addEventListener('keydown', (event) => {
       if (event.key === 'Enter' && event.target.matches('input[type=text]')) this.send();
     });

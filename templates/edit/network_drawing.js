@@ -1,5 +1,7 @@
 /* A drawing of `edsc document`, as the server draws it. Its rules are in the style of the page, which the policy of the page requires. */
 class NetworkDrawing {
+  static leastScale = 0.8;  /* a wider drawing is scrolled, so that its texts can be read */
+
   /* `pick(name)` is called with the node that is clicked. */
   constructor({ title, pick = () => {} }) {
     const id = `drawing-${title.toLowerCase().replaceAll(' ', '-')}`;
@@ -21,6 +23,7 @@ class NetworkDrawing {
     if (source === this.source) return;
     this.source = source;
     const svg = source && new DOMParser().parseFromString(source.replace(/<style>[^]*?<\/style>/, ''), 'image/svg+xml').documentElement;
+    if (svg) svg.style.minWidth = `${NetworkDrawing.leastScale * svg.getAttribute('width')}px`;
     this.scroll.replaceChildren(...(svg ? [document.adoptNode(svg)] : []));
     this.texts.replaceChildren(...[...this.scroll.querySelectorAll('svg > desc, g > title')].map((one) => make('li', { text: one.textContent })));
     this.mark();

@@ -10,7 +10,7 @@ class NodeEditor {
     this.empty = make('p', { class: 'empty', text: 'No node. New node adds one.' });
     this.title = make('h2', { id: 'node-title' });
     this.removeButton = make('button', { type: 'button', class: 'small', text: 'Remove this node', onclick: () => this.remove() });
-    this.nameSlot = make('div', {});
+    this.nameSlot = make('div', { class: 'member-fields' });
     const focus = () => this.showText(this.node.pointer);
     this.fields = new MemberFields({ set: (pointer, value) => this.change([{ do: 'set', pointer, value }]), complete, announce, focus });
     this.values = new SetValues({ change: (changes) => this.change(changes), announce, focus });
