@@ -18,7 +18,7 @@ class ChoiceBox {
       if (option) onpick(this.head + option.dataset.text);
     });
     /* A modal dialog is above all other elements. */
-    (input.closest('dialog') ?? document.body).append(this.list);
+    (input.closest('dialog, main') ?? document.body).append(this.list);
     setAttributes(input, { role: 'combobox', 'aria-expanded': 'true', 'aria-controls': 'choices', 'aria-autocomplete': 'list' });
     input.addEventListener('input', () => {
       this.isFiltered = true;

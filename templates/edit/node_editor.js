@@ -97,7 +97,11 @@ class NodeEditor {
   add() {
     if (this.isLocked || this.dialog) return;
     this.dialog = new MemberDialog({
-      title: 'New node', isNamed: true, fields: this.newNode, complete: (offers) => this.complete(offers), onclose: () => { this.dialog = null; },
+      title: 'New node', isNamed: true, fields: this.newNode, complete: (offers) => this.complete(offers),
+      closed: (isAdded) => {
+        this.dialog = null;
+        if (isAdded) this.list.element.focus();
+      },
       add: async (members, name) => {
         this.wanted = name;
         const message = await this.change([{ do: 'add', pointer: `/nodes/${pointerPart(name)}`, members }], { canAsk: false });

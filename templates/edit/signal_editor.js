@@ -89,7 +89,11 @@ class SignalEditor {
   add() {
     if (this.isLocked || this.dialog) return;
     this.dialog = new MemberDialog({
-      title: 'New signal', fields: this.newSignal, complete: (offers, valueOf) => this.complete(offers, valueOf('from')), onclose: () => { this.dialog = null; },
+      title: 'New signal', fields: this.newSignal, complete: (offers, valueOf) => this.complete(offers, valueOf('from')),
+      closed: (isAdded) => {
+        this.dialog = null;
+        if (isAdded) this.list.element.focus();
+      },
       add: async (members) => {
         const message = await this.changeAndSelect([{ do: 'add', pointer: '/signals/-', members }], this.signals.length, { canAsk: false });
         if (!message) this.announce(`${this.signal?.title} added.`);
