@@ -6,9 +6,10 @@ class BusLoad {
     this.track = make('div', { class: 'load-bar', role: 'meter', 'aria-labelledby': 'load-text', 'aria-valuemin': 0, 'aria-valuemax': 100 }, this.bar);
     this.body = make('tbody');
     const columns = ['Message', 'Sender', 'CAN-ID', 'Load in %', 'Response in ms'];
-    this.table = make('div', { class: 'load-messages', tabindex: 0, role: 'group', 'aria-label': 'Messages' }, make('table', { class: 'mapped-table' },
+    this.table = make('div', { class: 'load-messages', tabindex: 0, role: 'group', 'aria-labelledby': 'messages-title' }, make('table', { class: 'mapped-table' },
       make('thead', {}, make('tr', {}, ...columns.map((text, at) => make('th', { scope: 'col', class: at > 2 ? 'number' : null, text })))), this.body));
-    this.element = make('section', { class: 'bus-load', 'aria-labelledby': 'load-title' }, make('h2', { id: 'load-title', text: 'Bus load' }), this.text, this.track, this.table);
+    this.element = make('section', { class: 'bus-load', 'aria-labelledby': 'load-title' }, make('h2', { id: 'load-title', text: 'Bus load' }), this.text, this.track);
+    this.messages = make('section', { 'aria-labelledby': 'messages-title' }, make('h2', { id: 'messages-title', text: 'Messages' }), this.table);
   }
 
   /* `load`: the part of the state, or null if the file has no bit rate. */
@@ -21,7 +22,7 @@ class BusLoad {
     this.bar.style.width = `${Math.min(100, percent)}%`;
     setAttributes(this.track, { 'aria-valuenow': Math.min(100, Math.round(percent)), 'aria-valuetext': load?.text });
     const messages = load?.messages ?? [];
-    this.table.hidden = messages.length === 0;
+    this.messages.hidden = messages.length === 0;
     const shape = JSON.stringify(messages);
     if (shape === this.shape) return;
     this.shape = shape;

@@ -2,9 +2,11 @@
 
 /* A field of the state as a field of a form. `complete(offers)` returns the choices of its text. */
 const memberField = (field, { complete, change }) => new FormField({
-  label: field.member, kind: field.kind === 'flag' ? 'check' : 'text', hint: field.hint, isList: field.kind === 'list',
+  label: field.member, kind: field.kind === 'flag' ? 'check' : 'text', hint: memberHint(field), isList: field.kind === 'list',
   complete: field.offers ? () => complete(field.offers) : undefined, change,
 });
+
+const memberHint = ({ kind, hint }) => (kind === 'list' ? `${hint}; several with commas` : hint);
 
 const memberText = ({ kind, value }) => (kind === 'list' ? value.join(', ') : value);
 
@@ -32,7 +34,7 @@ class MemberFields {
     const shape = JSON.stringify([key, fields.map((field) => [field.member, field.pointer, field.kind, field.offers])]);
     if (shape !== this.shape) this.build(fields);
     this.shape = shape;
-    for (const field of fields) this.fields.get(field.pointer).set(memberText(field), { isLocked, hint: field.hint });
+    for (const field of fields) this.fields.get(field.pointer).set(memberText(field), { isLocked, hint: memberHint(field) });
   }
 
   /* The focus stays at the member, also in another object. */

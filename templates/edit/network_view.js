@@ -16,7 +16,7 @@ class NetworkView {
     this.drawing = new NetworkDrawing({ title: 'Drawing', pick: (name) => this.pick(name) });
     this.cycle = new NetworkDrawing({ title: 'SYNC cycle' });
     this.load = new BusLoad();
-    byId('picture').append(this.drawing.element, this.load.element, this.cycle.element);
+    byId('picture').append(this.load.element, this.drawing.element, this.cycle.element, this.load.messages);
     this.findings = [];
   }
 
@@ -82,7 +82,8 @@ class NetworkView {
     const views = { nodes: this.nodes, signals: this.signals };
     this.tabs.select(`tab-${views[part] ? part : 'network'}`, false);
     const isFound = views[part] ? views[part].reveal(pointer) : this.groups.some((group) => group.reveal(pointer));
-    if (!isFound) byId(`tab-${views[part] ? part : 'network'}`).focus();
+    if (isFound) return;
+    byId(`tab-${views[part] ? part : 'network'}`).focus();
     this.showText(pointer);
   }
 

@@ -623,6 +623,30 @@ const stories = {
     const review = await user.save();
     return { before, withNode, read, rejected, state, withSignal, undone, moved, name, signals: await user.items('signals'), review };
   },
+
+  async hostileNetwork(user) {
+    await user.open();
+    for (const key of ['Alt+1', 'Alt+2', 'Alt+3']) {
+      await user.press(key);
+      await user.frame();
+    }
+    return { names: await user.items('nodes'), images: await user.page.$$eval('img', (all) => all.length),
+      scripts: await user.page.evaluate(() => document.scripts.length), isHacked: await user.page.evaluate(() => Boolean(globalThis.hacked)) };
+  },
+
+  // A text that is not JSON, and after its correction in an editor.
+  async brokenNetwork(user) {
+    const [file, from, to] = parameters;
+    const shown = () => user.page.evaluate(() => ({
+      isFormShown: [...document.querySelectorAll('.middle > .tabs, .middle > .view')].some((one) => one.checkVisibility()),
+      isPictureShown: document.getElementById('picture').checkVisibility(), findings: document.getElementById('findings-count').textContent,
+      text: document.getElementById('section-text').textContent }));
+    await user.open();
+    const broken = { ...await shown(), violations: await violations(user.page) };
+    writeFileSync(file, readFileSync(file, 'utf8').replace(from, to));
+    await user.until(() => document.querySelector('.drawing svg'));
+    return { broken, corrected: await shown() };
+  },
 };
 
 const found = await withPage(chromium, async (page) => {
