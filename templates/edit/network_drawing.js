@@ -24,7 +24,9 @@ class NetworkDrawing {
     this.source = source;
     const svg = source && new DOMParser().parseFromString(source.replace(/<style>[^]*?<\/style>/, ''), 'image/svg+xml').documentElement;
     if (svg) svg.style.minWidth = `${NetworkDrawing.leastScale * svg.getAttribute('width')}px`;
+    const { scrollLeft } = this.scroll;
     this.scroll.replaceChildren(...(svg ? [document.adoptNode(svg)] : []));
+    this.scroll.scrollLeft = scrollLeft;
     this.texts.replaceChildren(...[...this.scroll.querySelectorAll('svg > desc, g > title')].map((one) => make('li', { text: one.textContent })));
     this.mark();
   }
