@@ -27,7 +27,9 @@ class NetworkDrawing {
     const { scrollLeft } = this.scroll;
     this.scroll.replaceChildren(...(svg ? [document.adoptNode(svg)] : []));
     this.scroll.scrollLeft = scrollLeft;
-    this.texts.replaceChildren(...[...this.scroll.querySelectorAll('svg > desc, g > title')].map((one) => make('li', { text: one.textContent })));
+    const textsOf = (selector) => [...this.scroll.querySelectorAll(selector)].map((one) => one.textContent);
+    const sentences = textsOf('svg > desc').flatMap((text) => text.split(/(?<=\.) /));
+    this.texts.replaceChildren(...[...sentences, ...textsOf('g:not(:has(.box)) > title')].map((text) => make('li', { text })));
     this.mark();
   }
 

@@ -1,6 +1,6 @@
 /* The nodes of a network file: their list, and the members and values of one of them. */
 class NodeEditor {
-  /* `change(changes, options)` returns why they are rejected; `select(node)` is called when another node is selected. */
+  /* `change(changes, options)` returns why they are rejected; `select(node)` is called with the node that is shown. */
   constructor(element, { change, announce, complete, showText, select, marksOf }) {
     Object.assign(this, { change, announce, showText, select, marksOf });
     this.nodes = [];

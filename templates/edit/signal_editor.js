@@ -1,6 +1,6 @@
 /* The signals of a network file: their list, and the members of one of them. */
 class SignalEditor {
-  /* As of NodeEditor. `complete(offers, from)` returns choices for a signal of the node `from`. */
+  /* `change(changes, options)` returns why they are rejected; `complete(offers, from)` returns choices for a signal of the node `from`. */
   constructor(element, { change, announce, complete, showText, marksOf }) {
     Object.assign(this, { change, announce, complete, showText, marksOf });
     this.signals = [];
