@@ -40,12 +40,14 @@ class ChoiceBox {
   get found() {
     const word = this.word.toLowerCase();
     if (!this.isFiltered || !word) return this.choices.slice(0, ChoiceBox.maxShown);
-    const starts = [], others = [];
+    const equal = [], starts = [], others = [];
     for (const one of this.choices) {
-      if (one.text.toLowerCase().startsWith(word)) starts.push(one);
-      else if (`${one.text} ${one.hint}`.toLowerCase().includes(word)) others.push(one);
+      const text = one.text.toLowerCase();
+      if (text === word) equal.push(one);
+      else if (text.startsWith(word)) starts.push(one);
+      else if (text.includes(word) || one.hint.toLowerCase().includes(word)) others.push(one);
     }
-    return [...starts, ...others].slice(0, ChoiceBox.maxShown);
+    return [...equal, ...starts, ...others].slice(0, ChoiceBox.maxShown);
   }
 
   draw() {
