@@ -127,6 +127,18 @@ class JsonPrinter {
     return text + (value.is_object() ? "}" : "]");
   }
 
+  /// Whether both are objects or both arrays, and both have scalars or both only objects and arrays.
+  [[nodiscard]] bool is_like(const Value& value, std::size_t other) const {
+    const JsonRange& range = ranges_[other];
+    if (range.children.empty() || !(value.is_object() ? ranges_.is_object(range) : ranges_.is_array(range)))
+      return false;
+    const bool has_scalar = std::ranges::any_of(value, [](const Value& one) { return !one.is_structured(); });
+    const auto is_scalar = [&](std::size_t one) {
+      return !ranges_.is_object(ranges_[one]) && !ranges_.is_array(ranges_[one]);
+    };
+    return has_scalar == std::ranges::any_of(range.children, is_scalar);
+  }
+
   /// The text between a name and its value.
   [[nodiscard]] std::string colon(std::optional<std::size_t> object) const {
     if (!object || ranges_[*object].children.empty() || !ranges_.is_object(ranges_[*object])) object = JsonRanges::root;
@@ -276,8 +288,7 @@ class JsonEditor {
                                     const std::string& indent, std::string_view line_end) const {
     std::optional<std::size_t> like;
     for (const std::size_t one : ranges_[owner].children) {
-      const bool is_same = value.is_object() ? ranges_.is_object(ranges_[one]) : ranges_.is_array(ranges_[one]);
-      if (is_same && !ranges_[one].children.empty()) like = one;
+      if (printer_.is_like(value, one)) like = one;
     }
     const std::string printed = printer_.print(value, like, indent, line_end);
     return name == nullptr ? printed : scalar_text(*name) + printer_.colon(owner) + printed;
