@@ -87,7 +87,8 @@ const networkKeys = [
   ['F1', 'this list'], ['Ctrl+S', 'review and save'], ['Ctrl+Z, Ctrl+Y', 'undo, redo'], ['Alt+1, Alt+2, Alt+3', 'tab Network, Nodes, Signals'],
   ['Ctrl+Alt+N', 'new node, or new signal in the tab Signals'], ['arrow keys, Home, End', 'select a node or signal; scroll the drawing'],
   ['Enter in the list', 'go to the fields'], ['Alt+arrow', 'move a signal'], ['Ctrl+Delete', 'remove the selected node or signal'],
-  ['Enter, Tab', 'accept a text'], ['Down, Up in a field', 'choices of a field'], ['Escape', 'close the choices; discard the typed or rejected text'],
+  ['Enter, Tab', 'accept a text'], ['Ctrl+Enter', 'apply a text that was rejected for its errors'],
+  ['Down, Up in a field', 'choices of a field'], ['Escape', 'close the choices; discard the typed or rejected text'],
 ];
 
 const openKeys = (rows) => new Dialog({ title: 'Keys', cancel: 'Close', body: [make('table', { class: 'key-table' },

@@ -54,6 +54,9 @@ const askForReason = (fix) => {
   reason.focus();
 };
 
+/* Why a text is rejected, and how it is applied nevertheless. */
+const fieldText = (rejected) => rejectedText(rejected) + (rejected.can_force ? ' (Ctrl+Enter applies it anyway)' : '');
+
 /* Edits of cells are one step. A rejected one does not stop the others. */
 const maxRejected = 50;
 const changeCells = async (edits, isForced) => {
@@ -62,7 +65,7 @@ const changeCells = async (edits, isForced) => {
   for (let count = 0; open.length > 0; ++count) {
     const rejected = await client.send('change', { changes: open.map((one) => one.change), force: isForced });
     if (!rejected) break;
-    const text = rejectedText(rejected) + (rejected.can_force ? ' (Ctrl+Enter applies it anyway)' : '');
+    const text = fieldText(rejected);
     if (rejected.index === null || rejected.index === undefined || count === maxRejected) {
       for (const one of open) messages[one.at] = text;
       break;
@@ -433,7 +436,11 @@ const startNetwork = () => {
   setText(byId('skip'), 'Skip to the drawing');
   byId('skip').href = '#picture';
   side.drawLine = jsonLine;
-  networkView = new NetworkView({ change, announce, showText: (pointer) => side.showSection(pointer), tabs: mainTabs });
+  const changeMember = async (changes, isForced) => {
+    const rejected = await client.send('change', { changes, force: isForced });
+    return rejected ? fieldText(rejected) : '';
+  };
+  networkView = new NetworkView({ change: changeMember, remove: change, announce, showText: (pointer) => side.showSection(pointer), tabs: mainTabs });
   mainTabs.select('tab-network', true);
   side.showSection('');
 };

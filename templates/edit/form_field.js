@@ -2,8 +2,8 @@
 class FormField {
   static count = 0;
 
-  /* `kind`: 'text', 'choice' with `choices`: [{ value, text }], or 'check'. `change(text)` returns a message if it is rejected; without
-     it, the text remains in the field for its dialog. `complete()` returns the choices of a text, of which a list has several. The label of
+  /* `kind`: 'text', 'choice' with `choices`: [{ value, text }], or 'check'. `change(text, isForced)` returns a message if it is rejected,
+     and is forced by Ctrl+Enter; without `change`, the text remains in the field for its dialog. `complete()` returns the choices of a text, of which a list has several. The label of
      a compact field is for screen readers. */
   constructor({ label, kind = 'text', choices = [], hint = '', isWide = false, isCompact = false, isList = false, complete, change }) {
     Object.assign(this, { label, kind, change });
@@ -24,7 +24,10 @@ class FormField {
     if (complete) this.completion = new Completion(this.input, { complete, isList, pick: () => this.send() });
     this.input.addEventListener('change', () => this.send());
     this.input.addEventListener('keydown', (event) => {
-      if (event.key === 'Enter' && kind === 'text') {
+      if (event.key === 'Enter' && event.ctrlKey && this.change && this.isRejected) {
+        event.preventDefault();
+        this.send(true);
+      } else if (event.key === 'Enter' && kind === 'text') {
         event.preventDefault();
         this.send();
       } else if (event.key === 'Escape' && kind === 'text' && this.change && (this.isRejected || this.input.value !== this.value)) {
@@ -76,7 +79,7 @@ class FormField {
     setAttributes(this.input, { 'aria-invalid': message ? 'true' : null });
   }
 
-  async send() {
+  async send(isForced = false) {
     const text = this.text.trim();
     if (!this.change || this.isLocked || this.input.readOnly) return;
     if (text === this.value) {
@@ -86,7 +89,7 @@ class FormField {
     }
     if (this.sending === text) return;
     this.sending = text;
-    const message = await this.change(text);
+    const message = await this.change(text, isForced);
     this.sending = undefined;
     this.reject(message ?? '');
     if (!message) this.show(this.value);

@@ -1,7 +1,7 @@
 /* A new node or signal: its fields are sent together. */
 class MemberDialog {
   /* `fields` of the state without pointers; `complete(offers, valueOf)` returns choices, where `valueOf(member)` is a text of this
-     dialog; `add(members, name)` returns why the item is rejected. `isNamed`: it has a name beside its members. `closed(isAdded)`. */
+     dialog; `add(members, name, isForced)` returns why the item is rejected. `isNamed`: it has a name beside its members. `closed(isAdded)`. */
   constructor({ title, fields, isNamed = false, complete, add, closed }) {
     Object.assign(this, { fields, add, isAdded: false });
     const valueOf = (member) => this.inputs.get(member)?.text.trim() ?? '';
@@ -13,7 +13,7 @@ class MemberDialog {
     this.dialog = new Dialog({ title, actions: [this.button], onclose: () => closed(this.isAdded), body: [
       make('div', { class: 'member-fields' }, this.name?.element, ...elements(false), flags.length > 0 && make('div', { class: 'checks' }, ...flags))] });
     this.dialog.element.addEventListener('keydown', (event) => {
-      if (event.key === 'Enter' && event.target.matches('input[type=text]')) this.send();
+      if (event.key === 'Enter' && (event.ctrlKey || event.target.matches('input[type=text]'))) this.send(event.ctrlKey);
     });
     this.dialog.element.querySelector('.field input').focus();
   }
@@ -23,7 +23,7 @@ class MemberDialog {
     return Object.fromEntries(values.filter(([, value]) => value.length > 0));
   }
 
-  async send() {
+  async send(isForced = false) {
     const name = this.name?.text.trim();
     if (name === '') {
       this.dialog.reject('Type a name.');
@@ -31,7 +31,7 @@ class MemberDialog {
       return;
     }
     this.button.disabled = true;
-    const message = await this.add(this.members, name);
+    const message = await this.add(this.members, name, isForced);
     this.button.disabled = false;
     this.isAdded = !message;
     if (message) this.dialog.reject(message);

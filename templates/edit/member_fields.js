@@ -22,7 +22,7 @@ const pointerPart = (key) => key.replaceAll('~', '~0').replaceAll('/', '~1');
 const isWithin = (pointer, outer) => pointer === outer || pointer.startsWith(`${outer}/`);
 
 class MemberFields {
-  /* `set(pointer, value)` returns why a value is rejected; `focus()` is called when a field gets the focus. */
+  /* `set(pointer, value, isForced)` returns why a value is rejected; `focus()` is called when a field gets the focus. */
   constructor({ set, complete, focus, announce }) {
     Object.assign(this, { set, complete, focus, announce });
     this.fields = new Map();
@@ -50,8 +50,8 @@ class MemberFields {
   fieldOf(field) {
     const one = memberField(field, {
       complete: this.complete,
-      change: async (text) => {
-        const message = await this.set(field.pointer, memberValue(field, text));
+      change: async (text, isForced) => {
+        const message = await this.set(field.pointer, memberValue(field, text), isForced);
         if (message && !one.element.isConnected) this.announce(`${field.member}: ${message}`);
         return message;
       },

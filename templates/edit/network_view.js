@@ -1,16 +1,17 @@
 /* A network file: its members as forms, its nodes and signals, and what they mean for the bus. */
 class NetworkView {
-  /* `change(changes, options)` returns why they are rejected; `showText(pointer)` shows the lines of a member; `tabs` selects one. */
-  constructor({ change, announce, showText, tabs }) {
+  /* `change(changes, isForced)` returns why they are rejected, and `remove(changes)` also asks to force them; `showText(pointer)` shows
+     the lines of a member; `tabs` selects one. */
+  constructor({ change, remove, announce, showText, tabs }) {
     Object.assign(this, { showText, tabs });
     const complete = (offers, from) => this.choicesOf(offers, from);
     const marksOf = (pointer) => this.marksOf(pointer);
     this.groups = [];
     this.groupList = make('div', { class: 'form-groups' });
     byId('view-network').append(this.groupList);
-    this.set = (pointer, value) => change([{ do: 'set', pointer, value }], { canAsk: false });
+    this.set = (pointer, value, isForced) => change([{ do: 'set', pointer, value }], isForced);
     this.announce = announce;
-    const options = { change: (changes, { canAsk = false } = {}) => change(changes, { canAsk }), announce, complete, showText, marksOf };
+    const options = { change, remove, set: this.set, announce, complete, showText, marksOf };
     this.nodes = new NodeEditor(byId('view-nodes'), { ...options, select: (node) => this.drawing.highlight(node?.name ?? '') });
     this.signals = new SignalEditor(byId('view-signals'), options);
     this.drawing = new NetworkDrawing({ title: 'Drawing', pick: (name) => this.pick(name) });

@@ -1,8 +1,8 @@
 /* The nodes of a network file: their list, and the members and values of one of them. */
 class NodeEditor {
-  /* `change(changes, options)` returns why they are rejected; `select(node)` is called with the node that is shown. */
-  constructor(element, { change, announce, complete, showText, select, marksOf }) {
-    Object.assign(this, { change, announce, showText, select, marksOf });
+  /* `change(changes, isForced)`, `remove(changes)` and `set(pointer, value, isForced)` return why they are rejected; `select(node)` is called with the node that is shown. */
+  constructor(element, { change, remove, set, announce, complete, showText, select, marksOf }) {
+    Object.assign(this, { change, removeItems: remove, announce, showText, select, marksOf });
     this.nodes = [];
     this.newNode = [];
     this.addButton = make('button', { type: 'button', text: 'New node', 'aria-haspopup': 'dialog', 'aria-keyshortcuts': 'Control+Alt+N', onclick: () => this.add() });
@@ -12,8 +12,8 @@ class NodeEditor {
     this.removeButton = make('button', { type: 'button', class: 'small', text: 'Remove this node', onclick: () => this.remove() });
     this.nameSlot = make('div', { class: 'member-fields' });
     const focus = () => this.showText(this.node.pointer);
-    this.fields = new MemberFields({ set: (pointer, value) => this.change([{ do: 'set', pointer, value }]), complete, announce, focus });
-    this.values = new SetValues({ change: (changes) => this.change(changes), announce, focus });
+    this.fields = new MemberFields({ set, complete, announce, focus });
+    this.values = new SetValues({ change, remove, announce, focus });
     this.complete = complete;
     this.content = make('section', { class: 'member-main', 'aria-labelledby': 'node-title' },
       make('div', { class: 'member-head' }, this.title, this.removeButton), this.nameSlot, this.fields.element, this.values.element);
@@ -55,7 +55,7 @@ class NodeEditor {
   showName(node) {
     if (this.named !== node.name) {
       const hadFocus = this.nameSlot.contains(document.activeElement);
-      this.name = new FormField({ label: 'name', change: (name) => this.rename(node, name) });
+      this.name = new FormField({ label: 'name', change: (name, isForced) => this.rename(node, name, isForced) });
       this.nameSlot.replaceChildren(this.name.element);
       this.name.input.addEventListener('focus', () => this.showText(this.node.pointer));
       this.named = node.name;
@@ -85,9 +85,9 @@ class NodeEditor {
     return true;
   }
 
-  rename(node, name) {
+  rename(node, name, isForced) {
     this.wanted = name;
-    return this.change([{ do: 'rename', pointer: node.pointer, name }]).then((message) => {
+    return this.change([{ do: 'rename', pointer: node.pointer, name }], isForced).then((message) => {
       if (message) this.wanted = undefined;
       else this.announce(`${node.name} renamed to ${name}.`);
       return message;
@@ -102,9 +102,9 @@ class NodeEditor {
         this.dialog = null;
         if (isAdded) this.list.element.focus();
       },
-      add: async (members, name) => {
+      add: async (members, name, isForced) => {
         this.wanted = name;
-        const message = await this.change([{ do: 'add', pointer: `/nodes/${pointerPart(name)}`, members }], { canAsk: false });
+        const message = await this.change([{ do: 'add', pointer: `/nodes/${pointerPart(name)}`, members }], isForced);
         if (message) this.wanted = undefined;
         else this.announce(`${name} added.`);
         return message;
@@ -115,7 +115,7 @@ class NodeEditor {
   async remove() {
     const { node } = this;
     if (!node || this.isLocked) return;
-    const message = await this.change([{ do: 'remove', pointer: node.pointer }], { canAsk: true });
+    const message = await this.removeItems([{ do: 'remove', pointer: node.pointer }]);
     this.announce(message || `${node.name} removed.`);
     if (!document.querySelector('dialog')) this.list.element.focus();
   }

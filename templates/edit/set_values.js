@@ -1,8 +1,8 @@
 /* The values of entries that a node has besides its EDS or DCF, as rows of entry and value. */
 class SetValues {
-  /* `change(changes)` returns why they are rejected. */
-  constructor({ change, announce, focus }) {
-    Object.assign(this, { change, announce, focus });
+  /* `change(changes, isForced)` and `remove(changes)` return why they are rejected. */
+  constructor({ change, remove, announce, focus }) {
+    Object.assign(this, { change, removeItems: remove, announce, focus });
     this.rows = new Map();
     this.body = make('tbody');
     const complete = () => this.node.objects.filter((one) => !this.node.values.some((value) => value.entry === one.text)).map(({ text, name }) => ({ text, hint: name }));
@@ -13,8 +13,8 @@ class SetValues {
     last.addEventListener('keydown', (event) => {
       if (event.key !== 'Enter' || event.target === this.addButton) return;
       event.preventDefault();
-      if (this.entry.text.trim() && event.target === this.entry.input) this.value.input.focus();
-      else this.add();
+      if (!event.ctrlKey && this.entry.text.trim() && event.target === this.entry.input) this.value.input.focus();
+      else this.add(event.ctrlKey);
     });
     this.element = make('section', { class: 'set-values', 'aria-labelledby': 'set-title' }, make('h3', { id: 'set-title', text: 'Values of entries (set)' }),
       make('table', { class: 'set-table' },
@@ -51,23 +51,23 @@ class SetValues {
     const hadFocus = this.body.contains(document.activeElement);
     const complete = () => this.node.objects.map(({ text, name }) => ({ text, hint: name }));
     this.rows = new Map(values.map(({ pointer, entry }) => [pointer, {
-      entry: new FormField({ label: `Entry ${entry}`, isCompact: true, complete, change: (name) => this.change([name ? { do: 'rename', pointer, name } : { do: 'remove', pointer }]) }),
-      value: new FormField({ label: `Value of ${entry}`, isCompact: true, change: (value) => this.change([{ do: 'set', pointer, value }]) }),
+      entry: new FormField({ label: `Entry ${entry}`, isCompact: true, complete, change: (name, isForced) => this.change([name ? { do: 'rename', pointer, name } : { do: 'remove', pointer }], isForced) }),
+      value: new FormField({ label: `Value of ${entry}`, isCompact: true, change: (value, isForced) => this.change([{ do: 'set', pointer, value }], isForced) }),
       button: make('button', { type: 'button', class: 'small', text: 'Remove', 'aria-label': `Remove ${entry}`, onclick: () => this.remove(pointer, entry) }),
     }]));
     this.body.replaceChildren(...[...this.rows.values()].map(({ entry, value, button }) => make('tr', {}, ...[entry.element, value.element, button].map((one) => make('td', {}, one)))));
     if (hadFocus) this.entry.input.focus();
   }
 
-  async add() {
-    const entry = this.entry.text.trim();
-    if (!entry) {
-      this.entry.reject('Type an entry, such as 6083h.');
-      this.entry.input.focus();
+  async add(isForced = false) {
+    const entry = this.entry.text.trim(), value = this.value.text.trim();
+    this.entry.reject(entry ? '' : 'Type an entry, such as 6083h.');
+    this.value.reject(value || !entry ? '' : 'Type a value.');
+    if (!entry || !value) {
+      (entry ? this.value : this.entry).input.focus();
       return;
     }
-    const message = await this.change([{ do: 'set', pointer: `${this.node.pointer}/set/${pointerPart(entry)}`, value: this.value.text.trim() }]);
-    this.entry.reject('');
+    const message = await this.change([{ do: 'set', pointer: `${this.node.pointer}/set/${pointerPart(entry)}`, value }], isForced);
     this.value.reject(message);
     if (message) return;
     this.clear();
@@ -76,9 +76,9 @@ class SetValues {
   }
 
   async remove(pointer, entry) {
-    const message = await this.change([{ do: 'remove', pointer }]);
+    const message = await this.removeItems([{ do: 'remove', pointer }]);
     this.announce(message || `${entry} removed.`);
-    this.entry.input.focus();
+    if (!document.querySelector('dialog')) this.entry.input.focus();
   }
 
   /* Focuses the value of an entry. */

@@ -1,8 +1,8 @@
 /* The signals of a network file: their list, and the members of one of them. */
 class SignalEditor {
-  /* `change(changes, options)` returns why they are rejected; `complete(offers, from)` returns choices for a signal of the node `from`. */
-  constructor(element, { change, announce, complete, showText, marksOf }) {
-    Object.assign(this, { change, announce, complete, showText, marksOf });
+  /* `change(changes, isForced)`, `remove(changes)` and `set(pointer, value, isForced)` return why they are rejected; `complete(offers, from)` returns choices for a signal of the node `from`. */
+  constructor(element, { change, remove, set, announce, complete, showText, marksOf }) {
+    Object.assign(this, { change, removeItems: remove, announce, complete, showText, marksOf });
     this.signals = [];
     this.newSignal = [];
     this.addButton = make('button', { type: 'button', text: 'New signal', 'aria-haspopup': 'dialog', 'aria-keyshortcuts': 'Control+Alt+N', onclick: () => this.add() });
@@ -14,7 +14,7 @@ class SignalEditor {
     this.later = make('button', { type: 'button', class: 'small', text: 'Move down', onclick: () => this.moveBy(1) });
     this.removeButton = make('button', { type: 'button', class: 'small', text: 'Remove this signal', onclick: () => this.remove() });
     this.fields = new MemberFields({
-      set: (pointer, value) => this.change([{ do: 'set', pointer, value }]), announce, focus: () => this.showText(this.signal.pointer),
+      set, announce, focus: () => this.showText(this.signal.pointer),
       complete: (offers) => complete(offers, this.textOf('from')),
     });
     this.content = make('section', { class: 'member-main', 'aria-labelledby': 'signal-title' },
@@ -71,9 +71,9 @@ class SignalEditor {
   }
 
   /* Sends changes after which the signal at `wanted` is selected. */
-  async changeAndSelect(changes, wanted, options) {
+  async changeAndSelect(changes, wanted, isForced) {
     this.wanted = wanted;
-    const message = await this.change(changes, options);
+    const message = await this.change(changes, isForced);
     this.wanted = undefined;
     return message;
   }
@@ -94,8 +94,8 @@ class SignalEditor {
         this.dialog = null;
         if (isAdded) this.list.element.focus();
       },
-      add: async (members) => {
-        const message = await this.changeAndSelect([{ do: 'add', pointer: '/signals/-', members }], this.signals.length, { canAsk: false });
+      add: async (members, name, isForced) => {
+        const message = await this.changeAndSelect([{ do: 'add', pointer: '/signals/-', members }], this.signals.length, isForced);
         if (!message) this.announce(`${this.signal?.title} added.`);
         return message;
       },
@@ -105,7 +105,7 @@ class SignalEditor {
   async remove() {
     const { signal } = this;
     if (!signal || this.isLocked) return;
-    const message = await this.change([{ do: 'remove', pointer: signal.pointer }], { canAsk: true });
+    const message = await this.removeItems([{ do: 'remove', pointer: signal.pointer }]);
     this.announce(message || `${signal.title} removed.`);
     if (!document.querySelector('dialog')) this.list.element.focus();
   }
