@@ -1,6 +1,7 @@
 /* The nodes of a network file: their list, and the members and values of one of them. */
 class NodeEditor {
-  /* `change(changes, isForced)`, `remove(changes)` and `set(pointer, value, isForced)` return why they are rejected; `select(node)` is called with the node that is shown. */
+  /* `change(changes, isForced)`, `remove(changes)` and `set(pointer, value, isForced)` return why they are rejected; `select(node)` is
+     called with the node that is shown. */
   constructor(element, { change, remove, set, announce, complete, showText, select, marksOf }) {
     Object.assign(this, { change, removeItems: remove, announce, showText, select, marksOf });
     this.nodes = [];

@@ -1,6 +1,7 @@
 /* The signals of a network file: their list, and the members of one of them. */
 class SignalEditor {
-  /* `change(changes, isForced)`, `remove(changes)` and `set(pointer, value, isForced)` return why they are rejected; `complete(offers, from)` returns choices for a signal of the node `from`. */
+  /* `change(changes, isForced)`, `remove(changes)` and `set(pointer, value, isForced)` return why they are rejected; `complete(offers, from)`
+     returns choices for a signal of the node `from`. */
   constructor(element, { change, remove, set, announce, complete, showText, marksOf }) {
     Object.assign(this, { change, removeItems: remove, announce, complete, showText, marksOf });
     this.signals = [];
