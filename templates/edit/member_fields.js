@@ -6,7 +6,8 @@ const memberField = (field, { complete, change }) => new FormField({
   complete: field.offers ? () => complete(field.offers) : undefined, change,
 });
 
-const memberHint = ({ kind, hint }) => (kind === 'list' ? `${hint}; several with commas` : hint);
+/* The meaning of the table of members, which is Markdown. */
+const memberHint = ({ kind, hint }) => hint.replaceAll('`', '') + (kind === 'list' ? '; several with commas' : '');
 
 const memberText = ({ kind, value }) => (kind === 'list' ? value.join(', ') : value);
 

@@ -3,7 +3,12 @@ class NetworkView {
   /* `change(changes, isForced)` returns why they are rejected, and `remove(changes)` also asks to force them; `showText(pointer)` shows
      the lines of a member; `tabs` selects one. */
   constructor({ change, remove, announce, showText, tabs }) {
-    Object.assign(this, { showText, tabs });
+    Object.assign(this, { tabs });
+    this.pointer = '';
+    this.showText = (pointer) => {
+      this.pointer = pointer;
+      showText(pointer);
+    };
     const complete = (offers, from) => this.choicesOf(offers, from);
     const marksOf = (pointer) => this.marksOf(pointer);
     this.groups = [];
@@ -11,7 +16,7 @@ class NetworkView {
     byId('view-network').append(this.groupList);
     this.set = (pointer, value, isForced) => change([{ do: 'set', pointer, value }], isForced);
     this.announce = announce;
-    const options = { change, remove, set: this.set, announce, complete, showText, marksOf };
+    const options = { change, remove, set: this.set, announce, complete, showText: this.showText, marksOf };
     this.nodes = new NodeEditor(byId('view-nodes'), { ...options, select: (node) => this.drawing.highlight(node?.name ?? '') });
     this.signals = new SignalEditor(byId('view-signals'), options);
     this.drawing = new NetworkDrawing({ title: 'Drawing', pick: (name) => this.pick(name) });
@@ -34,21 +39,35 @@ class NetworkView {
     this.drawing.show(network.drawing);
     this.cycle.show(network.cycle);
     this.load.show(network.load);
+    if (!this.hasPlace(this.pointer)) this.showText('');
     this.showGroups(network.groups, isLocked);
     this.nodes.show(network, isLocked);
     this.signals.show(network, isLocked);
+  }
+
+  /* Whether the file has what the text is of: an edit or undo removes it. */
+  hasPlace(pointer) {
+    const { groups, nodes, signals } = this.network;
+    const parts = groups.filter(({ fields }) => fields.some((field) => field.present));
+    return [...parts, ...nodes, ...signals].some((one) => isWithin(pointer, one.pointer));
   }
 
   showGroups(groups, isLocked) {
     const shape = JSON.stringify(groups.map((group) => [group.title, group.pointer]));
     if (shape !== this.shape) {
       this.shape = shape;
-      this.groups = groups.map(({ pointer }) => new MemberFields({
-        set: this.set, announce: this.announce, complete: (offers) => this.choicesOf(offers), focus: () => this.showText(pointer) }));
+      this.groups = groups.map((group, at) => new MemberFields({
+        set: this.set, announce: this.announce, complete: (offers) => this.choicesOf(offers), focus: () => this.showGroupText(at) }));
       this.groupList.replaceChildren(...groups.map(({ title }, at) => make('section', { class: 'form-group', 'aria-labelledby': `network-group-${at}` },
         make('h2', { id: `network-group-${at}`, text: title }), this.groups[at].element)));
     }
     groups.forEach((group, at) => this.groups[at].show(group.pointer, group.fields, isLocked));
+  }
+
+  /* The lines of a group, or of the file if it does not have the group. */
+  showGroupText(at) {
+    const { pointer, fields } = this.network.groups[at];
+    this.showText(fields.some((field) => field.present) ? pointer : '');
   }
 
   /* Choices for a text: `from` is the sending node of a signal. */

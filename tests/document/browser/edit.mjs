@@ -637,14 +637,18 @@ const stories = {
   // A text that is not JSON, and after its correction in an editor.
   async brokenNetwork(user) {
     const [file, from, to] = parameters;
+    const good = readFileSync(file, 'utf8');
     const shown = () => user.page.evaluate(() => ({
       isFormShown: [...document.querySelectorAll('.middle > .tabs, .middle > .view')].some((one) => one.checkVisibility()),
       isPictureShown: document.getElementById('picture').checkVisibility(), findings: document.getElementById('findings-count').textContent,
       text: document.getElementById('section-text').textContent }));
     await user.open();
+    writeFileSync(file, good.replace(from, to));
+    await user.until(() => document.querySelector('.text-only'));
+    await user.until((text) => document.getElementById('section-text').textContent.includes(text), to);
     const broken = { ...await shown(), violations: await violations(user.page) };
-    writeFileSync(file, readFileSync(file, 'utf8').replace(from, to));
-    await user.until(() => document.querySelector('.drawing svg'));
+    writeFileSync(file, good);
+    await user.until(() => !document.querySelector('.text-only'));
     return { broken, corrected: await shown() };
   },
 };
