@@ -399,14 +399,18 @@ class NetworkFile(Edit):
         expected = self.contents()
         server = self.edit()
         self.assertEqual(server.state()["file"]["kind"], "network")
-        server.change({"do": "set", "pointer": "/bit_rate", "value": "250"})
-        server.change({"do": "set", "pointer": "/sync/period_us", "value": "0x2710"})
-        server.change({"do": "set", "pointer": "/nodes/analog_inputs/set/6423h", "value": "1"})
-        server.change({"do": "rename", "pointer": "/nodes/digital_inputs", "name": "buttons"},
-                      {"do": "remove", "pointer": "/signals/11"}, {"do": "move", "pointer": "/signals/10", "to": 0})
         members = {"from": "buttons", "object": "6000h:01", "to": ["controller", "digital_outputs.6200h:02"], "every_ms": "20"}
-        server.change({"do": "add", "pointer": "/signals/-", "members": members},
-                      {"do": "add", "pointer": "/nodes/more", "members": {"node_id": "9", "eds": "can-2053c.eds"}})
+        steps = (
+            [{"do": "set", "pointer": "/bit_rate", "value": "250"}],
+            [{"do": "set", "pointer": "/sync/period_us", "value": "0x2710"}],
+            [{"do": "set", "pointer": "/nodes/analog_inputs/set/1404h:02", "value": "254"}],
+            [{"do": "rename", "pointer": "/nodes/digital_inputs", "name": "buttons"}, {"do": "remove", "pointer": "/signals/11"},
+             {"do": "move", "pointer": "/signals/10", "to": 0}],
+            [{"do": "add", "pointer": "/signals/-", "members": members},
+             {"do": "add", "pointer": "/nodes/more", "members": {"node_id": "9", "eds": "can-2053c.eds"}}],
+        )
+        for step in steps:
+            self.assertNotIn("rejected", server.change(*step))
         self.assertEqual(self.plant.read_bytes(), self.original)
         answer = server.change({"do": "remove", "pointer": "/signals/1"}, {"do": "remove", "pointer": "/signals/1"})
         self.assertNotIn("rejected", answer)
@@ -416,7 +420,7 @@ class NetworkFile(Edit):
         expected["bit_rate"] = 250
         expected["sync"] = {"period_us": 10000}
         nodes = expected["nodes"]
-        nodes["analog_inputs"]["set"] = {"6423h": 1}
+        nodes["analog_inputs"]["set"] = {"1404h:02": 254}
         expected["nodes"] = {{"digital_inputs": "buttons"}.get(name, name): node for name, node in nodes.items()}
         expected["nodes"]["more"] = {"node_id": 9, "eds": "can-2053c.eds"}
         signals = expected["signals"]
