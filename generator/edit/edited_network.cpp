@@ -47,12 +47,16 @@ class EditedNetwork final : public EditedFile {
       const bool has_changed = !attempt.changed.step.edits.empty();
       return has_changed ? std::move(attempt.changed) : ChangedFile{};
     }
-    if (!attempt.is_refused) {  // by new errors: of the first request that adds some
-      for (std::size_t some = 1; some < count; ++some) {
-        Attempt first = made(requests, some);
-        if (!first.rejection) continue;
-        attempt = std::move(first);
-        break;
+    if (!attempt.is_refused) {  // by new errors: of a request that adds some to those before it
+      for (std::size_t without = 0, with = count; with - without > 1;) {
+        const std::size_t middle = without + (with - without) / 2;
+        Attempt first = made(requests, middle);
+        if (first.rejection) {
+          attempt = std::move(first);
+          with = middle;
+        } else {
+          without = middle;
+        }
       }
     }
     return {std::move(attempt.rejection), {}, {}, {}};

@@ -45,24 +45,6 @@ Json offers_json(NamedInNetwork named) {
   return nullptr;
 }
 
-/// A value of the file as the text of a form; an array as a list of texts.
-Json form_value(const Json& value) {
-  if (value.is_null()) return "";
-  if (value.is_string()) return value;
-  if (value.is_boolean()) return value.get<bool>() ? "1" : "0";
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-Json list_of_form(const Json& value) {
-  Json list = Json::array();
-  if (!value.is_array()) {
-    if (!value.is_null()) list.push_back(form_value(value));
-    return list;
-  }
-  for (const Json& one : value) list.push_back(form_value(one));
-  return list;
-}
-
 class NetworkView {
  public:
   NetworkView(const Network& network, const JsonRanges& ranges)
@@ -76,77 +58,100 @@ class NetworkView {
     return {{"groups", std::move(groups)},
             {"nodes", nodes()},
             {"signals", signals()},
-            {"new_node", fields({"nodes", ""}, false)},
-            {"new_signal", fields({"signals", "-"}, false)},
+            {"new_node", fields_of_new({"nodes", ""})},
+            {"new_signal", fields_of_new({"signals", "-"})},
             {"drawing", drawing(false)},
             {"cycle", drawing(true)},
             {"load", load()}};
   }
 
  private:
-  /// The value at a path; null if there is none.
-  [[nodiscard]] Json value_at(const JsonPath& path) const {
-    const auto at = ranges_.find(path);
-    return at ? Json::parse(ranges_.value_text(ranges_[*at]), nullptr, false, true) : Json(nullptr);
+  using Found = std::optional<std::size_t>;  ///< an index of `ranges_`
+
+  [[nodiscard]] Found member_of(Found object, std::string_view name) const {
+    return object ? ranges_.child(*object, name) : std::nullopt;
+  }
+  [[nodiscard]] bool is_list(Found value) const { return value && ranges_.is_array(ranges_[*value]); }
+
+  /// A value as the text of a form, also one that the member cannot have.
+  [[nodiscard]] std::string form_text_of(Found value) const {
+    if (!value) return "";
+    const std::string_view text = ranges_.value_text(ranges_[*value]);
+    if (text == "true") return "1";
+    if (text == "false") return "0";
+    return text.starts_with('"') ? Json::parse(text).get<std::string>() : std::string{text};
+  }
+
+  /// The texts of an array; a single text is a list of one.
+  [[nodiscard]] std::vector<std::string> form_list_of(Found value) const {
+    std::vector<std::string> list;
+    if (!value) return list;
+    if (!is_list(value)) return {form_text_of(value)};
+    for (const std::size_t one : ranges_[*value].children) list.push_back(form_text_of(one));
+    return list;
   }
 
   [[nodiscard]] Json group(std::string_view title, const JsonPath& object) const {
-    return {{"title", title}, {"pointer", json_pointer(object)}, {"fields", fields(object, true)}};
+    return {{"title", title}, {"pointer", json_pointer(object)}, {"fields", fields(object, ranges_.find(object))}};
   }
 
-  /// Fields of an object of the file; of a new one without pointers and values.
-  [[nodiscard]] Json fields(const JsonPath& object, bool exists) const {
+  /// The fields of an object of the file, or of a part of it that is missing.
+  [[nodiscard]] Json fields(const JsonPath& path, Found object) const {
+    Json list = fields_of_new(path);
+    for (Json& field : list) {
+      JsonPath of_member = path;
+      of_member.push_back(field["member"].get<std::string>());
+      const Found value = member_of(object, of_member.back());
+      field["pointer"] = json_pointer(of_member);
+      field["value"] = field["kind"] == "list" ? Json(form_list_of(value)) : Json(form_text_of(value));
+      field["present"] = value.has_value();
+    }
+    return list;
+  }
+
+  /// Without pointers and values.
+  [[nodiscard]] static Json fields_of_new(const JsonPath& path) {
     Json list = Json::array();
-    visit_network_members(object, [&](const auto& rows) {
+    visit_network_members(path, [&](const auto& rows) {
       for (const auto& row : rows) {
         if (row.form() == MemberForm::values) continue;
-        Json field{{"member", row.name}, {"kind", kind_text(row.form())}};
-        if (exists) add_value(object, row.name, row.form(), field);
-        field["hint"] = row.form() == MemberForm::number ? fmt::format("{} ({} to {})", row.meaning, row.min, row.max)
-                                                         : std::string{row.meaning};
-        field["offers"] = offers_json(named_in_network(object, row.name));
-        list.push_back(std::move(field));
+        std::string hint{row.meaning};
+        if (row.form() == MemberForm::number) hint += fmt::format(" ({} to {})", row.min, row.max);
+        list.push_back({{"member", row.name},
+                        {"kind", kind_text(row.form())},
+                        {"hint", std::move(hint)},
+                        {"offers", offers_json(named_in_network(path, row.name))}});
       }
     });
     return list;
   }
 
-  void add_value(const JsonPath& object, std::string_view member, MemberForm form, Json& field) const {
-    JsonPath path = object;
-    path.emplace_back(member);
-    const Json value = value_at(path);
-    field["pointer"] = json_pointer(path);
-    field["value"] = form == MemberForm::texts ? list_of_form(value) : form_value(value);
-    field["present"] = ranges_.find(path).has_value();
-  }
-
-  /// The children of an object or array of the file, without members that a later one of their name replaces.
-  [[nodiscard]] std::vector<JsonPath> children_of(const JsonPath& owner) const {
-    std::vector<JsonPath> paths;
-    const auto at = ranges_.find(owner);
-    if (!at) return paths;
-    const bool is_array = ranges_.is_array(ranges_[*at]);
-    for (const std::size_t one : ranges_[*at].children) {
-      JsonPath path = owner;
-      path.push_back(is_array ? std::to_string(ranges_.place_of(one)) : ranges_[one].name);
-      if (ranges_.find(path) == one) paths.push_back(std::move(path));
-    }
-    return paths;
-  }
-
   [[nodiscard]] Json nodes() const {
     Json list = Json::array();
-    for (const JsonPath& path : children_of({"nodes"})) {
-      Json values = Json::array();
-      for (const JsonPath& entry : children_of({path[0], path[1], "set"})) {
-        values.push_back(
-            {{"entry", entry.back()}, {"pointer", json_pointer(entry)}, {"value", form_value(value_at(entry))}});
-      }
-      list.push_back({{"name", path.back()},
+    const Found nodes = ranges_.find({"nodes"});
+    if (!nodes || is_list(nodes)) return list;
+    for (const std::size_t node : ranges_[*nodes].children) {
+      const std::string& name = ranges_[node].name;
+      if (ranges_.child(*nodes, name) != node) continue;  // a later member of this name replaces it
+      const JsonPath path{"nodes", name};
+      list.push_back({{"name", name},
                       {"pointer", json_pointer(path)},
-                      {"fields", fields(path, true)},
-                      {"values", std::move(values)},
-                      {"objects", objects_of(path.back())}});
+                      {"fields", fields(path, node)},
+                      {"values", values(path, member_of(node, "set"))},
+                      {"objects", objects_of(name)}});
+    }
+    return list;
+  }
+
+  [[nodiscard]] Json values(const JsonPath& node, Found set) const {
+    Json list = Json::array();
+    if (!set || is_list(set)) return list;
+    for (const std::size_t one : ranges_[*set].children) {
+      const std::string& entry = ranges_[one].name;
+      if (ranges_.child(*set, entry) != one) continue;
+      list.push_back({{"entry", entry},
+                      {"pointer", json_pointer({node[0], node[1], "set", entry})},
+                      {"value", form_text_of(one)}});
     }
     return list;
   }
@@ -171,22 +176,21 @@ class NetworkView {
 
   [[nodiscard]] Json signals() const {
     Json list = Json::array();
-    for (const JsonPath& path : children_of({"signals"})) {
-      list.push_back({{"title", signal_title(path)}, {"pointer", json_pointer(path)}, {"fields", fields(path, true)}});
+    const Found signals = ranges_.find({"signals"});
+    if (!is_list(signals)) return list;
+    for (const std::size_t signal : ranges_[*signals].children) {
+      const JsonPath path{"signals", std::to_string(list.size())};
+      list.push_back(
+          {{"title", signal_title(signal)}, {"pointer", json_pointer(path)}, {"fields", fields(path, signal)}});
     }
     return list;
   }
 
   /// `axis1.6041h to controller`; of a master without a file `controller to axis1.6040h`.
-  [[nodiscard]] std::string signal_title(const JsonPath& path) const {
-    const auto text = [&](const char* member) {
-      return form_value(value_at({path[0], path[1], member})).get<std::string>();
-    };
-    std::string receivers;
-    for (const Json& one : list_of_form(value_at({path[0], path[1], "to"}))) {
-      receivers += (receivers.empty() ? "" : ", ") + one.get<std::string>();
-    }
-    const std::string from = text("from"), object = text("object");
+  [[nodiscard]] std::string signal_title(std::size_t signal) const {
+    const std::string from = form_text_of(member_of(signal, "from")),
+                      object = form_text_of(member_of(signal, "object"));
+    const std::string receivers = fmt::format("{}", fmt::join(form_list_of(member_of(signal, "to")), ", "));
     const NetworkNode* const sender = network_.find(from);
     if (sender == nullptr || sender->has_file()) return fmt::format("{}.{} to {}", from, object, receivers);
     return fmt::format("{} to {}{}{}", from, object, receivers.empty() ? "" : ", ", receivers);
@@ -226,11 +230,11 @@ class NetworkView {
   /// The node that transmits the message; empty for SDOs, which are counted once for all nodes.
   [[nodiscard]] std::string sender_of(const TimedMessage& one) const {
     if (one.service == FrameService::sdo) return "";
-    const auto use = std::ranges::find_if(uses_, [&](const CobIdUse& use) {
+    const auto sender = std::ranges::find_if(uses_, [&](const CobIdUse& use) {
       return use.transmits && use.service == one.service && use.can_id == one.message.can_id &&
              use.extended == one.message.extended && one.name.starts_with(use.node->name);
     });
-    return use == uses_.end() ? "" : use->node->name;
+    return sender == uses_.end() ? "" : sender->node->name;
   }
 
   const Network& network_;

@@ -270,6 +270,19 @@ TEST_F(EditNetworkTest, ShowsTheLinesOfAValue) {
   EXPECT_EQ(session.section("nodes").status, 404);
 }
 
+TEST_F(EditNetworkTest, ShowsADeepValueAsItsText) {
+  constexpr std::size_t depth = 20'000;
+  const std::string deep = std::string(depth, '[') + std::string(depth, ']');
+  write(R"({"bit_rate": )" + deep + R"(, "nodes": {"a": {"set": {"1": )" + deep + R"(}}}, "signals": [{"to": [)" +
+        deep + "]}]}");
+  EditSession session = open();
+  ASSERT_EQ(session.problem(), "");
+  EXPECT_EQ(field(part(session, "network")["groups"][0]["fields"], "bit_rate")["value"], deep);
+  change(session, {set("/bit_rate", "125"), set("/signals/0/to", {"a", "b"}), set("/nodes/a/set/1", "5")}, true);
+  EXPECT_EQ(session.bytes(),
+            R"({"bit_rate": 125, "nodes": {"a": {"set": {"1": 5}}}, "signals": [{"to": ["a", "b"]}]})");
+}
+
 TEST_F(EditNetworkTest, HostileRequestsChangeNothing) {
   write(plant);
   EditSession session = open();
