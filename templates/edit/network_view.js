@@ -48,8 +48,8 @@ class NetworkView {
   /* Whether the file has what the text is of: an edit or undo removes it. */
   hasPlace(pointer) {
     const { groups, nodes, signals } = this.network;
-    const parts = groups.filter(({ fields }) => fields.some((field) => field.present));
-    return [...parts, ...nodes, ...signals].some((one) => isWithin(pointer, one.pointer));
+    const parts = groups.filter(({ pointer: own, fields }) => own !== '' && fields.some((field) => field.present));
+    return pointer === '' || [...parts, ...nodes, ...signals].some((one) => isWithin(pointer, one.pointer));
   }
 
   showGroups(groups, isLocked) {
