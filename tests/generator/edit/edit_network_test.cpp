@@ -1,6 +1,7 @@
 // A network file that is edited: the expected texts are written by hand.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -233,6 +234,10 @@ TEST_F(EditNetworkTest, ATextThatIsNotJsonIsShownOnly) {
   EXPECT_EQ(part(session, "findings")["list"][0]["rule"], "network-syntax");
   EXPECT_NE(message(change(session, {set("/bit_rate", "250")})), "");
   EXPECT_EQ(session.bytes(), broken);
+  const auto text = nlohmann::json::parse(session.section("").body);
+  EXPECT_EQ(text["line"], 1);
+  EXPECT_EQ(text["lines"].size(), std::ranges::count(broken, '\n'));
+  EXPECT_EQ(session.section("/nodes").status, 404);
   write(plant);
   EXPECT_TRUE(session.look_at_disk());
   EXPECT_FALSE(part(session, "network").is_null());
