@@ -362,7 +362,8 @@ class EditPage(unittest.TestCase):
         text = path.read_text(encoding="utf-8")
         path.write_text(text.replace('"encoder"', f'"{attack}"').replace('"every_ms": 100', f'"unit": "{attack}", "every_ms": 100'), encoding="utf-8")
         found = self.browse(self.start("line.json"), "hostileNetwork")
-        self.assertIn(attack.replace("\\", ""), found["names"])
+        for names in (found["names"], found["drawn"]):
+            self.assertIn(attack.replace("\\", ""), names)
         self.assertEqual((found["images"], found["scripts"], found["isHacked"]), (0, 1, False))
 
     def test_text_that_is_not_a_network(self) -> None:

@@ -630,7 +630,7 @@ const stories = {
       await user.press(key);
       await user.frame();
     }
-    return { names: await user.items('nodes'), images: await user.page.$$eval('img', (all) => all.length),
+    return { names: await user.items('nodes'), drawn: (await user.picture()).drawn, images: await user.page.$$eval('img', (all) => all.length),
       scripts: await user.page.evaluate(() => document.scripts.length), isHacked: await user.page.evaluate(() => Boolean(globalThis.hacked)) };
   },
 
