@@ -284,6 +284,7 @@ const pdoEditor = new PdoEditor(byId('pdo-editor'), {
 });
 const mainTabs = new Tabs(document.querySelector('.middle > .tabs'), (id) => showTab(id));
 const showTab = (id) => {
+  networkView?.showTab(id);
   if (!grid) return;
   if (id === 'tab-device') deviceForm.show(part('device'), isLocked());
   if (id === 'tab-pdos') showPdos();

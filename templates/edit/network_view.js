@@ -107,6 +107,12 @@ class NetworkView {
     this.showText(pointer);
   }
 
+  /* Shows the text of what is selected in a tab. */
+  showTab(id) {
+    const selected = { 'tab-nodes': this.nodes.node, 'tab-signals': this.signals.signal }[id];
+    this.showText(selected?.pointer ?? '');
+  }
+
   /* A new item of the list that is shown. */
   add() {
     if (!this.network) return;
