@@ -328,10 +328,13 @@ bool EditSession::look_at_disk() {
     publish();
     return version_ != before;
   }
-  if (message.empty() || message == message_) return false;
-  message_ = message;
+  const bool is_outdated = file_->is_outdated();
+  if (!is_outdated && (message.empty() || message == message_)) return false;
+  const std::uint64_t before = version_;
+  if (is_outdated) become(bytes_);
+  if (!message.empty()) message_ = message;
   publish();
-  return true;
+  return version_ != before;
 }
 
 /// Makes the unsaved edits in the text of the other program. Until conflicts are decided, the journal has the edits as

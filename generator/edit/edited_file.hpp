@@ -57,6 +57,9 @@ class EditedFile {
   /// All requests are one step; if one is rejected, none is made.
   [[nodiscard]] virtual ChangedFile changed(const EditRequests& requests) const = 0;
 
+  /// Whether files that it names have changed since, so that the same bytes describe something else.
+  [[nodiscard]] virtual bool is_outdated() const { return false; }
+
   [[nodiscard]] virtual EditedFileFacts facts() const = 0;
   [[nodiscard]] virtual const Diagnostics& diagnostics() const = 0;
   /// A finding as JSON, without fixes.

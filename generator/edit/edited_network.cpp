@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -16,11 +17,32 @@
 #include "edit/network_parts.hpp"
 #include "json/json_file.hpp"
 #include "json/json_ranges.hpp"
+#include "load/load_device.hpp"
 #include "network/checks/check_network.hpp"
 #include "network/network.hpp"
+#include "system/file_stamps.hpp"
+#include "system/path.hpp"
 
 namespace edsc::edit {
 namespace {
+
+/// The files that a network names, also missing ones, and those that they name.
+std::vector<std::string> files_of(const LoadedNetwork& loaded) {
+  const Network& network = loaded.network;
+  const std::string folder = from_native(to_native(network.source->name()).parent_path());
+  std::vector<std::string> paths;
+  const auto add = [&](const WrittenText& file) {
+    if (file) paths.push_back(join_path(folder, file->value));
+  };
+  add(network.description.dbc);
+  for (const NodeDescription& node : network.description.nodes) {
+    for (const WrittenText* file : {&node.eds, &node.dcf, &node.options}) add(*file);
+  }
+  for (const auto& file : network.files) {
+    if (file->source) std::ranges::copy(input_files(*file), std::back_inserter(paths));
+  }
+  return paths;
+}
 
 class EditedNetwork final : public EditedFile {
  public:
@@ -31,6 +53,7 @@ class EditedNetwork final : public EditedFile {
     check_network(loaded_->network, diagnostics_);
     const JsonFile json{source()};
     if (json.is_valid() && json.root().is_object()) ranges_.emplace(source().text());
+    stamps_ = FileStamps{files_of(*loaded_)};
   }
 
   [[nodiscard]] std::unique_ptr<const EditedFile> with_bytes(const std::string& bytes,
@@ -61,6 +84,8 @@ class EditedNetwork final : public EditedFile {
     }
     return {std::move(attempt.rejection), {}, {}, {}};
   }
+
+  [[nodiscard]] bool is_outdated() const override { return stamps_.has_changed(); }
 
   [[nodiscard]] EditedFileFacts facts() const override { return {"network", std::nullopt, is_committed_}; }
   [[nodiscard]] const Diagnostics& diagnostics() const override { return diagnostics_; }
@@ -136,6 +161,7 @@ class EditedNetwork final : public EditedFile {
   Diagnostics diagnostics_;
   std::unique_ptr<LoadedNetwork> loaded_;
   std::optional<JsonRanges> ranges_;  ///< nothing if the text is not a JSON object
+  FileStamps stamps_;                 ///< of the files that it names
 };
 
 }  // namespace

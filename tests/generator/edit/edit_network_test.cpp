@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -253,6 +254,23 @@ TEST_F(EditNetworkTest, SavesAndMergesAsAnEds) {
   post(session, "save");
   std::string expected = theirs;
   EXPECT_EQ(read(), expected.replace(expected.find("125"), 3, "250"));
+}
+
+TEST_F(EditNetworkTest, SeesChangesOfTheFilesThatItNames) {
+  const std::string name = eds_folder + "can-2053c.eds";
+  write(plant_with(name, "new.eds"));
+  EditSession session = open();
+  EXPECT_EQ(part(session, "findings")["errors"], 1);
+  EXPECT_FALSE(session.look_at_disk());
+  const std::string path = folder_.path() + "/new.eds";
+  std::filesystem::copy_file(name, path);
+  EXPECT_TRUE(session.look_at_disk());
+  EXPECT_EQ(part(session, "findings")["errors"], 0);
+  EXPECT_FALSE(session.look_at_disk());
+  std::ofstream{path} << "[FileInfo]\n";
+  EXPECT_TRUE(session.look_at_disk());
+  EXPECT_GT(part(session, "findings")["errors"], 0);
+  EXPECT_FALSE(session.has_unsaved_edits());
 }
 
 TEST_F(EditNetworkTest, KeepsTheEncoding) {
