@@ -326,7 +326,7 @@ class EditPage(unittest.TestCase):
         path = self.with_plant()
         before = path.read_text(encoding="utf-8")
         found = self.browse(self.start("line.json"), "network", "valve", json.dumps({"node_id": "9", "eds": "can-2057c.eds"}),
-                            json.dumps({"from": "inputs", "object": "6000h:02", "to": "control", "every_ms": "20"}), "6206h:01", "255")
+                            json.dumps({"from": "inputs", "object": "6000h:02", "to": "control", "every_ms": "20"}), "6206h:01", "255", "1")
         self.assertEqual((found["before"]["tabs"], found["before"]["isTreeShown"]), (["Network", "Nodes", "Signals", "Text", "Diff"], False))
         self.assertNotIn("valve", found["before"]["drawn"])
         self.assertIn("valve", found["withNode"]["drawn"])
@@ -334,6 +334,8 @@ class EditPage(unittest.TestCase):
         self.assertEqual(found["rejected"]["text"], "200")
         self.assertIn("127", found["rejected"]["message"])
         self.assertIn("1 unsaved edit", found["state"], "the rejected node-ID is not one")
+        self.assertIn("error", found["forced"])
+        self.assertIn("outputs", found["forced"], "has the same node-ID")
         self.assertGreater(found["withSignal"]["value"], found["withNode"]["value"])
         self.assertNotEqual(found["withSignal"]["load"], found["withNode"]["load"])
         self.assertNotEqual(found["withSignal"]["messages"], found["withNode"]["messages"])

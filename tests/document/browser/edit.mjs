@@ -569,9 +569,10 @@ const stories = {
     return { hint, diff, base: await user.text('#file-state') };
   },
 
-  // A new node and a new signal change the drawing and the load; a node-ID is rejected; undo; values of entries; the order of signals.
+  // A new node and a new signal change the drawing and the load; a node-ID is rejected, and one that another node has is forced; undo;
+  // values of entries; the order of signals.
   async network(user) {
-    const [node, members, signal, entry, value] = parameters.map((one, at) => ([1, 2].includes(at) ? Object.entries(JSON.parse(one)) : one));
+    const [node, members, signal, entry, value, used] = parameters.map((one, at) => ([1, 2].includes(at) ? Object.entries(JSON.parse(one)) : one));
     await user.open();
     const before = { ...await user.picture(), tabs: await user.page.$$eval('[role=tab]:not([hidden])', (all) => all.map((one) => one.textContent)),
       isTreeShown: await user.page.$eval('#tree', (one) => one.checkVisibility()) };
@@ -590,6 +591,15 @@ const stories = {
       message: document.getElementById(document.activeElement.getAttribute('aria-describedby').split(' ')[1]).textContent }));
     const state = await user.text('#file-state');
     await user.press('Escape');
+    await user.replace(used);
+    await user.press('Enter');
+    await user.until(() => document.activeElement.getAttribute('aria-invalid') === 'true');
+    await user.press('Control+Enter');
+    await user.until(() => !document.getElementById('findings-count').textContent.startsWith('0 errors'));
+    const forced = await user.text('#findings');
+    await user.tabTo('#nodes', 'Shift+Tab');
+    await user.press('Control+z');
+    await user.until(() => document.getElementById('findings-count').textContent.startsWith('0 errors'));
 
     await user.press('Alt+3', 'Control+Alt+n');
     await user.fill(signal);
@@ -621,7 +631,7 @@ const stories = {
     await user.until(() => document.querySelector('.drawing .chosen title')?.textContent === 'renamed');
     const name = await user.page.evaluate(() => document.activeElement.value);
     const review = await user.save();
-    return { before, withNode, read, rejected, state, withSignal, undone, moved, name, signals: await user.items('signals'), review };
+    return { before, withNode, read, rejected, state, forced, withSignal, undone, moved, name, signals: await user.items('signals'), review };
   },
 
   async hostileNetwork(user) {
