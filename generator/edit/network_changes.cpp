@@ -110,16 +110,18 @@ std::string shown_value(const Wanted& value) {
   return text;
 }
 
-/// `axis1`, `signal 4`, `SYNC`.
+/// `node axis1`, `signal 4`, `SYNC`, `eds of node axis1`.
 std::string part_text(std::span<const std::string> path) {
-  if (path.size() == 2 && path.front() == "signals") {
+  if (path.empty()) return "the network";
+  const std::span<const std::string> owner = path.first(path.size() - 1);
+  if (path.size() == 1) return path[0] == "sync" ? "SYNC" : path[0] == "assume" ? "the assumed intervals" : path[0];
+  if (path.size() == 2 && path[0] == "signals") {
     const auto number = parse_whole<std::size_t>(path[1]);
     return number ? fmt::format("signal {}", *number + 1) : "a new signal";
   }
-  if (path.size() >= 2 && path.front() == "nodes")
-    return path.size() == 2 ? path[1] : fmt::format("{} of {}", path[2], path[1]);
-  if (path.size() == 1 && path.front() == "sync") return "SYNC";
-  return path.empty() ? "the network" : fmt::format("{}", fmt::join(path, "."));
+  if (path.size() == 2 && path[0] == "nodes") return fmt::format("node {}", path[1]);
+  if (path.size() == 3 && path[0] == "nodes" && path[2] == "set") return part_text(owner);
+  return fmt::format("{} of {}", path.back(), part_text(owner));
 }
 
 class NetworkChanger {
@@ -250,7 +252,7 @@ class NetworkChanger {
     if (exists(after)) refuse_change(fmt::format("{} exists", quote(name)));
     if (is_node) rename_in_uses(path[1], name);
     text_ = *with_json_name(text_, path, name);
-    name_ = fmt::format("rename {} to {}", path.back(), name);
+    name_ = fmt::format("rename {} to {}", part_text(path), name);
     is_renamed_ = true;
   }
 

@@ -350,9 +350,9 @@ class JsonEditor {
   bool cut_lines(const JsonRange& range, const JsonRange* before) {
     const std::size_t start = lines_.start(range.first());
     const std::string_view prefix = lines_.before(range.first());
-    const bool has_comma_first = before != nullptr && is_comma_first(prefix);
-    if (!is_blank(prefix) && !has_comma_first) return false;
     const bool is_comma_here = range.comma && !has_line_end(between(range.end, *range.comma));
+    const bool has_comma_first = before != nullptr && is_comma_first(prefix) && !is_comma_here;
+    if (!is_blank(prefix) && !has_comma_first) return false;
     const auto tail = lines_.tail(is_comma_here ? *range.comma + 1 : range.end);
     if (!tail || lines_.end_at(*tail).empty()) return false;
     edits_.cut(start, *tail + lines_.end_at(*tail).size());

@@ -202,8 +202,8 @@ TEST_F(EditNetworkTest, RejectsWithTheAllowedValues) {
   EXPECT_EQ(rejection({set("/nodes/inputs/node_id", "-1")}), "node_id: expected a number from 1 to 127, got \"-1\"");
   EXPECT_EQ(rejection({set("/nodes/inputs/master", "yes")}), "master: expected 1 (true) or 0 (false), got \"yes\"");
   EXPECT_EQ(rejection({set("/nodes/inputs/eds", nlohmann::json::array())}), "eds: expected a text");
-  EXPECT_EQ(rejection({set("/nodes/inputs/color", "red")}), "inputs does not have a member \"color\"");
-  EXPECT_EQ(rejection({set("/nodes/other/node_id", "1")}), "other does not exist");
+  EXPECT_EQ(rejection({set("/nodes/inputs/color", "red")}), "node inputs does not have a member \"color\"");
+  EXPECT_EQ(rejection({set("/nodes/other/node_id", "1")}), "node other does not exist");
   EXPECT_EQ(rejection({{{"do", "add"}, {"pointer", "/nodes/inputs"}, {"members", nlohmann::json::object()}}}),
             "a node \"inputs\" exists");
 }
@@ -271,6 +271,28 @@ TEST_F(EditNetworkTest, SeesChangesOfTheFilesThatItNames) {
   EXPECT_TRUE(session.look_at_disk());
   EXPECT_GT(part(session, "findings")["errors"], 0);
   EXPECT_FALSE(session.has_unsaved_edits());
+}
+
+TEST_F(EditNetworkTest, NamesItsSteps) {
+  write(plant);
+  EditSession session = open();
+  const auto name_of = [&](const nlohmann::json& request) {
+    EXPECT_EQ(message(change(session, {request}, true)), "");
+    return part(session, "status")["undo"].get<std::string>();
+  };
+  const auto request = [](const char* kind, const char* pointer) -> nlohmann::json {
+    return {{"do", kind}, {"pointer", pointer}, {"name", "doors"}, {"to", 0}, {"members", {{"node_id", "9"}}}};
+  };
+  EXPECT_EQ(name_of(set("/bit_rate", "250")), "set bit_rate of the network to 250");
+  EXPECT_EQ(name_of(set("/sync/producer", "control")), "set producer of SYNC to control");
+  EXPECT_EQ(name_of(set("/nodes/inputs/set/1017h", "5")), "set 1017h of node inputs to 5");
+  EXPECT_EQ(name_of(request("remove", "/nodes/inputs/set/1017h")), "remove 1017h of node inputs");
+  EXPECT_EQ(name_of(set("/signals/0/to", {"a", "b"})), "set to of signal 1 to a, b");
+  EXPECT_EQ(name_of(set("/signals/0/every_ms", "")), "remove every_ms of signal 1");
+  EXPECT_EQ(name_of(request("rename", "/nodes/inputs")), "rename node inputs to doors");
+  EXPECT_EQ(name_of(request("move", "/signals/1")), "move signal 2 to place 1");
+  EXPECT_EQ(name_of(request("add", "/nodes/more")), "add node more");
+  EXPECT_EQ(name_of(request("remove", "/nodes/more")), "remove node more");
 }
 
 TEST_F(EditNetworkTest, KeepsTheEncoding) {
