@@ -11,9 +11,13 @@ namespace {
 
 /// The scripts of the page, each after those that it uses.
 constexpr std::string_view edit_scripts[] = {
-    "elements.js",    "edit_client.js", "virtual_rows.js",      "tabs.js",        "dialogs.js",  "choice_box.js",
-    "form_field.js",  "entry_grid.js",  "object_filter.js",     "object_tree.js", "pdo_bits.js", "pdo_editor.js",
-    "device_form.js", "side_panel.js",  "new_object_dialog.js", "edit.js",
+    "elements.js",      "edit_client.js",   "virtual_rows.js",    "tabs.js",
+    "dialogs.js",       "choice_box.js",    "completion.js",      "form_field.js",
+    "entry_grid.js",    "object_filter.js", "object_tree.js",     "pdo_bits.js",
+    "pdo_editor.js",    "device_form.js",   "side_panel.js",      "new_object_dialog.js",
+    "member_fields.js", "item_list.js",     "member_dialog.js",   "set_values.js",
+    "node_editor.js",   "signal_editor.js", "network_drawing.js", "bus_load.js",
+    "network_view.js",  "edit.js",
 };
 
 }  // namespace

@@ -74,7 +74,7 @@ inline constexpr CommandRow commands[] = {
     {"EDS files", "new", "write an EDS for a new device", add_new_options},
     {"EDS files", "object", "add, change, map and remove objects of an EDS or DCF", add_object_options},
 #ifndef EDSC_OFFLINE
-    {"EDS files", "edit", "edit an EDS, DCF or overlay in the browser", add_edit_options},
+    {"EDS files", "edit", "edit an EDS, DCF, overlay or network file in the browser", add_edit_options},
 #endif
     {"EDS files", "merge", "merge two versions of an EDS or DCF, as a merge driver of git", add_merge_options},
     {"EDS files", "overlay", "correct an EDS that you may not change: apply, derive and rebase overlays",

@@ -26,6 +26,7 @@ namespace {
 constexpr const char* examples = R"(Examples:
   edsc edit drive.eds                a page in the browser; Ctrl+S there shows the changes and writes the file
   edsc edit epos4.overlay            corrections of a vendor's file: changes are written to the overlay
+  edsc edit plant.json               a network file: nodes, signals, drawing and bus load
   edsc edit drive.eds --no-browser   only prints the URL; the key u and Enter print another one)";
 
 struct Settings {
@@ -120,7 +121,7 @@ int edit_in_browser(const Settings& settings) {
 
 void add_edit_options(Command command, int& exit_code) {
   Settings& settings = define_command(command, examples, edit_in_browser, exit_code);
-  command.add_option("FILE", settings.path, "EDS, DCF or overlay").required();
+  command.add_option("FILE", settings.path, "EDS, DCF, overlay or network file").required();
   command.add_option("--port", settings.port, "port of 127.0.0.1 (default: a free one)").range(0, 65535);
   command.add_flag("--no-browser", settings.no_browser);
 }

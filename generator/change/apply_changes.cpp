@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <utility>
 #include <variant>
 
 #include "change/change_applier.hpp"
 #include "change/line_diff.hpp"
+#include "diagnostics/new_errors.hpp"
 #include "eds/number.hpp"
 
 namespace edsc {
@@ -23,37 +23,11 @@ void stamp(const ChangeStamp& stamp, const OpenSheet& before, ChangeApplier& app
   applier.apply(SetValue{std::string{file_info}, "FileRevision", fmt::format("{}", revision.value_or(0) + 1)});
 }
 
-/// The errors of a file that another one does not have. A renamed object changes the text of its errors: if one was
-/// renamed, those of a rule are new only as far as there are more of them.
-std::vector<Diagnostic> errors_only_in(const OpenSheet& after, const OpenSheet& before, bool is_renamed) {
-  std::map<std::pair<RuleId, std::string>, std::size_t> old_errors;
-  std::map<RuleId, std::int64_t> more;
-  for (const Diagnostic& one : before.diagnostics.all()) {
-    if (one.severity != Severity::error) continue;
-    ++old_errors[{one.rule, one.message}];
-    --more[one.rule];
-  }
-  std::vector<Diagnostic> errors;
-  for (const Diagnostic& one : after.diagnostics.all()) {
-    if (one.severity == Severity::error) ++more[one.rule];
-  }
-  for (const Diagnostic& one : after.diagnostics.all()) {
-    if (one.severity != Severity::error || (is_renamed && more[one.rule] <= 0)) continue;
-    std::size_t& same = old_errors[{one.rule, one.message}];
-    if (same > 0) {
-      --same;
-    } else {
-      errors.push_back(one);
-    }
-  }
-  return errors;
-}
-
-std::vector<Diagnostic> new_errors(const OpenSheet& after, const OpenSheet& before, bool is_renamed) {
+std::vector<Diagnostic> new_errors_in(const OpenSheet& after, const OpenSheet& before, bool is_renamed) {
   if (after.diagnostics.errors() == 0) return {};
-  if (before.checks == SheetChecks::all) return errors_only_in(after, before, is_renamed);
-  return errors_only_in(after, *open_sheet(before.source->name(), before.bytes, before.options, SheetChecks::all),
-                        is_renamed);
+  if (before.checks == SheetChecks::all) return new_errors(after.diagnostics, before.diagnostics, is_renamed);
+  const auto checked = open_sheet(before.source->name(), before.bytes, before.options, SheetChecks::all);
+  return new_errors(after.diagnostics, checked->diagnostics, is_renamed);
 }
 
 /// Sets the edits that make a text of the file, and the file after. Returns false with a problem.
@@ -94,7 +68,7 @@ AppliedChanges apply_changes(const OpenSheet& before, std::span<const SheetChang
   }
   const bool is_renamed = std::ranges::any_of(
       changes, [](const SheetChange& change) { return std::holds_alternative<RenamePart>(change); });
-  applied.new_errors = new_errors(*applied.after, before, is_renamed);
+  applied.new_errors = new_errors_in(*applied.after, before, is_renamed);
   applied.is_rejected = applied.is_rejected || (!applied.new_errors.empty() && !settings.force);
   if (applied.is_rejected) {
     applied.edits.clear();

@@ -65,7 +65,7 @@ Json group(SectionKind kind, Json fields) {
 
 }  // namespace
 
-void add_device(const OpenSheet& sheet, SheetParts& parts) {
+void add_device(const OpenSheet& sheet, EditParts& parts) {
   const DataSheet& data = sheet.sheet;
   Json device_info = fields_of(section_keys::device_info_keys, data.device_info);
   add_bit_rates(data.device_info, device_info);

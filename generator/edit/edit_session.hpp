@@ -10,12 +10,11 @@
 #include <string_view>
 #include <vector>
 
-#include "change/open_sheet.hpp"
+#include "device/options/options.hpp"
 #include "edit/edit_history.hpp"
 #include "edit/edit_journal.hpp"
-#include "edit/edited_overlay.hpp"
+#include "edit/edited_file.hpp"
 #include "edit/merge_edits.hpp"
-#include "edit/sheet_parts.hpp"
 
 namespace edsc::edit {
 
@@ -65,13 +64,10 @@ class EditSession {
     std::string text;
     std::uint64_t version = 0;
   };
-  struct Rejection;
 
   void open();
-  /// Reads the bytes; false if they cannot be edited, with the reason in `problem`.
-  bool read(const std::string& bytes, std::string& problem);
   void become(std::string bytes);
-  void take_step(EditStep step, std::string bytes, std::unique_ptr<const OpenSheet> sheet);
+  void take_step(ChangedFile changed);
   void record(const EditStep& step, std::string_view before);
   /// The journal has the one step of a restarted history.
   void restart_journal();
@@ -90,17 +86,13 @@ class EditSession {
   [[nodiscard]] nlohmann::ordered_json import(const nlohmann::json& request);
   void merge(const std::string& base, const std::string& mine, const std::string& disk);
   void check_editable() const;
-  [[nodiscard]] bool can_raise_revision() const;
 
   SessionSettings settings_;
   EditJournal journal_;
   std::string problem_;
   std::string saved_;  ///< the bytes of the file on the disk, as far as known
   std::string bytes_;
-  std::unique_ptr<const OpenSheet> sheet_;
-  std::optional<OpenOverlay> overlay_;  ///< its `sheet` is in `sheet_`
-  std::unique_ptr<const OpenSheet> committed_;
-  KnownEntries committed_entries_, base_entries_;
+  std::unique_ptr<const EditedFile> file_;
   EditHistory history_;
   std::optional<StoredEdits> stored_;  ///< of an earlier session, not yet used or discarded
   std::vector<EditConflict> conflicts_;

@@ -10,8 +10,8 @@ namespace edsc::edit {
 
 /// An overlay with its base, as one text.
 struct OpenOverlay {
-  std::unique_ptr<const OpenSheet> sheet;  ///< the base with the overlay; null with a problem
-  std::unique_ptr<const OpenSheet> base;   ///< without it
+  std::shared_ptr<const OpenSheet> sheet;  ///< the base with the overlay; null with a problem
+  std::shared_ptr<const OpenSheet> base;   ///< without it
   std::string base_path;                   ///< as the overlay has it
   std::string problem;                     ///< why the overlay cannot be applied
 };

@@ -44,7 +44,7 @@ Json finding_json(const OpenSheet& sheet, const Diagnostic& one, const Fixes* fi
           {"fixes", section == nullptr ? Json::array() : fixes_json(*fixes, one)}};
 }
 
-void add_findings(const OpenSheet& sheet, bool can_allow, SheetParts& parts) {
+void add_findings(const OpenSheet& sheet, bool can_allow, EditParts& parts) {
   const SheetText text{*sheet.source};
   const Fixes fixes{text, sheet.diagnostics, sheet.device ? &*sheet.device : nullptr};
   const std::vector<Diagnostic>& all = sheet.diagnostics.all();

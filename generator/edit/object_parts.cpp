@@ -198,7 +198,7 @@ KnownEntries known_entries(const OpenSheet& sheet) {
   return known;
 }
 
-void add_objects(const OpenSheet& sheet, const EarlierEntries& earlier, SheetParts& parts) {
+void add_objects(const OpenSheet& sheet, const EarlierEntries& earlier, EditParts& parts) {
   const MappedBy mapped = mapped_by(sheet);
   Json areas = Json::array();
   for (const ObjectArea& area : object_areas) {
@@ -219,7 +219,7 @@ void add_objects(const OpenSheet& sheet, const EarlierEntries& earlier, SheetPar
   }
 }
 
-void add_choices(SheetParts& parts) {
+void add_choices(EditParts& parts) {
   Json types = Json::array();
   for (const canopen::DataTypeRow& row : canopen::data_types) {
     types.push_back({{"name", row.name}, {"bits", row.bits}});
@@ -236,7 +236,7 @@ void add_choices(SheetParts& parts) {
                         {"columns", std::move(columns)}});
 }
 
-void add_standard_objects(const OpenSheet& sheet, SheetParts& parts) {
+void add_standard_objects(const OpenSheet& sheet, EditParts& parts) {
   const std::uint16_t profile = profile_of(sheet);
   std::map<std::uint16_t, std::string> names;
   const auto add = [&](std::uint16_t index) {

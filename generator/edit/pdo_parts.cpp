@@ -188,7 +188,7 @@ Json next_number(const OpenSheet& sheet, PdoDirection direction) {
 
 }  // namespace
 
-void add_pdos(const OpenSheet& sheet, SheetParts& parts) {
+void add_pdos(const OpenSheet& sheet, EditParts& parts) {
   Json list = Json::array();
   if (sheet.device) {
     for (const Pdo& pdo : sheet.device->pdos) list.push_back(pdo_json(sheet, pdo));

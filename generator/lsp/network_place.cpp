@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
+#include <span>
 #include <utility>
 
 #include "lookup/find_entry.hpp"
+#include "network/network_members.hpp"
 #include "text/markdown.hpp"
 
 namespace edsc::lsp {
@@ -23,18 +24,13 @@ struct OpenLevel {
 
 /// The member of `path` in the table of its object: `nodes.axis1.eds`.
 std::optional<std::string_view> meaning_of(const std::vector<std::string>& path, std::string_view name) {
-  const auto find = [&](const auto& rows) -> std::optional<std::string_view> {
+  std::optional<std::string_view> meaning;
+  visit_network_members(path, [&](const auto& rows) {
     for (const auto& row : rows) {
-      if (row.name == name) return row.meaning;
+      if (row.name == name) meaning = row.meaning;
     }
-    return std::nullopt;
-  };
-  if (path.empty()) return find(network_members);
-  if (path.front() == "sync" && path.size() == 1) return find(sync_members);
-  if (path.front() == "assume" && path.size() == 1) return find(assume_members);
-  if (path.front() == "nodes" && path.size() == 2) return find(node_members);
-  if (path.front() == "signals" && path.size() == 2) return find(signal_members);
-  return std::nullopt;
+  });
+  return meaning;
 }
 
 template <class Rows>
@@ -45,39 +41,24 @@ void offer_members(const Rows& rows, std::vector<JsonOffer>& offers) {
 
 void offer_names(const JsonPlaceInText& place, const Network* network, std::vector<JsonOffer>& offers) {
   const std::vector<std::string>& path = place.path;
+  visit_network_members(path, [&](const auto& rows) { offer_members(rows, offers); });
   if (path.empty()) {
-    offer_members(network_members, offers);
-    for (const char* const name : {"sync", "assume", "nodes", "signals"}) offers.push_back({name, "", name});
-  } else if (path.size() == 1 && path.front() == "sync") {
-    offer_members(sync_members, offers);
-  } else if (path.size() == 1 && path.front() == "assume") {
-    offer_members(assume_members, offers);
-  } else if (path.size() == 2 && path.front() == "nodes") {
-    offer_members(node_members, offers);
-  } else if (path.size() == 2 && path.front() == "signals") {
-    offer_members(signal_members, offers);
+    for (const std::string_view name : network_objects) offers.push_back({std::string{name}, "", std::string{name}});
   } else if (path.size() == 3 && path.front() == "nodes" && path.back() == "set" && network != nullptr) {
     const NetworkNode* const node = network->find(path[1]);
-    if (node == nullptr || node->loaded == nullptr || !node->loaded->names) return;
-    for (const Object& object : node->device().objects) {
-      for (const Entry& entry : object.entries) {
-        if (!canopen::writable(entry.access)) continue;
-        offers.push_back(
-            {node->named().identifiers().full(entry), named(entry), entry_label(entry.index, entry.sub_index)});
-      }
+    if (node == nullptr) return;
+    for (const Entry* entry : settable_entries(*node)) {
+      offers.push_back(
+          {node->named().identifiers().full(*entry), named(*entry), entry_label(entry->index, entry->sub_index)});
     }
   }
 }
 
 void offer_entries(const NetworkNode& node, canopen::Mappable direction, const std::string& prefix,
                    std::vector<JsonOffer>& offers) {
-  if (node.loaded == nullptr || !node.loaded->names) return;
-  for (const Object& object : node.device().objects) {
-    for (const Entry& entry : object.entries) {
-      if (!canopen::allows(entry.mappable(), direction)) continue;
-      const std::string name = prefix + node.named().identifiers().full(entry);
-      offers.push_back({name, named(entry), name});
-    }
+  for (const Entry* entry : mappable_entries(node, direction)) {
+    const std::string name = prefix + node.named().identifiers().full(*entry);
+    offers.push_back({name, named(*entry), name});
   }
 }
 
@@ -105,19 +86,21 @@ void offer_values(const View& view, const JsonPlaceInText& place, const Network&
           {node.name.value + end, known != nullptr ? known->device().product_name : "", node.name.value + end});
     }
   };
-  const bool is_signal = path.size() >= 3 && path.front() == "signals";
-  if (path.size() == 2 && path.front() == "sync" && path.back() == "producer") return offer_nodes("");
-  if (!is_signal) return;
-  if (path[2] == "from") return offer_nodes("");
-  if (path[2] == "object") {
-    const NetworkNode* const node = network.find(sender_at(view.analysis.own->text(), place));
-    if (node != nullptr && node->has_file()) return offer_entries(*node, canopen::Mappable::tpdo, "", offers);
-    return;
-  }
-  if (path[2] != "to") return;
-  offer_nodes("");
-  for (const NetworkNode& node : network.nodes) {
-    if (node.has_file()) offer_entries(node, canopen::Mappable::rpdo, node.name + ".", offers);
+  const std::size_t members = !path.empty() && path.front() == "signals" ? 2 : 1;  // before the name of the member
+  if (path.size() <= members) return;
+  switch (named_in_network(std::span{path}.first(members), path[members])) {
+    case NamedInNetwork::nothing: return;
+    case NamedInNetwork::nodes: return offer_nodes("");
+    case NamedInNetwork::entries: {
+      const NetworkNode* const node = network.find(sender_at(view.analysis.own->text(), place));
+      if (node != nullptr) offer_entries(*node, canopen::Mappable::tpdo, "", offers);
+      return;
+    }
+    case NamedInNetwork::receivers:
+      offer_nodes("");
+      for (const NetworkNode& node : network.nodes) {
+        offer_entries(node, canopen::Mappable::rpdo, node.name + ".", offers);
+      }
   }
 }
 

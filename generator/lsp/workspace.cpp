@@ -11,6 +11,7 @@
 #include "diagnostics/place.hpp"
 #include "load/sheet_extensions.hpp"
 #include "network/checks/check_network.hpp"
+#include "network/network_members.hpp"
 #include "system/path.hpp"
 #include "text/source_file.hpp"
 
@@ -57,9 +58,7 @@ DocumentKind kind_of(std::string_view path, std::string_view text) {
   if (!ends_with_ignoring_case(path, ".json")) return DocumentKind::device;
   if (text.find("deviations.schema.json") != std::string_view::npos) return DocumentKind::deviations;
   if (text.find("options.schema.json") != std::string_view::npos) return DocumentKind::options;
-  const bool is_network =
-      text.find("network.schema.json") != std::string_view::npos || text.find("\"nodes\"") != std::string_view::npos;
-  return is_network ? DocumentKind::network : DocumentKind::other;
+  return is_network_text(text) ? DocumentKind::network : DocumentKind::other;
 }
 
 void Workspace::open(const std::string& uri, std::int64_t version, std::string text) {

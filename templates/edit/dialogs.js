@@ -74,17 +74,23 @@ class SaveDialog {
   }
 }
 
-/* The keys of the page. */
-const openKeys = () => {
-  const rows = [
-    ['F1', 'this list'], ['/', 'search'], ['Ctrl+S', 'review and save'], ['Ctrl+Z, Ctrl+Y', 'undo, redo'], ['Alt+1, Alt+2, Alt+3', 'tab Device, Objects, PDOs'],
-    ['Ctrl+Alt+N', 'new object'], ['Ctrl+Delete', 'remove the selected objects or entries'],
-    ['arrow keys, Page Up, Page Down, Home, End', 'move in the tree, the entries, a frame'], ['Shift+arrow, Ctrl+A', 'select several rows: an edit changes all of them'],
-    ['Enter, F2, or any character', 'edit a cell'], ['Enter, Tab', 'accept'], ['Escape', 'discard the typed or rejected text'],
-    ['Delete', 'clear a cell; remove an object from a PDO'], ['Ctrl+C, Ctrl+V', 'copy and paste cells'],
-    ['Alt+arrow', 'move an object in a PDO'], ['Enter in the mappable objects', 'map the object'],
-  ];
-  return new Dialog({ title: 'Keys', cancel: 'Close', body: [make('table', { class: 'key-table' },
-    make('thead', {}, make('tr', {}, make('th', { scope: 'col', text: 'Key' }), make('th', { scope: 'col', text: 'Effect' }))),
-    make('tbody', {}, ...rows.map(([keys, effect]) => make('tr', {}, make('td', {}, make('kbd', { text: keys })), make('td', { text: effect })))))] });
-};
+/* The keys of the page: of an EDS, DCF or overlay, and of a network file. */
+const deviceKeys = [
+  ['F1', 'this list'], ['/', 'search'], ['Ctrl+S', 'review and save'], ['Ctrl+Z, Ctrl+Y', 'undo, redo'], ['Alt+1, Alt+2, Alt+3', 'tab Device, Objects, PDOs'],
+  ['Ctrl+Alt+N', 'new object'], ['Ctrl+Delete', 'remove the selected objects or entries'],
+  ['arrow keys, Page Up, Page Down, Home, End', 'move in the tree, the entries, a frame'], ['Shift+arrow, Ctrl+A', 'select several rows: an edit changes all of them'],
+  ['Enter, F2, or any character', 'edit a cell'], ['Enter, Tab', 'accept'], ['Escape', 'discard the typed or rejected text'],
+  ['Delete', 'clear a cell; remove an object from a PDO'], ['Ctrl+C, Ctrl+V', 'copy and paste cells'],
+  ['Alt+arrow', 'move an object in a PDO'], ['Enter in the mappable objects', 'map the object'],
+];
+const networkKeys = [
+  ['F1', 'this list'], ['Ctrl+S', 'review and save'], ['Ctrl+Z, Ctrl+Y', 'undo, redo'], ['Alt+1, Alt+2, Alt+3', 'tab Network, Nodes, Signals'],
+  ['Ctrl+Alt+N', 'new node, or new signal in the tab Signals'], ['arrow keys, Home, End', 'select a node or signal; scroll the drawing'],
+  ['Enter in the list', 'go to the fields'], ['Alt+arrow', 'move a signal'], ['Ctrl+Delete', 'remove the selected node or signal'],
+  ['Enter, Tab', 'accept a text'], ['Ctrl+Enter', 'apply a text that was rejected for its errors'],
+  ['Down, Up in a field', 'choices of a field'], ['Escape', 'close the choices; discard the typed or rejected text'],
+];
+
+const openKeys = (rows) => new Dialog({ title: 'Keys', cancel: 'Close', body: [make('table', { class: 'key-table' },
+  make('thead', {}, make('tr', {}, make('th', { scope: 'col', text: 'Key' }), make('th', { scope: 'col', text: 'Effect' }))),
+  make('tbody', {}, ...rows.map(([keys, effect]) => make('tr', {}, make('td', {}, make('kbd', { text: keys })), make('td', { text: effect })))))] });

@@ -5,7 +5,8 @@ const announce = (text) => {
   requestAnimationFrame(() => setText(announcements, text));
 };
 
-let grid = null;
+let grid = null;  /* of an EDS, DCF or overlay */
+let networkView = null;  /* of a network file */
 let rowsOfObject = new Map();
 let marksOfSection = new Map();
 let isFirst = true;
@@ -53,6 +54,9 @@ const askForReason = (fix) => {
   reason.focus();
 };
 
+/* Why a text is rejected, and how it is applied nevertheless. */
+const fieldText = (rejected) => rejectedText(rejected) + (rejected.can_force ? ' (Ctrl+Enter applies it anyway)' : '');
+
 /* Edits of cells are one step. A rejected one does not stop the others. */
 const maxRejected = 50;
 const changeCells = async (edits, isForced) => {
@@ -61,7 +65,7 @@ const changeCells = async (edits, isForced) => {
   for (let count = 0; open.length > 0; ++count) {
     const rejected = await client.send('change', { changes: open.map((one) => one.change), force: isForced });
     if (!rejected) break;
-    const text = rejectedText(rejected) + (rejected.can_force ? ' (Ctrl+Enter applies it anyway)' : '');
+    const text = fieldText(rejected);
     if (rejected.index === null || rejected.index === undefined || count === maxRejected) {
       for (const one of open) messages[one.at] = text;
       break;
@@ -219,7 +223,7 @@ const showActiveRow = (row) => {
   setText(byId('grid-hint'), row ? (count > 1 ? `${count} rows are selected: an edit changes all of them.`
     : row.locked ? 'This entry cannot be changed.' : row.entry.from_base ? 'This entry is from the base. A change is written to the overlay.'
       : 'Enter edits, Delete clears, Ctrl+V pastes cells, Shift+arrow selects several rows.') : '');
-  side.showSection(row?.section ?? '');
+  side.showSection(row?.section ?? null);
 };
 
 /* Removes the selected sub-entries, else the chosen objects. */
@@ -242,6 +246,10 @@ const removeSelected = async () => {
 /* Findings, links */
 
 const openPlace = (finding) => {
+  if (networkView) {
+    networkView.reveal(finding.section);
+    return;
+  }
   const object = (finding.object || finding.section).slice(0, 4).toUpperCase();
   if (objectOf(object)) {
     if (!tree.areas.some((area) => area.objects.some((one) => one.index === object))) filter.clear();
@@ -276,6 +284,7 @@ const pdoEditor = new PdoEditor(byId('pdo-editor'), {
 });
 const mainTabs = new Tabs(document.querySelector('.middle > .tabs'), (id) => showTab(id));
 const showTab = (id) => {
+  networkView?.showTab(id);
   if (!grid) return;
   if (id === 'tab-device') deviceForm.show(part('device'), isLocked());
   if (id === 'tab-pdos') showPdos();
@@ -313,7 +322,7 @@ const showStatus = () => {
   setText(byId('file-name'), file.name);
   document.title = `${status.dirty ? '* ' : ''}${file.name} - edsc edit`;
   const state = byId('file-state');
-  const fileKinds = { eds: 'EDS', dcf: 'DCF', overlay: `overlay of ${file.base}` };
+  const fileKinds = { eds: 'EDS', dcf: 'DCF', overlay: `overlay of ${file.base}`, network: 'network file' };
   setText(state, [fileKinds[file.kind], file.encoding, status.dirty ? plural(status.edits, 'unsaved edit') : 'saved'].filter(Boolean).join(', '));
   state.className = status.dirty ? 'dirty' : 'quiet';
   const locked = isLocked();
@@ -387,7 +396,10 @@ const showConnection = (problem) => {
   if (problem === 'lost') announce('The server does not answer. Edits are not possible.');
 };
 
+const showNetwork = () => networkView?.show(part('network'), part('findings').list, isLocked());
+
 const showAll = () => {
+  showNetwork();
   if (!grid) return;
   grid.isLocked = isLocked();
   deviceForm.show(part('device'), isLocked());
@@ -399,6 +411,10 @@ const start = () => {
   const file = part('file');
   document.body.classList.remove('loading');
   byId('workspace').hidden = false;
+  if (file.kind === 'network') {
+    startNetwork();
+    return;
+  }
   const choices = part('choices');
   grid = new EntryGrid(byId('grid'), {
     columns: columnsOf(choices, file.kind), change: changeCells, activate: showActiveRow,
@@ -412,8 +428,34 @@ const start = () => {
   byId('tree').focus();
 };
 
+const startNetwork = () => {
+  byId('workspace').classList.add('of-network');
+  byId('dictionary').hidden = true;
+  for (const name of ['device', 'objects', 'pdos']) byId(`tab-${name}`).hidden = true;
+  for (const name of ['tab-network', 'tab-nodes', 'tab-signals', 'picture']) byId(name).hidden = false;
+  setText(byId('tab-section'), 'Text');
+  setText(byId('skip'), 'Skip to the drawing');
+  byId('skip').href = '#picture';
+  side.drawLine = jsonLine;
+  const changeMember = async (changes, isForced) => {
+    const rejected = await client.send('change', { changes, force: isForced });
+    return rejected ? fieldText(rejected) : '';
+  };
+  networkView = new NetworkView({ change: changeMember, remove: change, announce, showText: (pointer) => side.showSection(pointer), tabs: mainTabs });
+  mainTabs.select('tab-network', true);
+  side.showSection('');
+};
+
 const update = (names) => {
-  if (!grid) start();
+  if (!grid && !networkView) start();
+  if (networkView) {
+    if (names.has('findings')) side.showFindings(part('findings'));
+    if (names.has('file') || names.has('status')) showStatus();
+    if (!isFirst) side.showText();
+    isFirst = false;
+    showNetwork();
+    return;
+  }
   const areObjects = [...names].some((name) => name.startsWith('object/'));
   if (names.has('findings')) {
     countMarks(part('findings'));
@@ -431,6 +473,8 @@ const update = (names) => {
 
 /* Buttons and keys */
 
+const showKeys = () => openKeys(networkView ? networkKeys : deviceKeys);
+
 const step = async (which) => {
   const name = part('status')?.[which];
   if (!name || isLocked()) return;
@@ -440,7 +484,7 @@ const step = async (which) => {
 byId('undo').addEventListener('click', () => step('undo'));
 byId('redo').addEventListener('click', () => step('redo'));
 byId('save').addEventListener('click', () => saveDialog.open());
-byId('help').addEventListener('click', () => openKeys());
+byId('help').addEventListener('click', () => showKeys());
 byId('new-object').addEventListener('click', () => newObject.open(grid.activeRow ? `${grid.activeRow.index}h` : ''));
 byId('remove-object').addEventListener('click', () => removeSelected());
 
@@ -463,10 +507,11 @@ document.addEventListener('keydown', (event) => {
     });
   } else if (isControl && lower === 'z' && !isTyping) run(() => step(shiftKey ? 'redo' : 'undo'));
   else if (isControl && lower === 'y' && !isTyping) run(() => step('redo'));
+  else if (ctrlKey && altKey && lower === 'n' && networkView) run(() => networkView.add());
   else if (ctrlKey && altKey && lower === 'n' && grid) run(() => byId('new-object').click());
-  else if (altKey && !ctrlKey && ['1', '2', '3'].includes(key) && grid) run(() => mainTabs.select(['tab-device', 'tab-objects', 'tab-pdos'][key - 1], true));
+  else if (altKey && !ctrlKey && ['1', '2', '3'].includes(key) && (grid || part('network'))) run(() => mainTabs.select(mainTabs.shown[key - 1].id, true));
   else if (key === '/' && !isTyping && !ctrlKey && !altKey && grid) run(() => filter.focus());
-  else if (key === 'F1') run(() => openKeys());
+  else if (key === 'F1') run(() => showKeys());
   else if (ctrlKey && key === 'Delete' && target.id === 'tree') run(() => removeSelected());
 });
 

@@ -2,14 +2,16 @@
 class FormField {
   static count = 0;
 
-  /* `kind`: 'text', 'choice' with `choices`: [{ value, text }], or 'check'. `change(text)` returns a message if it is rejected. */
-  constructor({ label, kind = 'text', choices = [], hint = '', isWide = false, change }) {
+  /* `kind`: 'text', 'choice' with `choices`: [{ value, text }], or 'check'. `change(text, isForced)` returns a message if it is rejected,
+     and is forced by Ctrl+Enter; without `change`, the text remains in the field for its dialog. `complete()` returns the choices of a text, of which a list has several. The label of
+     a compact field is for screen readers. */
+  constructor({ label, kind = 'text', choices = [], hint = '', isWide = false, isCompact = false, isList = false, complete, change }) {
     Object.assign(this, { label, kind, change });
     const id = `field-${++FormField.count}`;
     this.value = '';
     this.message = make('p', { class: 'field-message', id: `${id}-message`, hidden: true });
     this.hint = make('span', { class: 'field-hint', id: `${id}-hint`, text: hint });
-    const name = make('label', { for: id, text: label });
+    const name = make('label', { for: id, class: isCompact ? 'hidden' : null, text: label });
     if (kind === 'choice') {
       this.input = make('select', { id });
       this.setChoices(choices);
@@ -17,14 +19,18 @@ class FormField {
       this.input = make('input', { id, type: kind === 'check' ? 'checkbox' : 'text', autocomplete: 'off', spellcheck: 'false' });
     }
     setAttributes(this.input, { 'aria-describedby': `${id}-hint ${id}-message` });
-    this.element = make('div', { class: `field ${kind}${isWide ? ' wide' : ''}` },
+    this.element = make('div', { class: `field ${kind}${isWide || isCompact ? ' wide' : ''}` },
       ...(kind === 'check' ? [this.input, name] : [name, this.input]), this.hint, this.message);
+    if (complete) this.completion = new Completion(this.input, { complete, isList, pick: () => this.send() });
     this.input.addEventListener('change', () => this.send());
     this.input.addEventListener('keydown', (event) => {
-      if (event.key === 'Enter' && kind === 'text') {
+      if (event.key === 'Enter' && event.ctrlKey && this.change && this.isRejected) {
+        event.preventDefault();
+        this.send(true);
+      } else if (event.key === 'Enter' && kind === 'text') {
         event.preventDefault();
         this.send();
-      } else if (event.key === 'Escape' && kind === 'text' && (this.isRejected || this.input.value !== this.value)) {
+      } else if (event.key === 'Escape' && kind === 'text' && this.change && (this.isRejected || this.input.value !== this.value)) {
         event.preventDefault();
         this.reject('');
         this.show(this.value);
@@ -73,9 +79,9 @@ class FormField {
     setAttributes(this.input, { 'aria-invalid': message ? 'true' : null });
   }
 
-  async send() {
+  async send(isForced = false) {
     const text = this.text.trim();
-    if (this.isLocked || this.input.readOnly) return;
+    if (!this.change || this.isLocked || this.input.readOnly) return;
     if (text === this.value) {
       this.reject('');
       this.show(this.value);
@@ -83,7 +89,7 @@ class FormField {
     }
     if (this.sending === text) return;
     this.sending = text;
-    const message = await this.change(text);
+    const message = await this.change(text, isForced);
     this.sending = undefined;
     this.reject(message ?? '');
     if (!message) this.show(this.value);

@@ -19,7 +19,7 @@ class PdoEditor {
   buildList() {
     this.newTpdo = make('button', { type: 'button', text: 'New TPDO', onclick: () => this.add('tpdo') });
     this.newRpdo = make('button', { type: 'button', text: 'New RPDO', onclick: () => this.add('rpdo') });
-    this.items = make('ul', { class: 'pdo-list', role: 'listbox', tabindex: 0, 'aria-label': 'PDOs' });
+    this.items = make('ul', { class: 'item-list', role: 'listbox', tabindex: 0, 'aria-label': 'PDOs' });
     this.items.addEventListener('keydown', (event) => {
       const next = { ArrowUp: this.at - 1, ArrowDown: this.at + 1, Home: 0, End: this.list.length - 1 }[event.key];
       if (next !== undefined && !event.altKey) {

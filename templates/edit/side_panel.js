@@ -5,21 +5,39 @@ const diffLines = (diff) => diff.split('\n').filter((line, at, all) => line || a
   return make('span', { class: `line ${kind}`.trim(), text: line || ' ' });
 });
 
+/* The section of an EDS, or the pointer of a member of a network file. */
+const placeOf = ({ section }) => (section.startsWith('/') ? section : `[${section}]`);
+
 /* One finding, with its place and what fixes it. */
 const findingElement = (finding, { open, fix }) => make('li', { class: finding.severity },
   make('p', {}, make('span', { class: 'severity', text: `${finding.severity}: ` }), finding.message),
   make('div', { class: 'place' },
-    open && finding.section && make('button', { type: 'button', class: 'link', text: `[${finding.section}], line ${finding.line}`, onclick: () => open(finding) }),
+    open && finding.section && make('button', { type: 'button', class: 'link', text: `${placeOf(finding)}, line ${finding.line}`, onclick: () => open(finding) }),
     !(open && finding.section) && finding.line > 0 && make('span', { class: 'quiet', text: `line ${finding.line}` }),
     finding.rule && make('span', { class: 'rule mono', text: finding.rule }),
     ...(fix ? finding.fixes ?? [] : []).map((one) => make('button', { type: 'button', class: 'small', text: one.needs_reason ? `${one.title} …` : `Fix: ${one.title}`, onclick: (event) => fix(one, event) }))));
+
+/* A line of an EDS, and of JSON, after its number. */
+const iniLine = (line, count) => {
+  const equals = line.indexOf('=');
+  if (/^\s*\[/.test(line)) return make('span', { class: 'line header' }, count, line);
+  if (/^\s*;/.test(line)) return make('span', { class: 'line quiet' }, count, line);
+  if (equals < 0) return make('span', { class: 'line' }, count, line || ' ');
+  return make('span', { class: 'line' }, count, make('span', { class: 'key', text: line.slice(0, equals) }), line.slice(equals));
+};
+const jsonLine = (line, count) => {
+  if (/^\s*\/\//.test(line)) return make('span', { class: 'line quiet' }, count, line);
+  const parts = line.split(/("(?:[^"\\]|\\.)*"(?=\s*:))/);
+  return make('span', { class: 'line' }, count, ...parts.map((part, at) => (at % 2 ? make('span', { class: 'key', text: part }) : part || (line ? null : ' '))));
+};
 
 /* Findings, the text of the section, and the unsaved edits as a diff. */
 class SidePanel {
   constructor({ client, open, fix, announce }) {
     Object.assign(this, { client, open, fix, announce });
     this.known = null;
-    this.section = '';
+    this.section = null;
+    this.drawLine = iniLine;
     this.tabs = new Tabs(document.querySelector('.tabs.small'), () => this.showText());
     this.showText = this.showText.bind(this);
   }
@@ -62,7 +80,7 @@ class SidePanel {
     this.known = texts;
   }
 
-  /* `title`: of a section, such as 2000sub1. */
+  /* `title`: of a section, such as 2000sub1; of a network file a pointer, of which the empty one is the whole file; or null. */
   showSection(title) {
     if (title === this.section) return;
     this.section = title;
@@ -82,18 +100,9 @@ class SidePanel {
       return;
     }
     const title = this.section;
-    const answer = title ? await this.client.ask('GET', `section?title=${encodeURIComponent(title)}`) : { error: 'No entry is selected.' };
+    const answer = title !== null ? await this.client.ask('GET', `section?title=${encodeURIComponent(title)}`) : { error: 'No entry is selected.' };
     if (title !== this.section) return;
-    byId('section-text').replaceChildren(...(answer.lines ? answer.lines.map((line, at) => this.textLine(line, answer.line + at))
+    byId('section-text').replaceChildren(...(answer.lines ? answer.lines.map((line, at) => this.drawLine(line, make('span', { class: 'number', text: String(answer.line + at) })))
       : [make('span', { class: 'line quiet', text: answer.error ?? '' })]));
-  }
-
-  textLine(line, number) {
-    const count = make('span', { class: 'number', text: String(number) });
-    const equals = line.indexOf('=');
-    if (/^\s*\[/.test(line)) return make('span', { class: 'line header' }, count, line);
-    if (/^\s*;/.test(line)) return make('span', { class: 'line quiet' }, count, line);
-    if (equals < 0) return make('span', { class: 'line' }, count, line || ' ');
-    return make('span', { class: 'line' }, count, make('span', { class: 'key', text: line.slice(0, equals) }), line.slice(equals));
   }
 }

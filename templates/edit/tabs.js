@@ -8,13 +8,17 @@ class Tabs {
       if (tab) this.select(tab.id, false);
     });
     list.addEventListener('keydown', (event) => {
-      const shown = this.tabs.filter((tab) => !tab.hidden);
+      const { shown } = this;
       const at = shown.indexOf(document.activeElement);
       const next = { ArrowRight: at + 1, ArrowLeft: at - 1 + shown.length, Home: 0, End: shown.length - 1 }[event.key];
       if (next === undefined || at < 0) return;
       event.preventDefault();
       this.select(shown[next % shown.length].id, true);
     });
+  }
+
+  get shown() {
+    return this.tabs.filter((tab) => !tab.hidden);
   }
 
   get selected() {

@@ -3,7 +3,8 @@
 
     edit_test.py SOURCE_DIR EDSC
 
-The oracle of a change is `edsc dump` of the written file, of which one value must differ from the dump of the file before.
+The oracle of a change is `edsc dump` of the written file, of which one value must differ from the dump of the file before; of a network
+file it is the JSON of Python, and `edsc network check`.
 """
 
 from __future__ import annotations
@@ -363,6 +364,157 @@ class Refused(Edit):
             start = time.monotonic()
             server.state()
             self.assertLess(time.monotonic() - start, 3)
+
+
+class NetworkFile(Edit):
+    """A plant of the examples, with a comment in it, and the EDS files that it names."""
+
+    def setUp(self) -> None:
+        super().setUp()
+        for sheet in (SOURCE_DIR / "eds").glob("can-20*.*"):
+            shutil.copy(sheet, self.folder)
+        text = (SOURCE_DIR / "examples/networks/four_modules.json").read_text(encoding="utf-8").replace("../../eds/", "")
+        self.plant = self.folder / "plant.json"
+        self.plant.write_text(text.replace('"length_m": 100,', '"length_m": 100, // measured'), encoding="utf-8")
+        self.original = self.plant.read_bytes()
+
+    def edit(self) -> Server:
+        return self.start("plant.json")
+
+    def contents(self) -> dict:
+        return json.loads(self.plant.read_text(encoding="utf-8").replace(" // measured", ""))
+
+    def findings(self) -> list[dict]:
+        result = subprocess.run([EDSC, "network", "check", self.plant, "--format", "json"], capture_output=True, text=True, check=False)
+        return json.loads(result.stdout)["diagnostics"]
+
+    def assert_findings_are_of_check(self, server: Server) -> None:
+        server.post("save", {"since": 0})
+        shown = [(one["severity"], one["rule"], one["line"]) for one in server.state()["findings"]["list"]]
+        # A finding of another file does not have a line of the network file.
+        checked = [(one["severity"], one["rule"], one["line"] if one["file"].endswith("plant.json") else 0) for one in self.findings()]
+        self.assertEqual(sorted(shown), sorted(checked))
+
+    def test_changes_are_those_of_the_json(self) -> None:
+        expected = self.contents()
+        server = self.edit()
+        self.assertEqual(server.state()["file"]["kind"], "network")
+        members = {"from": "buttons", "object": "6000h:01", "to": ["controller", "digital_outputs.6200h:02"], "every_ms": "20"}
+        steps = (
+            [{"do": "set", "pointer": "/bit_rate", "value": "250"}],
+            [{"do": "set", "pointer": "/sync/period_us", "value": "0x2710"}],
+            [{"do": "set", "pointer": "/nodes/analog_inputs/set/1404h:02", "value": "254"}],
+            [{"do": "rename", "pointer": "/nodes/digital_inputs", "name": "buttons"}, {"do": "remove", "pointer": "/signals/11"},
+             {"do": "move", "pointer": "/signals/10", "to": 0}],
+            [{"do": "add", "pointer": "/signals/-", "members": members},
+             {"do": "add", "pointer": "/nodes/more", "members": {"node_id": "9", "eds": "can-2053c.eds"}}],
+        )
+        for step in steps:
+            self.assertNotIn("rejected", server.change(*step))
+        self.assertEqual(self.plant.read_bytes(), self.original)
+        answer = server.change({"do": "remove", "pointer": "/signals/1"}, {"do": "remove", "pointer": "/signals/1"})
+        self.assertNotIn("rejected", answer)
+        server.post("undo", {"since": 0})
+        server.post("save", {"since": 0})
+
+        expected["bit_rate"] = 250
+        expected["sync"] = {"period_us": 10000}
+        nodes = expected["nodes"]
+        nodes["analog_inputs"]["set"] = {"1404h:02": 254}
+        expected["nodes"] = {{"digital_inputs": "buttons"}.get(name, name): node for name, node in nodes.items()}
+        expected["nodes"]["more"] = {"node_id": 9, "eds": "can-2053c.eds"}
+        signals = expected["signals"]
+        for signal_ in signals:
+            if signal_["from"] == "digital_inputs":
+                signal_["from"] = "buttons"
+        del signals[11]
+        signals.insert(0, signals.pop(10))
+        signals.append({**members, "every_ms": 20})
+        self.assertEqual(json.dumps(self.contents()), json.dumps(expected), "in the order of the file")
+        self.assertIn(b'"length_m": 100, // measured\n', self.plant.read_bytes())
+        self.assert_findings_are_of_check(server)
+
+    def test_rejected_and_forced(self) -> None:
+        server = self.edit()
+        for value in ("128", "x", "-1", "1.5"):
+            rejected = server.change({"do": "set", "pointer": "/nodes/analog_inputs/node_id", "value": value})["rejected"]
+            self.assertIn("from 1 to 127", rejected["message"])
+            self.assertFalse(rejected["can_force"])
+        same = [{"do": "set", "pointer": "/length_m", "value": "50"}, {"do": "set", "pointer": "/nodes/analog_inputs/node_id", "value": "1"}]
+        rejected = server.change(*same)["rejected"]
+        self.assertEqual((rejected["index"], rejected["can_force"]), (1, True))
+        self.assertIn("/nodes/analog_inputs", [one["section"][:20] for one in rejected["findings"]])
+        self.assertFalse(server.state()["status"]["dirty"])
+        server.post("change", {"changes": same, "force": True})
+        self.assertGreater(server.state()["findings"]["errors"], 0)
+        self.assert_findings_are_of_check(server)
+        server.post("undo", {"since": 0})
+        server.post("save", {"since": 0})
+        self.assertEqual(self.plant.read_bytes(), self.original)
+
+    def test_finding_of_an_eds(self) -> None:
+        sheet = self.folder / "can-2053c.eds"
+        sheet.write_bytes(sheet.read_bytes().replace(b"DataType=0x0005", b"DataType=0x00ZZ", 1))
+        server = self.edit()
+        self.assertIn("can-2053c.eds:", server.state()["findings"]["list"][0]["message"])
+        self.assert_findings_are_of_check(server)
+
+    def test_journal_and_other_program(self) -> None:
+        server = self.edit()
+        server.change({"do": "set", "pointer": "/bit_rate", "value": "250"})
+        server.end(signal.SIGKILL)
+        theirs = self.original.replace(b'"node_id": 4', b'"node_id": 14')
+        self.plant.write_bytes(theirs)
+        server = self.edit()
+        self.assertEqual(server.state()["status"]["journal"]["names"], ["set bit_rate of the network to 250"])
+        server.post("journal", {"since": 0, "use": True})
+        self.assertEqual(server.state()["status"]["conflicts"], [])
+        self.plant.write_bytes(theirs.replace(b'"bit_rate": 125', b'"bit_rate": 500'))
+        server.post("review", {})
+        conflict = server.state()["status"]["conflicts"][0]
+        self.assertIn("250", conflict["mine"][0])
+        server.post("resolve", {"since": 0, "id": conflict["id"], "keep": "mine"})
+        server.post("save", {"since": 0})
+        self.assertEqual(self.plant.read_bytes(), theirs.replace(b'"bit_rate": 125', b'"bit_rate": 250'))
+
+    def test_text_that_is_not_json(self) -> None:
+        server = self.edit()
+        self.plant.write_bytes(self.original + b"}")
+        server.post("review", {})
+        state = server.state()
+        self.assertIsNone(state["network"])
+        self.assertEqual(state["findings"]["list"][0]["rule"], "network-syntax")
+        self.assertIn("rejected", server.change({"do": "set", "pointer": "/bit_rate", "value": "250"}))
+        self.plant.write_bytes(self.original)
+        server.post("review", {})
+        self.assertIsNotNone(server.state()["network"])
+
+    def test_schema_of_the_state(self) -> None:
+        validator = jsonschema.Draft202012Validator(json.loads((SOURCE_DIR / "docs/schema/edit.schema.json").read_text(encoding="utf-8")))
+        shutil.copytree(SOURCE_DIR / "eds", self.folder / "eds")
+        for example in sorted((SOURCE_DIR / "examples/networks").glob("*.json")):
+            with self.subTest(example.name):
+                text = example.read_text(encoding="utf-8").replace("../../eds/", "eds/")
+                (self.folder / example.name).write_text(text, encoding="utf-8")
+                server = self.start(example.name)
+                answer = json.loads(server.get("/state?since=0")[1])
+                self.assertEqual([error.message for error in validator.iter_errors(answer)], [])
+                self.assertEqual(answer["parts"]["findings"]["errors"], 0)
+                self.assertIn("<svg", answer["parts"]["network"]["drawing"])
+                server.end(signal.SIGKILL)
+
+    def test_hostile_names(self) -> None:
+        server = self.edit()
+        name = "</script><img src=x onerror=alert(1)>\u202e"
+        rename = {"do": "rename", "pointer": "/nodes/digital_inputs", "name": name}
+        self.assertIn("rejected", server.change(rename))
+        server.post("change", {"changes": [rename, {"do": "set", "pointer": "/nodes/controller/options", "value": name}], "force": True})
+        network = server.state()["network"]
+        self.assertIn(name, [one["name"] for one in network["nodes"]])
+        self.assertNotIn("<img", network["drawing"])
+        section = server.get("/section?title=/nodes/controller")
+        self.assertEqual(section[0], 200)
+        self.assertEqual(server.get("/section?title=nodes/controller")[0], 404)
 
 
 class End(Edit):

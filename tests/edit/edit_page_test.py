@@ -234,7 +234,9 @@ class EditPage(unittest.TestCase):
         shutil.copy(SOURCE_DIR / "eds/rk5c.eds", self.folder / "rk5c.eds")
         if SCREENSHOTS:
             Path(SCREENSHOTS).mkdir(parents=True, exist_ok=True)
-        found = self.browse(self.start("rk5c.eds"), "access", *([SCREENSHOTS] if SCREENSHOTS else []))
+        self.check_accessibility(self.browse(self.start("rk5c.eds"), "access", *([SCREENSHOTS] if SCREENSHOTS else [])))
+
+    def check_accessibility(self, found: dict) -> None:
         self.assertEqual({view: all_ for view, all_ in found["violations"].items() if all_}, {})
         self.assertEqual({key for key, width in found["overflow"].items() if width > 0}, set(), "400 % zoom needs no horizontal scrolling")
         self.assertEqual(found["focus"], [])
@@ -313,6 +315,69 @@ class EditPage(unittest.TestCase):
         self.assertEqual(found["const"], f"{len(constant)} of {len(objects)} objects")
         self.assertEqual(found["tpdo"], f"{len(mappable)} of {len(objects)} objects")
         self.assertEqual((found["none"], found["grid"]), (f"0 of {len(objects)} objects", "No object."))
+
+    def with_plant(self) -> Path:
+        for name in ("can-2053c", "can-2057c", "rk5c"):
+            for path in (SOURCE_DIR / "eds").glob(f"{name}.*"):
+                shutil.copy(path, self.folder)
+        return Path(shutil.copy(SOURCE_DIR / "examples/line/line.json", self.folder))
+
+    def test_network(self) -> None:
+        path = self.with_plant()
+        before = path.read_text(encoding="utf-8")
+        found = self.browse(self.start("line.json"), "network", "valve", json.dumps({"node_id": "9", "eds": "can-2057c.eds"}),
+                            json.dumps({"from": "inputs", "object": "6000h:02", "to": "control", "every_ms": "20"}), "6206h:01", "255", "1")
+        self.assertEqual(found["before"]["tabs"], ["Network", "Nodes", "Signals", "Text", "Diff"])
+        self.assertFalse(found["before"]["isTreeShown"])
+        self.assertNotIn("valve", found["before"]["drawn"])
+        self.assertIn("valve", found["withNode"]["drawn"])
+        self.assertRegex(found["read"], "^valve9")
+        self.assertEqual(found["rejected"]["text"], "200")
+        self.assertIn("127", found["rejected"]["message"])
+        self.assertIn("1 unsaved edit", found["state"], "the rejected node-ID is not one")
+        self.assertIn("error", found["forced"])
+        self.assertIn("outputs", found["forced"], "has the same node-ID")
+        self.assertGreater(found["withSignal"]["value"], found["withNode"]["value"])
+        self.assertNotEqual(found["withSignal"]["load"], found["withNode"]["load"])
+        self.assertNotEqual(found["withSignal"]["messages"], found["withNode"]["messages"])
+        self.assertNotEqual(found["withSignal"]["drawn"], found["withNode"]["drawn"])
+        self.assertEqual(found["undone"], found["withNode"] | {"signals": found["withSignal"]["signals"][:-1]})
+        self.assertEqual(found["moved"], [*found["withSignal"]["signals"][:-2], *reversed(found["withSignal"]["signals"][-2:])])
+        self.assertEqual(found["name"], "renamed", "the name keeps the focus")
+        self.assertIn('+    "renamed"', found["review"])
+        self.edsc("network", "check", "line.json")
+        made = json.loads(path.read_text(encoding="utf-8"))
+        self.assertEqual(made["nodes"]["renamed"], {"node_id": 9, "eds": "can-2057c.eds", "set": {"6206h:01": 255}})
+        self.assertEqual(made["signals"][3], {"from": "inputs", "object": "6000h:02", "to": "control", "every_ms": 20})
+        for line in before.splitlines():
+            if '"from": "encoder"' in line:
+                self.assertIn(line, path.read_text(encoding="utf-8").splitlines())
+
+    def test_accessibility_of_a_network(self) -> None:
+        self.with_plant()
+        if SCREENSHOTS:
+            Path(SCREENSHOTS).mkdir(parents=True, exist_ok=True)
+        self.check_accessibility(self.browse(self.start("line.json"), "networkAccess", *([SCREENSHOTS] if SCREENSHOTS else [])))
+
+    def test_hostile_network(self) -> None:
+        path = self.with_plant()
+        attack = '<img src=x onerror=\\"globalThis.hacked=1\\"></style><script>globalThis.hacked=1</script>'
+        text = path.read_text(encoding="utf-8")
+        text = text.replace('"encoder"', f'"{attack}"').replace('"every_ms": 100', f'"unit": "{attack}", "every_ms": 100')
+        path.write_text(text, encoding="utf-8")
+        found = self.browse(self.start("line.json"), "hostileNetwork")
+        for names in (found["names"], found["drawn"]):
+            self.assertIn(attack.replace("\\", ""), names)
+        self.assertEqual((found["images"], found["scripts"], found["isHacked"]), (0, 1, False))
+
+    def test_text_that_is_not_a_network(self) -> None:
+        path = self.with_plant()
+        found = self.browse(self.start("line.json"), "brokenNetwork", path, '"nodes"', '"nodes')
+        self.assertEqual((found["broken"]["isFormShown"], found["broken"]["isPictureShown"]), (False, False))
+        self.assertIn("1 error", found["broken"]["findings"])
+        self.assertEqual(found["broken"]["violations"], [])
+        self.assertIn('"bit_rate"', found["broken"]["text"])
+        self.assertEqual((found["corrected"]["isFormShown"], found["corrected"]["isPictureShown"]), (True, True))
 
     def test_overlay(self) -> None:
         base = self.with_gains()

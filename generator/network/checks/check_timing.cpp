@@ -9,8 +9,6 @@
 namespace edsc {
 namespace {
 
-constexpr unsigned default_max_load = 80;  // percent
-
 std::string milliseconds_text(Nanoseconds time) {
   return fmt::format("{:.3f} ms", std::chrono::duration<double, std::milli>{time}.count());
 }

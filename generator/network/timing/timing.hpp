@@ -23,6 +23,9 @@ struct TimedMessage {
   ResponseTime response;
 };
 
+/// Highest load in percent without a warning, unless the network file states one.
+inline constexpr unsigned default_max_load = 80;
+
 struct NetworkTiming {
   std::vector<TimedMessage> messages;  ///< ascending by CAN-ID
   BusLoad load;

@@ -13,7 +13,7 @@ class User {
 
   async open(address = url) {
     await this.page.goto(address, { waitUntil: 'load' });
-    await this.until(() => document.querySelector('.grid-row [role=gridcell]'));
+    await this.until(() => document.querySelector('.grid-row [role=gridcell], .workspace.of-network #section-text > *'));
     await this.frame();
   }
 
@@ -55,7 +55,8 @@ class User {
   }
 
   async tabToLabel(label) {
-    const id = await this.page.evaluate((text) => [...document.querySelectorAll('label')].find((one) => one.textContent.startsWith(text)).htmlFor, label);
+    const id = await this.page.evaluate((text) => [...(document.querySelector('dialog') ?? document).querySelectorAll('label')]
+      .find((one) => one.textContent.startsWith(text) && one.checkVisibility()).htmlFor, label);
     await this.tabTo(`#${id}`);
   }
 
@@ -134,6 +135,35 @@ class User {
     await this.frame();
   }
 
+  // Accepts the choice for the typed text, if there are choices.
+  async pick() {
+    if (await this.page.$('.choices:not([hidden])')) await this.press('Enter');
+  }
+
+  // Fills fields of a dialog, and accepts it.
+  async fill(values) {
+    await this.dialog();
+    for (const [label, text] of values) {
+      await this.tabToLabel(label);
+      await this.replace(text);
+      await this.pick();
+    }
+    await this.press('Enter');
+    await this.noDialog();
+    await this.frame();
+  }
+
+  items(id) {
+    return this.page.$$eval(`#${id} li b`, (all) => all.map((one) => one.textContent));
+  }
+
+  // What is drawn, and the bus load.
+  async picture() {
+    return { drawn: await this.page.$$eval('.drawing g > title', (all) => all.map((one) => one.textContent)), load: await this.text('#load-text'),
+      value: Number(await this.page.$eval('.load-bar', (one) => one.getAttribute('aria-valuenow'))),
+      messages: await this.page.$$eval('.load-messages tbody tr', (all) => all.map((row) => [...row.children].map((one) => one.textContent))) };
+  }
+
   rows() {
     return this.page.$$eval('.grid-body .grid-row:not(.message):not(.tail)', (rows) => rows.map((row) => [...row.children].map((cell) => cell.textContent)));
   }
@@ -146,6 +176,50 @@ class User {
     return this.page.$$eval('.bit-cell.mapped', (all) => all.map((one) => one.getAttribute('aria-label')));
   }
 }
+
+// axe and the marks of the focus. `views`: the keys, and selectors to which Tab moves, that show each; `after` leaves it.
+const accessOf = async (user, views, after) => {
+  const found = { violations: {}, overflow: {}, focus: [] };
+  const press = async (keys) => {
+    for (const key of keys) await (/^[#.]/.test(key) ? user.tabTo(key) : user.press(key));
+  };
+  for (const scheme of ['light', 'dark']) {
+    await inScheme(user.page, scheme);
+    for (const [view, keys] of Object.entries(views)) {
+      await press(keys);
+      await user.frame();
+      if (parameters[0]) await user.page.screenshot({ path: `${parameters[0]}/edit-${view}-${scheme}.png` });
+      found.violations[`${view} ${scheme}`] = await violations(user.page);
+      if (await user.page.$('dialog')) await user.press('Escape');
+      await press(after[view] ?? []);
+    }
+  }
+  await inScheme(user.page, 'light');
+  await user.page.setViewport({ width: 320, height: 256 });
+  for (const key of ['Alt+1', 'Alt+2', 'Alt+3']) {
+    await user.press(key);
+    await user.frame();
+    if (parameters[0]) await user.page.screenshot({ path: `${parameters[0]}/edit-zoom-${Object.keys(views)[0]}-${key}.png`, fullPage: true });
+    found.overflow[key] = await user.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  }
+  await user.page.setViewport({ width: 1300, height: 1000 });
+  // Each stop of Tab is visible, and has a mark: an outline, or that of its active row or cell.
+  await user.press('Alt+2');
+  for (let at = 0; at < 40; ++at) {
+    const stop = await user.page.evaluate(() => {
+      const focus = document.activeElement;
+      const active = document.getElementById(focus.getAttribute('aria-activedescendant') ?? '') ?? focus;
+      const style = getComputedStyle(active);
+      return { name: focus.id || focus.className || focus.localName, isBody: focus === document.body, isVisible: active.checkVisibility(),
+        isMarked: style.outlineStyle !== 'none' || style.boxShadow !== 'none' };
+    });
+    if (!stop.isBody && !(stop.isVisible && stop.isMarked)) found.focus.push(stop);
+    await user.press('Tab');
+  }
+  await user.page.emulateMediaFeatures([{ name: 'prefers-reduced-motion', value: 'reduce' }]);
+  found.moving = await user.page.$$eval('button, .tree-row', (all) => all.filter((one) => getComputedStyle(one).transitionDuration !== '0s').length);
+  return found;
+};
 
 const stories = {
   // Five objects and two PDOs in a new EDS.
@@ -188,7 +262,7 @@ const stories = {
     await user.tabToLabel('Event timer');
     await user.replace('100');
     await user.press('Enter');
-    await user.until(() => document.querySelector('.pdo-list').textContent.includes('timer 100 ms'));
+    await user.until(() => document.querySelector('.item-list').textContent.includes('timer 100 ms'));
     await user.press('Alt+3', 'Tab', 'Tab', 'Enter');
     await user.until(() => document.getElementById('pdo-title').textContent.startsWith('RPDO 1'));
     await user.tabTo('.mappable input');
@@ -340,46 +414,15 @@ const stories = {
 
   // axe in each tab and dialog, in both schemes, and the width of the page at 400 % zoom.
   async access(user) {
-    const found = { violations: {}, overflow: {}, focus: [] };
     await user.open();
-    const views = { objects: ['Alt+2'], pdos: ['Alt+3'], device: ['Alt+1'], filters: [], new: ['Alt+2', 'Control+Alt+n'], keys: ['F1'] };
-    for (const scheme of ['light', 'dark']) {
-      await inScheme(user.page, scheme);
-      for (const [view, keys] of Object.entries(views)) {
-        await user.press(...keys);
-        if (view === 'filters') await user.tabTo('#filters summary').then(() => user.press('Enter'));
-        await user.frame();
-        if (parameters[0]) await user.page.screenshot({ path: `${parameters[0]}/edit-${view}-${scheme}.png` });
-        found.violations[`${view} ${scheme}`] = await violations(user.page);
-        if (await user.page.$('dialog')) await user.press('Escape');
-        if (view === 'filters') await user.press('Enter');
-      }
-    }
-    await inScheme(user.page, 'light');
-    await user.page.setViewport({ width: 320, height: 256 });
-    for (const key of ['Alt+1', 'Alt+2', 'Alt+3']) {
-      await user.press(key);
-      await user.frame();
-      if (parameters[0]) await user.page.screenshot({ path: `${parameters[0]}/edit-zoom-${key}.png`, fullPage: true });
-      found.overflow[key] = await user.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
-    }
-    await user.page.setViewport({ width: 1300, height: 1000 });
-    // Each stop of Tab is visible, and has a mark: an outline, or that of its active row or cell.
-    await user.press('Alt+2');
-    for (let at = 0; at < 40; ++at) {
-      const stop = await user.page.evaluate(() => {
-        const focus = document.activeElement;
-        const active = document.getElementById(focus.getAttribute('aria-activedescendant') ?? '') ?? focus;
-        const style = getComputedStyle(active);
-        return { name: focus.id || focus.className || focus.localName, isBody: focus === document.body, isVisible: active.checkVisibility(),
-          isMarked: style.outlineStyle !== 'none' || style.boxShadow !== 'none' };
-      });
-      if (!stop.isBody && !(stop.isVisible && stop.isMarked)) found.focus.push(stop);
-      await user.press('Tab');
-    }
-    await user.page.emulateMediaFeatures([{ name: 'prefers-reduced-motion', value: 'reduce' }]);
-    found.moving = await user.page.$$eval('button, .tree-row', (all) => all.filter((one) => getComputedStyle(one).transitionDuration !== '0s').length);
-    return found;
+    return accessOf(user, { objects: ['Alt+2'], pdos: ['Alt+3'], device: ['Alt+1'], filters: ['#filters summary', 'Enter'], new: ['Alt+2', 'Control+Alt+n'], keys: ['F1'] },
+      { filters: ['Enter'] });
+  },
+
+  async networkAccess(user) {
+    await user.open();
+    return accessOf(user, { network: ['Alt+1'], nodes: ['Alt+2'], node: ['Control+Alt+n'], signals: ['Alt+3'], signal: ['Control+Alt+n'],
+      choices: ['Alt+3', '#view-signals [role=combobox]', 'ArrowDown'], text: ['.drawing-text summary', 'Enter'], keys: ['F1'] }, { choices: ['Escape'], text: ['Enter'] });
   },
 
   async lost(user) {
@@ -524,6 +567,99 @@ const stories = {
     await user.until(() => document.getElementById('file-state').textContent.includes('unsaved'));
     const diff = await user.save();
     return { hint, diff, base: await user.text('#file-state') };
+  },
+
+  // A new node and a new signal change the drawing and the load; a node-ID is rejected, and one that another node has is forced; undo;
+  // values of entries; the order of signals.
+  async network(user) {
+    const [node, members, signal, entry, value, used] = parameters.map((one, at) => ([1, 2].includes(at) ? Object.entries(JSON.parse(one)) : one));
+    await user.open();
+    const before = { ...await user.picture(), tabs: await user.page.$$eval('[role=tab]:not([hidden])', (all) => all.map((one) => one.textContent)),
+      isTreeShown: await user.page.$eval('#tree', (one) => one.checkVisibility()) };
+    await user.press('Alt+2', 'Control+Alt+n');
+    await user.fill([['name', node], ...members]);
+    await user.until((name) => document.querySelector('.drawing .chosen title')?.textContent === name, node);
+    const withNode = await user.picture();
+    const read = await user.page.$eval('#nodes', (one) => document.getElementById(one.getAttribute('aria-activedescendant')).textContent);
+
+    await user.press('Alt+2');
+    await user.tabToLabel('node_id');
+    await user.replace('200');
+    await user.press('Enter');
+    await user.until(() => document.activeElement.getAttribute('aria-invalid') === 'true');
+    const rejected = await user.page.evaluate(() => ({ text: document.activeElement.value,
+      message: document.getElementById(document.activeElement.getAttribute('aria-describedby').split(' ')[1]).textContent }));
+    const state = await user.text('#file-state');
+    await user.press('Escape');
+    await user.replace(used);
+    await user.press('Enter');
+    await user.until(() => document.activeElement.getAttribute('aria-invalid') === 'true');
+    await user.press('Control+Enter');
+    await user.until(() => !document.getElementById('findings-count').textContent.startsWith('0 errors'));
+    const forced = await user.text('#findings');
+    await user.tabTo('#nodes', 'Shift+Tab');
+    await user.press('Control+z');
+    await user.until(() => document.getElementById('findings-count').textContent.startsWith('0 errors'));
+
+    await user.press('Alt+3', 'Control+Alt+n');
+    await user.fill(signal);
+    await user.until((count) => document.querySelectorAll('.drawing:first-of-type g').length !== count, withNode.drawn.length);
+    const withSignal = { ...await user.picture(), signals: await user.items('signals') };
+    await user.press('Control+z');
+    await user.until((text) => document.getElementById('load-text').textContent === text, withNode.load);
+    const undone = { ...await user.picture(), signals: await user.items('signals') };
+    await user.press('Control+y');
+    await user.until((text) => document.getElementById('load-text').textContent === text, withSignal.load);
+
+    await user.tabTo('#signals');
+    await user.press('End', 'Alt+ArrowUp');
+    await user.until((name) => document.querySelector('#signals li:last-child b').textContent !== name, withSignal.signals.at(-1));
+    const moved = await user.items('signals');
+
+    await user.press('Alt+2');
+    await user.tabToLabel('New entry');
+    await user.replace(entry);
+    await user.pick();
+    await user.press('Enter');
+    await user.type(value);
+    await user.press('Enter');
+    await user.until(() => document.querySelector('.set-table tbody tr'));
+    await user.tabTo('#nodes', 'Shift+Tab');
+    await user.press('Enter');
+    await user.replace('renamed');
+    await user.press('Enter');
+    await user.until(() => document.querySelector('.drawing .chosen title')?.textContent === 'renamed');
+    const name = await user.page.evaluate(() => document.activeElement.value);
+    const review = await user.save();
+    return { before, withNode, read, rejected, state, forced, withSignal, undone, moved, name, signals: await user.items('signals'), review };
+  },
+
+  async hostileNetwork(user) {
+    await user.open();
+    for (const key of ['Alt+1', 'Alt+2', 'Alt+3']) {
+      await user.press(key);
+      await user.frame();
+    }
+    return { names: await user.items('nodes'), drawn: (await user.picture()).drawn, images: await user.page.$$eval('img', (all) => all.length),
+      scripts: await user.page.evaluate(() => document.scripts.length), isHacked: await user.page.evaluate(() => Boolean(globalThis.hacked)) };
+  },
+
+  // A text that is not JSON, and after its correction in an editor.
+  async brokenNetwork(user) {
+    const [file, from, to] = parameters;
+    const good = readFileSync(file, 'utf8');
+    const shown = () => user.page.evaluate(() => ({
+      isFormShown: [...document.querySelectorAll('.middle > .tabs, .middle > .view')].some((one) => one.checkVisibility()),
+      isPictureShown: document.getElementById('picture').checkVisibility(), findings: document.getElementById('findings-count').textContent,
+      text: document.getElementById('section-text').textContent }));
+    await user.open();
+    writeFileSync(file, good.replace(from, to));
+    await user.until(() => document.querySelector('.text-only'));
+    await user.until((text) => document.getElementById('section-text').textContent.includes(text), to);
+    const broken = { ...await shown(), violations: await violations(user.page) };
+    writeFileSync(file, good);
+    await user.until(() => !document.querySelector('.text-only'));
+    return { broken, corrected: await shown() };
   },
 };
 
