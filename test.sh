@@ -14,7 +14,7 @@ help() {
   test      a release build with all tests but those of the other gears
   asan      the GoogleTest programs (unit and trace tests) and a short run of each fuzz target with AddressSanitizer
             and the checks of UBSan that compile fast
-  firmware  the images of the reference devices under QEMU: each for the Cortex-M0+, half of them for the M3, half for the M4
+  firmware  the images of the reference devices under QEMU, which take turns at the Cortex-M0+, the M3 and the M4
   odr       no two sources of edsc define different types of one name (g++ with -flto)
   long      before a release: odr; the packages of the static programs for x86-64 and Arm, what the programs write in an empty
             root folder compared with the release build, and the packages of builds in two folders; edsc.exe under wine with all
