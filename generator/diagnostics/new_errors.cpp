@@ -1,5 +1,6 @@
 #include "diagnostics/new_errors.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -7,13 +8,26 @@
 #include <utility>
 
 namespace edsc {
+namespace {
 
-std::vector<Diagnostic> new_errors(const Diagnostics& after, const Diagnostics& before, bool is_renamed) {
+std::string without_digits(std::string text) {
+  std::erase_if(text, [](char one) { return one >= '0' && one <= '9'; });
+  return text;
+}
+
+}  // namespace
+
+std::vector<Diagnostic> new_errors(const Diagnostics& after, const Diagnostics& before, bool is_renamed,
+                                   std::span<const std::string_view> calculated) {
+  const auto key_of = [&](const Diagnostic& one) {
+    const bool is_calculated = std::ranges::find(calculated, one.rule.text()) != calculated.end();
+    return std::pair{one.rule, is_calculated ? without_digits(one.message) : one.message};
+  };
   std::map<std::pair<RuleId, std::string>, std::size_t> old_errors;
   std::map<RuleId, std::int64_t> more;
   for (const Diagnostic& one : before.all()) {
     if (one.severity != Severity::error) continue;
-    ++old_errors[{one.rule, one.message}];
+    ++old_errors[key_of(one)];
     --more[one.rule];
   }
   std::vector<Diagnostic> errors;
@@ -22,7 +36,7 @@ std::vector<Diagnostic> new_errors(const Diagnostics& after, const Diagnostics& 
   }
   for (const Diagnostic& one : after.all()) {
     if (one.severity != Severity::error || (is_renamed && more[one.rule] <= 0)) continue;
-    std::size_t& same = old_errors[{one.rule, one.message}];
+    std::size_t& same = old_errors[key_of(one)];
     if (same > 0) {
       --same;
     } else {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <optional>
 #include <string_view>
@@ -25,6 +26,10 @@
 
 namespace edsc::edit {
 namespace {
+
+/// An edit that makes a bus load or time less, but not enough, does not add an error.
+constexpr std::array<std::string_view, 3> calculated_rules{"network-load", "network-sync-window",
+                                                           "network-response-time"};
 
 /// The files that a network names, also missing ones, and those that they name.
 std::vector<std::string> files_of(const LoadedNetwork& loaded) {
@@ -136,7 +141,8 @@ class EditedNetwork final : public EditedFile {
     std::string bytes = bytes_of(made.text, problem);
     if (!problem.empty()) return {{}, EditRejection{count - 1, problem}, true};
     auto after = std::make_unique<EditedNetwork>(path_, bytes, is_committed_);
-    const std::vector<Diagnostic> errors = new_errors(after->diagnostics_, diagnostics_, made.is_renamed);
+    const std::vector<Diagnostic> errors =
+        new_errors(after->diagnostics_, diagnostics_, made.is_renamed, calculated_rules);
     if (!errors.empty() && !requests.is_forced) {
       EditRejection rejection{count - 1, errors.front().message};
       for (const Diagnostic& one : errors) rejection.findings.push_back(after->finding(one));

@@ -220,6 +220,7 @@ class NetworkChanger {
     }
     const JsonPath owner{path[0]};
     if (exists(owner)) {
+      if (!is_node && !value_text(owner).starts_with('[')) refuse_change("signals is not an array");
       put(path, value);
     } else {
       FormJson whole = is_node ? FormJson::object() : FormJson::array();
@@ -308,7 +309,7 @@ class NetworkChanger {
 
   void put(const JsonPath& path, const FormJson& value) {
     auto changed = with_json_value(text_, path, value);
-    if (!changed) refuse_change(fmt::format("{} does not exist", part_text({path.begin(), path.end() - 1})));
+    if (!changed) refuse_change(fmt::format("{} is not an object", part_text({path.begin(), path.end() - 1})));
     text_ = *std::move(changed);
   }
 

@@ -110,7 +110,7 @@ class JsonPrinter {
     if (like && !(value.is_object() ? ranges_.is_object(ranges_[*like]) : ranges_.is_array(ranges_[*like])))
       like.reset();
     if (like && ranges_[*like].children.empty()) like.reset();
-    const bool is_broken = like ? is_first_broken(*like) : !is_flat(value);
+    const bool is_broken = like ? is_first_broken(*like) : !is_flat(value) && !is_on_one_line();
     const std::string inner_indent = is_broken ? indent + unit(like) : indent;
     const std::string inner =
         is_broken ? std::string{line_end} + inner_indent : one_line_blank(value.is_object(), like);
@@ -185,6 +185,12 @@ class JsonPrinter {
     return std::ranges::all_of(value, [&](const Value& one) {
       return !one.is_structured() || one.empty() || (value.is_object() && one.is_array() && is_flat(one));
     });
+  }
+
+  /// Whether all values are on one line.
+  [[nodiscard]] bool is_on_one_line() const {
+    const JsonRange& root = ranges_[JsonRanges::root];
+    return !root.children.empty() && !has_line_end(ranges_.value_text(root));
   }
 
   /// The blanks between a bracket and what is inside.

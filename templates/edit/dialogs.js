@@ -13,7 +13,9 @@ class Dialog {
       make('div', { class: 'dialog-foot' }, this.message, make('button', { type: 'button', text: cancel, onclick: () => this.close() }), ...actions));
     this.element.addEventListener('close', () => {
       this.element.remove();
-      if (this.before?.isConnected) this.before.focus();
+      /* A list that is empty now is hidden. */
+      const isShown = this.before?.isConnected && this.before.checkVisibility();
+      (isShown ? this.before : document.querySelector('[role=tab][aria-selected=true]'))?.focus();
       onclose();
     });
     document.body.append(this.element);

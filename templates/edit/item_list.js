@@ -33,6 +33,11 @@ class ItemList {
     this.select(this.at);
   }
 
+  /* Focuses the list, or `other` if it is empty and therefore hidden. */
+  focusOr(other) {
+    (this.items.length ? this.element : other).focus();
+  }
+
   /* `items`: { title, note, detail, marks }. */
   show(items, at) {
     this.items = items;

@@ -101,7 +101,9 @@ class NodeEditor {
       title: 'New node', isNamed: true, fields: this.newNode, complete: (offers) => this.complete(offers),
       closed: (isAdded) => {
         this.dialog = null;
-        if (isAdded) this.list.element.focus();
+        if (!isAdded) return;
+        this.list.element.focus();
+        this.showText(this.node.pointer);
       },
       add: async (members, name, isForced) => {
         this.wanted = name;
@@ -118,6 +120,6 @@ class NodeEditor {
     if (!node || this.isLocked) return;
     const message = await this.removeItems([{ do: 'remove', pointer: node.pointer }]);
     this.announce(message || `${node.name} removed.`);
-    if (!document.querySelector('dialog')) this.list.element.focus();
+    if (!document.querySelector('dialog')) this.list.focusOr(this.addButton);
   }
 }

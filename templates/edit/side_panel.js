@@ -94,6 +94,7 @@ class SidePanel {
   }
 
   async readText() {
+    await this.client.last;  /* A change in progress may remove the section. */
     if (this.tabs.selected === 'tab-diff') {
       const { diff = '' } = await this.client.ask('GET', 'diff');
       byId('diff-text').replaceChildren(...(diff ? diffLines(diff) : [make('span', { class: 'line quiet', text: 'No unsaved edits.' })]));

@@ -84,6 +84,7 @@ class SignalEditor {
     const to = this.list.at + step;
     if (!signal || this.isLocked || !this.signals[to]) return;
     const message = await this.changeAndSelect([{ do: 'move', pointer: signal.pointer, to }], to);
+    if (!message) this.showText(this.signal.pointer);
     this.announce(message || `${signal.title} is signal ${to + 1} of ${this.signals.length}.`);
   }
 
@@ -93,7 +94,9 @@ class SignalEditor {
       title: 'New signal', fields: this.newSignal, complete: (offers, valueOf) => this.complete(offers, valueOf('from')),
       closed: (isAdded) => {
         this.dialog = null;
-        if (isAdded) this.list.element.focus();
+        if (!isAdded) return;
+        this.list.element.focus();
+        this.showText(this.signal.pointer);
       },
       add: async (members, name, isForced) => {
         const message = await this.changeAndSelect([{ do: 'add', pointer: '/signals/-', members }], this.signals.length, isForced);
@@ -108,6 +111,6 @@ class SignalEditor {
     if (!signal || this.isLocked) return;
     const message = await this.removeItems([{ do: 'remove', pointer: signal.pointer }]);
     this.announce(message || `${signal.title} removed.`);
-    if (!document.querySelector('dialog')) this.list.element.focus();
+    if (!document.querySelector('dialog')) this.list.focusOr(this.addButton);
   }
 }

@@ -452,6 +452,22 @@ class NetworkFile(Edit):
         server.post("save", {"since": 0})
         self.assertEqual(self.plant.read_bytes(), self.original)
 
+    def test_bus_load_that_remains_too_high(self) -> None:
+        self.plant.write_bytes(self.original.replace(b'"bit_rate": 125', b'"bit_rate": 10'))
+        server = self.edit()
+        load = [one["message"] for one in server.state()["findings"]["list"] if one["rule"] == "network-load"]
+        self.assertNotIn("rejected", server.change({"do": "set", "pointer": "/nodes/controller/heartbeat_ms", "value": "1000"}))
+        less = [one["message"] for one in server.state()["findings"]["list"] if one["rule"] == "network-load"]
+        self.assertEqual((len(load), len(less)), (1, 1))
+        self.assertNotEqual(load, less)
+
+    def test_parts_of_another_type(self) -> None:
+        self.plant.write_text('{"bit_rate": 125, "nodes": null, "signals": {}}', encoding="utf-8")
+        server = self.edit()
+        for pointer, message in (("/nodes/a", "nodes is not an object"), ("/signals/-", "signals is not an array")):
+            rejected = server.change({"do": "add", "pointer": pointer, "members": {}})["rejected"]
+            self.assertEqual((rejected["message"], rejected["can_force"]), (message, False))
+
     def test_finding_of_an_eds(self) -> None:
         sheet = self.folder / "can-2053c.eds"
         sheet.write_bytes(sheet.read_bytes().replace(b"DataType=0x0005", b"DataType=0x00ZZ", 1))

@@ -353,6 +353,14 @@ class EditPage(unittest.TestCase):
             if '"from": "encoder"' in line:
                 self.assertIn(line, path.read_text(encoding="utf-8").splitlines())
 
+    def test_text_and_focus_in_a_network(self) -> None:
+        self.with_plant()
+        found = self.browse(self.start("line.json"), "emptyNetwork",
+                            json.dumps({"from": "inputs", "object": "6000h:02", "to": "control", "every_ms": "20"}))
+        for text in (found["added"], found["moved"]):
+            self.assertIn('"every_ms": 20', text)
+        self.assertEqual((found["afterSignals"], found["afterNodes"]), ("New signal", "Nodes"), "the lists are empty and hidden")
+
     def test_accessibility_of_a_network(self) -> None:
         self.with_plant()
         if SCREENSHOTS:

@@ -157,6 +157,20 @@ class User {
     return this.page.$$eval(`#${id} li b`, (all) => all.map((one) => one.textContent));
   }
 
+  // Removes the items of the list that has the focus, also where this adds an error.
+  async removeAll(id) {
+    for (let left = (await this.items(id)).length; left > 0; --left) {
+      await this.press('Control+Delete');
+      await this.until((list, count) => document.querySelectorAll(`#${list} li`).length < count || document.querySelector('dialog'), id, left);
+      if (await this.page.$('dialog')) {
+        await this.tabTo('dialog .danger');
+        await this.press('Enter');
+        await this.noDialog();
+      }
+      await this.frame();
+    }
+  }
+
   // What is drawn, and the bus load.
   async picture() {
     return { drawn: await this.page.$$eval('.drawing g > title', (all) => all.map((one) => one.textContent)), load: await this.text('#load-text'),
@@ -632,6 +646,27 @@ const stories = {
     const name = await user.page.evaluate(() => document.activeElement.value);
     const review = await user.save();
     return { before, withNode, read, rejected, state, forced, withSignal, undone, moved, name, signals: await user.items('signals'), review };
+  },
+
+  // The text of a new signal and of one that is moved; where the focus is after the last signal and node are removed.
+  async emptyNetwork(user) {
+    const signal = Object.entries(JSON.parse(parameters[0]));
+    const line = () => user.text('#section-text');
+    await user.open();
+    await user.press('Alt+3', 'Control+Alt+n');
+    await user.fill(signal);
+    await user.until((text) => document.getElementById('section-text').textContent.includes(text), signal.at(-1)[1]);
+    const added = await line();
+    await user.press('Alt+ArrowUp');
+    await user.edited('move');
+    await user.frame();
+    const moved = await line();
+    await user.removeAll('signals');
+    const afterSignals = await user.focused();
+    await user.press('Alt+2');
+    await user.tabTo('#nodes');
+    await user.removeAll('nodes');
+    return { added, moved, afterSignals, afterNodes: await user.focused() };
   },
 
   async hostileNetwork(user) {

@@ -83,6 +83,7 @@ TEST(JsonEdit, AddsAValueWithTheStyleOfTheOthers) {
             "{\n  \"b\": 5,\n  \"n\": {\n    \"a\": {\"i\": 2}\n  }\n}");
   EXPECT_EQ(set("{\n  \"n\": {\n    \"a\": {\"i\": 1}\n  }\n}", "/s", R"({"i": 2})"),
             "{\n  \"n\": {\n    \"a\": {\"i\": 1}\n  },\n  \"s\": {\"i\": 2}\n}");
+  EXPECT_EQ(set("{\"n\": {}}\n", "/s", R"([{"i": 2}])"), "{\"n\": {}, \"s\": [{\"i\": 2}]}\n");
   EXPECT_EQ(set("[1,2]", "/-", "3"), "[1,2,3]");
   EXPECT_EQ(set("[\n1,\n2]", "/-", "3"), "[\n1,\n2,\n3]");
 }
