@@ -108,11 +108,13 @@ class EditedNetwork final : public EditedFile {
 
   [[nodiscard]] Json section(std::string_view title) const override {
     const auto path = json_path(title);
-    const auto at = ranges_ && path ? ranges_->find(*path) : std::nullopt;
-    const bool is_whole = !ranges_ && title.empty();  // of a text that is not JSON
-    if (!at && !is_whole) return nullptr;
-    const std::uint32_t first = at ? position_at(source(), (*ranges_)[*at].first()).line : 1;
-    const std::uint32_t last = at ? position_at(source(), (*ranges_)[*at].end - 1).line : source().lines();
+    std::uint32_t first = 1, last = source().lines();
+    if (const auto at = ranges_ && path ? ranges_->find(*path) : std::nullopt) {
+      first = position_at(source(), (*ranges_)[*at].first()).line;
+      last = position_at(source(), (*ranges_)[*at].end - 1).line;
+    } else if (ranges_ || !title.empty()) {  // not the whole of a text that is not JSON
+      return nullptr;
+    }
     Json lines = Json::array();
     for (std::uint32_t line = first; line <= last; ++line) lines.push_back(source().line(line));
     return {{"title", title}, {"line", first}, {"lines", std::move(lines)}};

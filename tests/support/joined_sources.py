@@ -3,7 +3,8 @@
 
     joined_sources.py OUTPUT SOURCE...
 
-The includes come first; the rest of each source is in a namespace of its own. Messages name the sources.
+The includes come first; the rest of each source is in a namespace of its own, unless it adds to a named one. Messages name the
+sources.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import sys
 from pathlib import Path
 
 INCLUDE = re.compile(r"^#include .+$", re.MULTILINE)
+NAMED = re.compile(r"^namespace [\w:]+ \{", re.MULTILINE)
 BESIDE = re.compile(r'^#include "([^"]+)"$', re.MULTILINE)
 
 
@@ -28,8 +30,10 @@ def main() -> None:
     output, *sources = map(Path, sys.argv[1:])
     texts = [(source, with_full_paths(source)) for source in sources]
     includes = dict.fromkeys(line for _, text in texts for line in INCLUDE.findall(text))
-    parts = [f'namespace joined_{position} {{\n#line 1 "{source}"\n{INCLUDE.sub("", text)}\n}}\n'
-             for position, (source, text) in enumerate(texts)]
+    parts = []
+    for position, (source, text) in enumerate(texts):
+        part = f'#line 1 "{source}"\n{INCLUDE.sub("", text)}\n'
+        parts.append(part if NAMED.search(text) else f"namespace joined_{position} {{\n{part}}}\n")
     output.write_text("\n".join((*includes, *parts)), encoding="utf-8")
 
 
