@@ -70,18 +70,18 @@ function(edsc_join_sources variable name)
   set(${variable} ${sources} PARENT_SCOPE)
 endfunction()
 
-# edsc_add_gtest(NAME SOURCES file... [LIBRARIES target...] [LONG] [NO_COVERAGE] [AS_ON_A_DEVICE] [IN_EDSC]): a GoogleTest program.
-# Its includes are relative to tests/. With the sanitizers its sources are compiled together, for time.
+# edsc_add_gtest(NAME SOURCES file... [LIBRARIES target...] [LONG] [NO_COVERAGE] [AS_ON_A_DEVICE] [IN_EDSC|APART]): a GoogleTest
+# program. Its includes are relative to tests/. With the sanitizers its sources are compiled together, for time.
 # AS_ON_A_DEVICE: no exceptions, no RTTI, no warnings.
-# IN_EDSC: they are in namespaces of edsc, and cannot be put in others.
+# IN_EDSC: they are in namespaces of edsc, and cannot be put in others. APART: they have headers that exclude each other.
 # NO_COVERAGE: it does not cover the runtime, or covers no more than others that compile faster.
 function(edsc_add_gtest name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;NO_COVERAGE;AS_ON_A_DEVICE;IN_EDSC" "" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "LONG;NO_COVERAGE;AS_ON_A_DEVICE;IN_EDSC;APART" "" "SOURCES;LIBRARIES")
   set(long)
   if(arg_LONG)
     set(long LONG)
   endif()
-  if(EDSC_SANITIZE AND NOT arg_IN_EDSC)
+  if(EDSC_SANITIZE AND NOT arg_IN_EDSC AND NOT arg_APART)
     edsc_join_sources(arg_SOURCES ${name})
   endif()
   edsc_add_test_program(${name} ${long} ${arg_SOURCES})
