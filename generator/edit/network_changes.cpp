@@ -184,7 +184,7 @@ class NetworkChanger {
     for (const MemberKind& kind : kinds_of_members(object)) {
       if (kind.name == member) return value_of_form(value, kind, before);
     }
-    if (value == "") return nullptr;  // an unknown member can be removed
+    if (form_text(value, member).empty()) return nullptr;  // an unknown member can be removed
     refuse_change(fmt::format("{} does not have a member {}", part_text(object), quote(member)));
   }
 

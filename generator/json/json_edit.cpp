@@ -427,6 +427,7 @@ std::string with_json_elements(std::string text, const JsonPath& path, const Val
   const JsonRanges ranges{text};
   const std::vector<std::size_t>& elements = ranges[*ranges.find(path)].children;
   std::vector<Value> before;
+  before.reserve(elements.size());
   for (const std::size_t one : elements) {
     before.push_back(Value::parse(ranges.value_text(ranges[one]), nullptr, true, true));
   }
