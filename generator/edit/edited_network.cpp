@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <iterator>
 #include <optional>
 #include <string_view>
@@ -30,6 +31,20 @@ namespace {
 /// An edit that makes a bus load or time less, but not enough, does not add an error.
 constexpr std::array<std::string_view, 3> calculated_rules{"network-load", "network-sync-window",
                                                            "network-response-time"};
+
+std::ptrdiff_t errors_of(const RuleId& rule, const Diagnostics& diagnostics) {
+  return std::ranges::count_if(
+      diagnostics.all(), [&](const Diagnostic& one) { return one.rule == rule && one.severity == Severity::error; });
+}
+
+/// The errors that reject an edit. If there are fewer of a rule than before, it corrects one of them; the others can
+/// then have other names: of three nodes with one node-ID, the second and third, not the first and third.
+std::vector<Diagnostic> rejecting_errors(const Diagnostics& after, const Diagnostics& before, bool is_renamed) {
+  std::vector<Diagnostic> errors = new_errors(after, before, is_renamed, calculated_rules);
+  std::erase_if(errors,
+                [&](const Diagnostic& one) { return errors_of(one.rule, after) < errors_of(one.rule, before); });
+  return errors;
+}
 
 /// The files that a network names, also missing ones, and those that they name.
 std::vector<std::string> files_of(const LoadedNetwork& loaded) {
@@ -143,8 +158,7 @@ class EditedNetwork final : public EditedFile {
     std::string bytes = bytes_of(made.text, problem);
     if (!problem.empty()) return {{}, EditRejection{count - 1, problem}, true};
     auto after = std::make_unique<EditedNetwork>(path_, bytes, is_committed_);
-    const std::vector<Diagnostic> errors =
-        new_errors(after->diagnostics_, diagnostics_, made.is_renamed, calculated_rules);
+    const std::vector<Diagnostic> errors = rejecting_errors(after->diagnostics_, diagnostics_, made.is_renamed);
     if (!errors.empty() && !requests.is_forced) {
       EditRejection rejection{count - 1, errors.front().message};
       for (const Diagnostic& one : errors) rejection.findings.push_back(after->finding(one));

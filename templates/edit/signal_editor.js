@@ -34,14 +34,25 @@ class SignalEditor {
   }
 
   show({ signals, new_signal: newSignal }, isLocked) {
+    const at = this.wanted ?? this.placeIn(signals);
+    const isMoved = this.wanted === undefined && at !== this.list.at;
     this.signals = signals;
     this.newSignal = newSignal;
     this.isLocked = isLocked;
     this.addButton.disabled = isLocked;
     this.list.show(signals.map((one) => ({ title: one.title, detail: membersText(one.fields, ['from', 'object', 'to']), marks: this.marksOf(one.pointer) })),
-      this.wanted ?? this.list.at);
+      at);
     this.wanted = undefined;
     this.showSignal();
+    if (isMoved && this.content.checkVisibility()) this.showText(this.signal.pointer);
+  }
+
+  /* Where the selected signal is: another program, another page or undo can add, remove and move those before it. */
+  placeIn(signals) {
+    const textOf = (one) => JSON.stringify([one?.title, one?.fields.map((field) => field.value)]);
+    const text = textOf(this.signal);
+    const found = signals.findIndex((one) => textOf(one) === text);
+    return found < 0 || textOf(signals[this.list.at]) === text ? this.list.at : found;
   }
 
   showSignal() {

@@ -461,6 +461,14 @@ class NetworkFile(Edit):
         self.assertEqual((len(load), len(less)), (1, 1))
         self.assertNotEqual(load, less)
 
+    def test_one_of_three_equal_node_ids_is_corrected(self) -> None:
+        self.plant.write_bytes(self.original.replace(b'"node_id": 2', b'"node_id": 1').replace(b'"node_id": 3', b'"node_id": 1'))
+        server = self.edit()
+        before = server.state()["findings"]["errors"]
+        self.assertIn("rejected", server.change({"do": "set", "pointer": "/nodes/analog_inputs/node_id", "value": "1"}))
+        self.assertNotIn("rejected", server.change({"do": "set", "pointer": "/nodes/digital_outputs/node_id", "value": "9"}))
+        self.assertLess(server.state()["findings"]["errors"], before)
+
     def test_parts_of_another_type(self) -> None:
         self.plant.write_text('{"bit_rate": 125, "nodes": null, "signals": {}}', encoding="utf-8")
         server = self.edit()

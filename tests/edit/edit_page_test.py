@@ -361,6 +361,14 @@ class EditPage(unittest.TestCase):
             self.assertIn('"every_ms": 20', text)
         self.assertEqual((found["afterSignals"], found["afterNodes"]), ("New signal", "Nodes"), "the lists are empty and hidden")
 
+    def test_signal_before_the_selected_one(self) -> None:
+        path = self.with_plant()
+        line = 1 + next(at for at, text in enumerate(path.read_text(encoding="utf-8").splitlines(), 1) if '"object": "outputs' in text)
+        added = '"signals": [\n    {"from": "inputs", "object": "6000h:02", "to": "control", "every_ms": 50},'
+        found = self.browse(self.start("line.json"), "signalBefore", path, '"signals": [', added, f"{line} ")
+        self.assertEqual(found["before"], "Signal control to outputs.6200h:01")
+        self.assertEqual(found["after"], found["before"])
+
     def test_accessibility_of_a_network(self) -> None:
         self.with_plant()
         if SCREENSHOTS:

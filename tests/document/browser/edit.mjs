@@ -669,6 +669,22 @@ const stories = {
     return { added, moved, afterSignals, afterNodes: await user.focused() };
   },
 
+  // Another program adds a signal before the selected one.
+  async signalBefore(user) {
+    const [file, from, to] = parameters;
+    await user.open();
+    await user.press('Alt+3');
+    await user.tabTo('#signals');
+    await user.press('End');
+    const before = await user.text('#signal-title');
+    const count = (await user.items('signals')).length;
+    writeFileSync(file, readFileSync(file, 'utf8').replace(from, to));
+    await user.until((old) => document.querySelectorAll('#signals li').length > old, count);
+    const after = await user.text('#signal-title');
+    await user.until((text) => document.getElementById('section-text').textContent.startsWith(text), parameters[3]);
+    return { before, after };
+  },
+
   async hostileNetwork(user) {
     await user.open();
     for (const key of ['Alt+1', 'Alt+2', 'Alt+3']) {
