@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Each mistake here does not compile, and the message of the compiler names the wrong object.
 
-    compile_fail_test.py SOURCE_DIR GENERATED_DIR [CASE] [--clang-every N]
+    compile_fail_test.py SOURCE_DIR GENERATED_DIR [CASE] [--gcc-every N] [--clang-every N]
 
-GENERATED_DIR has a folder for each device. --clang-every N: Clang compiles only every Nth case.
+GENERATED_DIR has a folder for each device. --gcc-every N, --clang-every N: this compiler compiles only every Nth case.
 
 A case is a .cpp file. It compiles with GOOD defined, and does not compile without. Then the first 12 messages of the
 compiler must match each of its lines `// expect: regex`. `A .*B` requires A and B in any order, as the order differs between GCC and Clang; `A|B`
@@ -144,6 +144,7 @@ def main() -> int:
     parser.add_argument("source_dir", type=Path)
     parser.add_argument("generated", type=Path)
     parser.add_argument("case", nargs="?", default="*")
+    parser.add_argument("--gcc-every", type=int, default=1)
     parser.add_argument("--clang-every", type=int, default=1)
     arguments = parser.parse_args()
     source_dir, generated = arguments.source_dir.resolve(), arguments.generated.resolve()
@@ -157,7 +158,7 @@ def main() -> int:
             folder = Path(scratch) / compiler.name
             folder.mkdir()
             headers = precompiled(compiler, COMMON_HEADERS, include, folder, UNUSED_IS_FINE)
-            chosen = cases
+            chosen = cases[::arguments.gcc_every]
             if compiler.is_clang:
                 chosen = [case for case in cases if case.stem not in GCC_ALONE][::arguments.clang_every]
             units += units_of(compiler, chosen, folder, include, (*UNUSED_IS_FINE, *headers))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """No way to pass a value to an object converts it silently.
 
-    typed_values_test.py SOURCE_DIR GENERATED_DIR [--clang-every N] [WAY [KIND]]      GENERATED_DIR has a folder for each device
+    typed_values_test.py SOURCE_DIR GENERATED_DIR [--gcc-every N] [--clang-every N] [WAY [KIND]]      GENERATED_DIR has a folder for each device
 
 Each row of WAYS is a statement that passes a value, and each row of KINDS is a wrong value for an object. None of them
 compiles as a statement: the compiler rejects the value, or it has a result that must be used. The message has at most 12
@@ -205,6 +205,7 @@ def main() -> int:
     parser = argparse.ArgumentParser()
     parser.add_argument("source_dir", type=Path)
     parser.add_argument("generated", type=Path)
+    parser.add_argument("--gcc-every", type=int, default=1, metavar="N", help="g++ compiles each Nth part of the table")
     parser.add_argument("--clang-every", type=int, default=1, metavar="N", help="Clang compiles each Nth part of the table")
     parser.add_argument("cell", nargs="*", help="a way, and a kind")
     arguments = parser.parse_args()
@@ -218,9 +219,9 @@ def main() -> int:
             folder = Path(scratch) / compiler.name
             folder.mkdir()
             flags = (*UNUSED_IS_FINE, *precompiled(compiler, COMMON_HEADERS, include, folder, UNUSED_IS_FINE))
+            every = arguments.clang_every if compiler is CLANG else arguments.gcc_every
             jobs += [(unit, folder / f"unit_{number}", include, flags)
-                     for number, unit in enumerate(units_of(compiler, arguments.cell))
-                     if compiler is not CLANG or number % arguments.clang_every == 0]
+                     for number, unit in enumerate(units_of(compiler, arguments.cell)) if number % every == 0]
         problems = [problem for found in in_parallel(run_unit, jobs) for problem in found]
     for problem in problems:
         print(problem)

@@ -1,4 +1,9 @@
-"""What the tests of edsc document share: edsc, a browser, and EDS files that they write."""
+"""What the tests of edsc document share: edsc, a browser, and EDS files that they write.
+
+    *_page_test.py SOURCE_DIR EDSC WORK_DIR [--sample] [unittest arguments]
+
+--sample: axe-core reads a quarter of the pages of devices, and one of a network.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +18,7 @@ from pathlib import Path
 SOURCE_DIR = Path(sys.argv[1]).resolve()
 EDSC = Path(sys.argv[2]).resolve()
 WORK = Path(sys.argv[3]).resolve()
+SAMPLE = "--sample" in sys.argv[4:]
 sys.path[:0] = [str(SOURCE_DIR / "tests/support"), str(SOURCE_DIR / "tests/masters")]
 from browser import CHROMIUM, install_browser  # noqa: E402
 
@@ -32,6 +38,10 @@ Granularity=8
 [MandatoryObjects]
 SupportedObjects=0
 """
+
+
+def sampled(paths: list[Path]) -> list[Path]:
+    return paths[::4] if SAMPLE else paths
 
 
 def var(index: int, name: str, **keys: str) -> str:
@@ -84,7 +94,7 @@ class DocumentCase(unittest.TestCase):
 
 
 def main() -> None:
-    program = unittest.main(argv=[sys.argv[0], *sys.argv[4:]], module="__main__", exit=False)
+    program = unittest.main(argv=[sys.argv[0], *(one for one in sys.argv[4:] if one != "--sample")], module="__main__", exit=False)
     if program.result.testsRun == 0 and program.result.skipped:
         sys.exit(77)
     sys.exit(not program.result.wasSuccessful())
