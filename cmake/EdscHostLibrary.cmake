@@ -32,16 +32,6 @@ function(edsc_set_host_flags target)
   target_compile_options(${target} PRIVATE ${warnings} ${EDSC_HARDENING})
 endfunction()
 
-# edsc_precompile_headers(TARGET): those that most sources of edsc include. Libraries use the headers of the first one; a program
-# has its own, because it is compiled with -fPIE.
-function(edsc_precompile_headers target)
-  if(EDSC_PRECOMPILE_HEADERS)
-    target_precompile_headers(
-      ${target} PRIVATE <algorithm> <charconv> <chrono> <filesystem> <functional> <map> <memory> <optional> <ranges> <span>
-      <string> <variant> <vector> <fmt/format.h> <nlohmann/json.hpp>)
-  endif()
-endfunction()
-
 # edsc_add_host_library(NAME SOURCE...)
 #
 # A static library of which each folder is compiled as one file: headers and templates that its files share take most of the
@@ -52,8 +42,10 @@ function(edsc_add_host_library name)
   target_include_directories(${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${EDSC_UNITY_BUILD} UNITY_BUILD_MODE GROUP)
   edsc_set_host_flags(${name})
-  if(name STREQUAL "edsc_device")
-    edsc_precompile_headers(${name})
+  if(EDSC_PRECOMPILE_HEADERS AND name STREQUAL "edsc_device")
+    target_precompile_headers(
+      edsc_device PRIVATE <algorithm> <charconv> <chrono> <filesystem> <functional> <map> <memory> <optional> <ranges> <span>
+      <string> <variant> <vector> <fmt/format.h> <nlohmann/json.hpp>)
   elseif(EDSC_PRECOMPILE_HEADERS)
     target_precompile_headers(${name} REUSE_FROM edsc_device)
   endif()
