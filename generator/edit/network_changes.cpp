@@ -188,12 +188,17 @@ class NetworkChanger {
     refuse_change(fmt::format("{} does not have a member {}", part_text(object), quote(member)));
   }
 
-  /// Adds the object too: `sync`, `assume`, `set` of a node.
+  /// `sync`, `assume`, and `set` of a node are added with their first member, and removed with the last one.
+  static bool is_made_with_members(const JsonPath& object) {
+    if (object.size() == 1) return object[0] == "sync" || object[0] == "assume";
+    return object.size() == 3 && object[0] == "nodes" && object[2] == "set";
+  }
+
+  /// Adds the object too.
   void put_with_object(const JsonPath& path, FormJson value) {
     const JsonPath object{path.begin(), path.end() - 1};
-    const bool is_part = object.size() == 1 && (object[0] == "sync" || object[0] == "assume");
-    const bool is_set = object.size() == 3 && exists({object.begin(), object.end() - 1});
-    if (!is_part && !is_set) refuse_change(fmt::format("{} does not exist", part_text(object)));
+    const bool has_owner = object.empty() || exists({object.begin(), object.end() - 1});
+    if (!is_made_with_members(object) || !has_owner) refuse_change(fmt::format("{} does not exist", part_text(object)));
     FormJson owner = FormJson::object();
     owner[path.back()] = std::move(value);
     put(object, owner);
@@ -313,13 +318,11 @@ class NetworkChanger {
     text_ = *std::move(changed);
   }
 
-  /// Removes a value, and `sync`, `assume` or `set` if nothing is left in it.
+  /// Removes a value, and its object if nothing is left in it that was made with it.
   void cut(const JsonPath& path) {
     text_ = *without_json_value(text_, path);
     const JsonPath object{path.begin(), path.end() - 1};
-    const bool is_part = object.size() == 1 && (object[0] == "sync" || object[0] == "assume");
-    const bool is_set = object.size() == 3 && object[0] == "nodes" && object[2] == "set";
-    if (!is_part && !is_set) return;
+    if (!is_made_with_members(object)) return;
     if (value_text(object).find_first_not_of("{} \t\r\n") == std::string::npos)
       text_ = *without_json_value(text_, object);
   }
