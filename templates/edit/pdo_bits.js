@@ -6,6 +6,7 @@ class PdoBits {
     this.entries = [];
     this.cells = [];
     this.active = { byte: 0, cell: 0 };
+    this.awaited = null;  /* { entries, place }: the entries that an edit makes, and the place of the one that is active then */
     this.isLocked = false;
     setAttributes(element, { tabindex: 0, role: 'grid', 'aria-label': 'Frame: bytes and bits', 'aria-colcount': 9 });
     element.addEventListener('keydown', (event) => this.key(event));
@@ -60,9 +61,19 @@ class PdoBits {
       ...Array.from({ length: 8 }, (_, bit) => make('span', { role: 'columnheader', 'aria-label': `bit ${bit}`, text: String(bit) })));
     this.element.replaceChildren(scale, ...this.cells.map((cells, byte) => make('div', { role: 'row', class: 'bit-row', 'aria-rowindex': byte + 2 },
       make('span', { role: 'rowheader', class: 'byte', text: String(byte) }, hidden('. byte')), ...cells)));
+    const awaited = this.hasAwaited() && this.cellOfEntry(this.awaited.place);
+    if (awaited) {
+      this.moveTo(awaited.byte, awaited.place);
+      return;
+    }
     this.active.byte = Math.min(this.active.byte, bytes - 1);
     this.active.cell = Math.min(this.active.cell, this.cells[this.active.byte].length - 1);
     this.showActive();
+  }
+
+  hasAwaited() {
+    const wanted = this.awaited?.entries ?? [];
+    return wanted.length > 0 && wanted.length === this.entries.length && wanted.every((one, place) => one.raw === this.entries[place].raw);
   }
 
   cellsOf(byte) {
@@ -123,9 +134,8 @@ class PdoBits {
     this.activeCell.scrollIntoView({ block: 'nearest', inline: 'nearest' });
   }
 
-  showEntry(place) {
-    const cell = this.cells.flat().find((one) => one.entry === place);
-    if (cell) this.moveTo(cell.byte, cell.place);
+  cellOfEntry(place) {
+    return this.cells.flat().find((one) => one.entry === place);
   }
 
   key(event) {
@@ -172,15 +182,21 @@ class PdoBits {
     const [moved] = entries.splice(at, 1);
     const to = place > at ? place - 1 : place;
     entries.splice(to, 0, moved);
-    await this.arrange(entries, `${moved.name} is now object ${to + 1} of ${entries.length}.`);
-    this.showEntry(to);
+    await this.arrangeAndShow(entries, to, `${moved.name} is now object ${to + 1} of ${entries.length}.`);
+  }
+
+  /* The new state can arrive before the answer to the edit: the object is active as soon as the entries are shown. */
+  async arrangeAndShow(entries, place, text) {
+    const awaited = { entries, place };
+    this.awaited = awaited;
+    await this.arrange(entries, text);
+    if (this.awaited === awaited) this.awaited = null;
   }
 
   async removeActive() {
     const at = this.activeEntry;
     if (at < 0 || this.isLocked) return;
     const entries = this.entries.filter((_, place) => place !== at);
-    await this.arrange(entries, `${this.entries[at].name} removed.`);
-    if (entries.length) this.showEntry(Math.min(at, entries.length - 1));
+    await this.arrangeAndShow(entries, Math.min(at, entries.length - 1), `${this.entries[at].name} removed.`);
   }
 }

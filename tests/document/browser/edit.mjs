@@ -268,6 +268,15 @@ const stories = {
     }
     await user.tabTo('.bits', 'Shift+Tab');
     const before = await user.pdo();
+    // The new state arrives before the answer to the edit, as it can on a busy computer.
+    await user.page.evaluate(() => {
+      const send = window.fetch;
+      window.fetch = async (path, options) => {
+        const answer = await send(path, options);
+        if (path === 'change') await new Promise((resolve) => setTimeout(resolve, 1000));
+        return answer;
+      };
+    });
     await user.press('Home', 'Alt+ArrowDown');
     await user.until(() => document.querySelector('.bit-cell').textContent.startsWith('Speed'));
     const read = await user.focused();
