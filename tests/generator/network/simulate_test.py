@@ -48,12 +48,11 @@ PLANT = {
 }
 
 
-class Simulation(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls) -> None:
-        cls.programs = Path(tempfile.mkdtemp(prefix="edsc-simulate-"))
-        cls.addClassCleanup(shutil.rmtree, cls.programs)
+PROGRAMS = Path(tempfile.mkdtemp(prefix="edsc-simulate-"))
+unittest.addModuleCleanup(shutil.rmtree, PROGRAMS)
 
+
+class Simulation(unittest.TestCase):
     def setUp(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="edsc-simulate-"))
         self.addCleanup(shutil.rmtree, self.folder)
@@ -69,8 +68,8 @@ class Simulation(unittest.TestCase):
                               cwd=self.folder, env={**os.environ, "CXX": compiler})
 
     def program_of(self, path: Path) -> Path:
-        """The folder for the program of this network: those of a class of tests that simulate the same one compile it once."""
-        return self.programs / hashlib.sha256(path.read_bytes()).hexdigest()
+        """The folder for the program of this network: tests that simulate the same one compile it once."""
+        return PROGRAMS / hashlib.sha256(path.read_bytes()).hexdigest()
 
     def simulate(self, path: Path, *arguments: str, exit_code: int = FINE) -> dict:
         result = self.run_edsc(path, *arguments, "--format", "json", "-o", str(self.program_of(path)))
@@ -175,7 +174,8 @@ class Faults(Simulation):
         self.assertNotEqual(first["messages"], self.simulate(path, "--for", "2s", "--seed", "8")["messages"])
 
     def test_text(self) -> None:
-        result = self.run_edsc(self.write(PLANT), "--for", "2s", "--fault", "lost:others@1s")
+        path = self.write(PLANT)
+        result = self.run_edsc(path, "--for", "2s", "--fault", "lost:others@1s", "-o", str(self.program_of(path)))
         self.assertEqual((result.returncode, result.stderr), (FINE, ""))
         self.assertRegex(result.stdout, r"^3 nodes for 2\.000 s at 125 kbit/s: \d+ frames\nload \d+\.\d %")
         self.assertRegex(result.stdout, r"\n182h +inputs TPDO 1 +\d+ ")
