@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <string>
 #include <system_error>
+#include <thread>
 
 namespace {
 
@@ -86,6 +87,30 @@ TEST(EventDescriptor, IsReadableFromItsAlarmOn) {
   EXPECT_FALSE(is_readable(events));
   events.set_alarm(begin, canopen::monotonic_now());
   EXPECT_TRUE(is_readable(events, long_enough)) << "a time that has passed";
+}
+
+TEST(EventDescriptor, IsReadableFromAWakeOnUntilItIsTaken) {
+  EventDescriptor events;
+  EXPECT_FALSE(is_readable(events));
+  std::thread{[&] {
+    events.wake();
+    events.wake();
+  }}.join();
+  EXPECT_TRUE(is_readable(events));
+  events.take_wake();
+  EXPECT_FALSE(is_readable(events));
+  events.take_wake();
+  EXPECT_FALSE(is_readable(events));
+}
+
+TEST(EventDescriptor, EndsItsWaitWhenItIsWoken) {
+  const Pipe pipe;
+  EventDescriptor events;
+  events.watch(pipe.out.number());
+  std::thread other{[&] { events.wake(); }};
+  events.wait(Duration{1'000'000'000});
+  other.join();
+  EXPECT_FALSE(is_readable(events)) << "the wake is taken";
 }
 
 TEST(EventDescriptor, WaitsForAnEventOrTheTime) {

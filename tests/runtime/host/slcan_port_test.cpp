@@ -8,8 +8,10 @@
 #include <atomic>
 #include <canopen/host/blocking_sdo.hpp>
 #include <canopen/host/host_bus.hpp>
+#include <canopen/node/locked.hpp>
 #include <canopen/port/slcan_adapter.hpp>
 #include <cstdlib>
+#include <mutex>
 #include <optional>
 #include <sample/device.hpp>
 #include <span>
@@ -73,6 +75,7 @@ class Device {
   void close() { ++closed; }
   bool send(const Frame& frame) {
     node_.on_frame(frame, HostBus::now());
+    if (frame.id == heard_id) ++heard;
     return true;
   }
   std::uint8_t status() { return 0; }
@@ -90,6 +93,8 @@ class Device {
   canopen::SlcanChannel channel;
   bool refuses = false;
   std::atomic<int> closed{0};
+  std::uint32_t heard_id = 0x700;  ///< frames with this CAN-ID are counted
+  std::atomic<int> heard{0};
 
  private:
   struct NodeBus {
@@ -144,6 +149,49 @@ TEST(SlcanPort, HandsOverEachFrameOfOneRead) {
   }
   EXPECT_EQ(text_of(bus->receive(0us)), "none");
   pollfd readable{bus->file_descriptor(), POLLIN, 0};
+  EXPECT_EQ(::poll(&readable, 1, 0), 0);
+}
+
+void wait_until(const auto& condition) {
+  for (int i = 0; i < 60'000 && !condition(); ++i) std::this_thread::sleep_for(1ms);
+}
+
+TEST(SlcanPort, RunsALockedNodeThatOtherThreadsUse) {
+  Device device;
+  device.heard_id = 0x706;
+  const Worker worker{[&] { device.work(); }};
+  HostBus bus{"slcan:" + device.name()};
+  auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{6});
+  std::mutex mutex;
+  canopen::Locked locked{node, mutex};
+  std::atomic<bool> stop{false};
+  std::thread loop{[&] { bus.run(locked, stop); }};
+  wait_until([&] { return device.heard > 0; });
+  EXPECT_EQ(device.heard, 1) << "the boot-up";
+  static_cast<void>(locked.set<sample::od::producer_heartbeat_time>(canopen::raw(std::uint16_t{1})));
+  bus.wake();
+  wait_until([&] { return device.heard > 3; });
+  EXPECT_GT(device.heard, 3) << "heartbeats";
+  stop = true;
+  bus.wake();
+  loop.join();
+}
+
+TEST(SlcanPort, IsReadableAfterAWakeUntilItIsServed) {
+  Device device;
+  std::optional<HostBus> bus;
+  {
+    const Worker worker{[&] { device.work(); }};
+    bus.emplace("slcan:" + device.name());
+  }
+  auto node = bench::make_node<sample::Device>(*bus, canopen::NodeId{6});
+  node.start(HostBus::now());
+  bus->serve(node);
+  pollfd readable{bus->file_descriptor(), POLLIN, 0};
+  EXPECT_EQ(::poll(&readable, 1, 0), 0);
+  std::thread{[&] { bus->wake(); }}.join();
+  EXPECT_EQ(::poll(&readable, 1, 0), 1);
+  bus->serve(node);
   EXPECT_EQ(::poll(&readable, 1, 0), 0);
 }
 

@@ -4,10 +4,13 @@
 
 #include <poll.h>
 #include <sys/epoll.h>
+#include <sys/eventfd.h>
 #include <sys/timerfd.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <optional>
@@ -50,8 +53,10 @@ class EventDescriptor {
  public:
   EventDescriptor()
       : epoll_{opened(::epoll_create1(EPOLL_CLOEXEC), "epoll_create1")},
-        timer_{opened(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC), "timerfd_create")} {
+        timer_{opened(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC), "timerfd_create")},
+        wake_{opened(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC), "eventfd")} {
     control(EPOLL_CTL_ADD, timer_.number(), EPOLLIN);
+    control(EPOLL_CTL_ADD, wake_.number(), EPOLLIN);
   }
 
   /// Readable when there is an event.
@@ -85,11 +90,27 @@ class EventDescriptor {
     alarm_ = at;
   }
 
-  /// Waits until the descriptor has an event, for this time at most.
+  /// Waits until the descriptor has an event or is woken, for this time at most.
   void wait(Duration timeout) const {
-    pollfd waiting{watched_, static_cast<short>(waits_for_room_ ? POLLIN | POLLOUT : POLLIN), 0};
+    std::array<pollfd, 2> waiting{{
+        {watched_, static_cast<short>(waits_for_room_ ? POLLIN | POLLOUT : POLLIN), 0},
+        {wake_.number(), POLLIN, 0},
+    }};
     const timespec span = to_timespec(timeout);
-    if (::ppoll(&waiting, 1, &span, nullptr) < 0 && errno != EINTR) throw_errno("poll");
+    if (::ppoll(waiting.data(), waiting.size(), &span, nullptr) < 0 && errno != EINTR) throw_errno("poll");
+    if (waiting[1].revents != 0) take_wake();
+  }
+
+  /// Makes it readable until `take_wake`, and ends `wait`. Any thread and a signal handler may call it.
+  void wake() const {
+    const std::uint64_t one = 1;
+    static_cast<void>(::write(wake_.number(), &one, sizeof one));  // fails only if it is readable already
+  }
+
+  /// What was set before `wake` can be seen after this call.
+  void take_wake() const {
+    std::uint64_t count = 0;
+    static_cast<void>(::read(wake_.number(), &count, sizeof count));
   }
 
  private:
@@ -101,6 +122,7 @@ class EventDescriptor {
 
   Descriptor epoll_;
   Descriptor timer_;
+  Descriptor wake_;
   std::optional<TimePoint> alarm_;
   int watched_ = -1;
   bool waits_for_room_ = false;

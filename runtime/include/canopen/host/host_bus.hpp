@@ -46,14 +46,14 @@ class HostBus {
   /// Starts a node and runs it until `stop` is true, which is checked at least ten times a second.
   template <class Node>
   void run(Node& node, const std::atomic<bool>& stop = host_loop::never) {
-    std::visit([&](auto& port) { port.run(node, stop); }, port_);
+    host_loop::run(*this, node, stop);
   }
 
   /// Serves a node that has been started, without waiting: call it once after `node.start` and whenever
   /// `file_descriptor` is readable.
   template <class Node>
   void serve(Node& node) {
-    std::visit([&](auto& port) { port.serve(node); }, port_);
+    host_loop::serve(*this, node);
   }
 
   /// Returns when the last frame returned by `receive` was received.
@@ -72,6 +72,36 @@ class HostBus {
   /// Readable when there is an event, for the application's own poll loop.
   [[nodiscard]] int file_descriptor() const {
     return std::visit([](const auto& port) { return port.file_descriptor(); }, port_);
+  }
+
+  /// Serves the node as soon as possible: after another thread has given it work through a Mailbox or Locked, which the
+  /// node would notice at its next frame or deadline. Any thread and a signal handler may call it.
+  void wake() const {
+    std::visit([](const auto& port) { port.wake(); }, port_);
+  }
+
+  // For host_loop.hpp: one loop with the code of a node, not one for each kind of port.
+
+  template <class Node>
+  void listen_for(Node& node) {
+    if (auto* const port = std::get_if<SocketCan>(&port_)) {
+      if constexpr (requires { port->listen_for(node); }) port->listen_for(node);
+    }
+  }
+  [[nodiscard]] std::optional<PortEvent> take() {
+    return std::visit([](auto& port) { return port.take(); }, port_);
+  }
+  [[nodiscard]] std::optional<TimePoint> next_deadline() const {
+    return std::visit([](const auto& port) { return port.next_deadline(); }, port_);
+  }
+  [[nodiscard]] Duration hold_off() const {
+    return std::visit([](const auto& port) { return port.hold_off(); }, port_);
+  }
+  [[nodiscard]] TimePoint pass_time() {
+    return std::visit([](auto& port) { return port.pass_time(); }, port_);
+  }
+  [[nodiscard]] EventDescriptor& events() {
+    return std::visit([](auto& port) -> EventDescriptor& { return port.events(); }, port_);
   }
 
  private:

@@ -58,7 +58,7 @@ TimePoint serve_once(Port& port, Node& node) {
 /// Returns the next event that does not make a descriptor readable. A bus without room delays what is to be sent, but
 /// not the periodic functions of the application.
 template <class Port, class Node>
-[[nodiscard]] std::optional<TimePoint> next_deadline(const Port& port, const Node& node, TimePoint now) {
+[[nodiscard]] std::optional<TimePoint> next_deadline(const Port& port, Node& node, TimePoint now) {
   std::optional<TimePoint> next = node.next_deadline();
   if (next) next = std::max(*next, now + port.hold_off());
   const auto consider = [&next](std::optional<TimePoint> time) {
@@ -76,6 +76,7 @@ template <class Port, class Node>
 
 template <class Port, class Node>
 void serve(Port& port, Node& node) {
+  port.events().take_wake();
   const TimePoint now = serve_once(port, node);
   port.events().set_alarm(next_deadline(port, node, now), now);
 }

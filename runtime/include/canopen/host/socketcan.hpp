@@ -87,6 +87,10 @@ class SocketCan {
   /// Readable when there is an event, for the application's own poll loop.
   [[nodiscard]] int file_descriptor() const { return events_.number(); }
 
+  /// Serves the node as soon as possible: after another thread has given it work through a Mailbox or Locked, which the
+  /// node would notice at its next frame or deadline. Any thread and a signal handler may call it.
+  void wake() const { events_.wake(); }
+
   /// Returns the status of the CAN controller, from its error frames.
   [[nodiscard]] const BusStatus& status() const { return status_; }
 
