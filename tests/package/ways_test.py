@@ -128,31 +128,6 @@ class Ways(Projects):
         self.document("Installed", 2)
         self.check_image(self.sources / "build/valve-m3")
 
-    @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
-    def test_installed_beside_headers_of_the_host(self) -> None:
-        """The host has headers with the names of all those of newlib and libstdc++. A toolchain file searches only its root."""
-        self.built()
-        prefix = self.folder / "like usr"
-        shutil.copytree(self.prefix, prefix)
-        for name in ("cstdint", "array", "span", "stdint.h", "string.h"):
-            (prefix / "include" / name).write_text("#error a header of the host\n")
-        strict = self.folder / "strict/toolchain.cmake"
-        strict.parent.mkdir()
-        package = prefix / "share/cmake/edsc"
-        strict.write_text(STRICT_TOOLCHAIN.format(toolchain=package / TOOLCHAIN))
-        self.check_cross(Project(self.folder / "strict/project"), f"-DCMAKE_TOOLCHAIN_FILE={strict}", f"-Dedsc_DIR={package}")
-
-    def test_installed_and_found_by_the_path(self) -> None:
-        self.built()
-        project = Project(self.folder / "by path")
-        path = ENVIRONMENT["PATH"]
-        ENVIRONMENT["PATH"] = f"{self.prefix / 'bin'}{os.pathsep}{path}"
-        try:
-            self.check_host(project)
-        finally:
-            ENVIRONMENT["PATH"] = path
-        self.assertIn(f"{self.prefix}/bin/edsc", (project.build_dir / "CMakeCache.txt").read_text())
-
     def test_an_installed_program_of_another_version_is_refused(self) -> None:
         self.built()
         other = self.folder / "other edsc"
@@ -198,31 +173,10 @@ class Ways(Projects):
     # ---- sources ----
 
     @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
-    def test_a_subdirectory_for_a_cortex_m(self) -> None:
-        """edsc is built for the host, independent of the compilers in the environment."""
-        line = blocks("A subdirectory", "cmake")[0].replace("(edsc)", f'("{self.sources}" edsc)')
-        toolchain = self.sources / "cmake" / TOOLCHAIN
-        project = Project(self.folder / "subdirectory-arm", line, build_dir=self.sources / "m3-a")  # as deep as build/test
-        variables = {"CXX": "arm-none-eabi-g++", "CXXFLAGS": "-mcpu=cortex-m3", "CMAKE_TOOLCHAIN_FILE": str(toolchain)}
-        ENVIRONMENT.update(variables)
-        try:
-            self.check_cross(project)
-        finally:
-            for name in variables:
-                del ENVIRONMENT[name]
-
-    @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
     def test_fetch_content_for_a_cortex_m(self) -> None:
         project = Project(self.folder / "fetched-arm", blocks("FetchContent", "cmake")[0], build_dir=self.sources / "m3-b")
         self.check_cross(project, f"-DCMAKE_TOOLCHAIN_FILE={self.sources / 'cmake' / TOOLCHAIN}", "-DEDSC_ARCHIVE=",
                          f"-DFETCHCONTENT_SOURCE_DIR_EDSC={self.sources}")
-
-    def test_fetch_content_of_an_installed_edsc(self) -> None:
-        """The sources are not read."""
-        self.built()
-        project = Project(self.folder / "found", blocks(WITHOUT_COMPILING, "cmake")[0])
-        self.check_host(project, f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DEDSC_ARCHIVE=/does/not/exist.tar.gz")
-        self.assertIn(f"edsc_DIR:PATH={self.prefix}/", (project.build_dir / "CMakeCache.txt").read_text())
 
     def test_fetch_content_without_an_installed_edsc(self) -> None:
         archive = self.archive()
@@ -262,15 +216,6 @@ class Ways(Projects):
                              f"-DCMAKE_TOOLCHAIN_FILE={sources / 'cmake' / TOOLCHAIN}")
             self.assertNotIn("edsc_host", (project.build_dir / "build.ninja").read_text())
 
-    def test_sources_in_a_folder_with_a_blank(self) -> None:
-        """Tests the commands of the build other than compilers."""
-        sources = self.folder / "more sources"
-        copy_sources(sources)
-        run("cmake", "-S", sources, "-B", sources / "build", "-G", "Ninja", "-DEDSC_BUILD_TESTS=OFF",
-            "-DEDSC_BUILD_EXAMPLES=OFF")
-        run("cmake", "--build", sources / "build", "--target", "generator/built_in_templates.cpp")
-        self.assertIn("dictionary.hpp", (sources / "build/generator/built_in_templates.cpp").read_text())
-
     # ---- boards ----
 
     @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
@@ -285,6 +230,65 @@ class Ways(Projects):
         self.check_cross(project, f"-DCMAKE_PREFIX_PATH={self.prefix}", f"-DCMAKE_TOOLCHAIN_FILE={package / TOOLCHAIN}")
         symbols = run("arm-none-eabi-nm", "--numeric-sort", project.build_dir / "valve_firmware.elf")
         self.assertRegex(symbols, r"(?m)^00008[0-9a-f]{3} T reset$")
+
+
+class MoreWays(Projects):
+    """As Ways, with other folders and paths; before a release."""
+
+    @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
+    def test_installed_beside_headers_of_the_host(self) -> None:
+        """The host has headers with the names of all those of newlib and libstdc++. A toolchain file searches only its root."""
+        self.built()
+        prefix = self.folder / "like usr"
+        shutil.copytree(self.prefix, prefix)
+        for name in ("cstdint", "array", "span", "stdint.h", "string.h"):
+            (prefix / "include" / name).write_text("#error a header of the host\n")
+        strict = self.folder / "strict/toolchain.cmake"
+        strict.parent.mkdir()
+        package = prefix / "share/cmake/edsc"
+        strict.write_text(STRICT_TOOLCHAIN.format(toolchain=package / TOOLCHAIN))
+        self.check_cross(Project(self.folder / "strict/project"), f"-DCMAKE_TOOLCHAIN_FILE={strict}", f"-Dedsc_DIR={package}")
+
+    def test_installed_and_found_by_the_path(self) -> None:
+        self.built()
+        project = Project(self.folder / "by path")
+        path = ENVIRONMENT["PATH"]
+        ENVIRONMENT["PATH"] = f"{self.prefix / 'bin'}{os.pathsep}{path}"
+        try:
+            self.check_host(project)
+        finally:
+            ENVIRONMENT["PATH"] = path
+        self.assertIn(f"{self.prefix}/bin/edsc", (project.build_dir / "CMakeCache.txt").read_text())
+
+    @unittest.skipIf(WITHOUT_ARM, WITHOUT_ARM)
+    def test_a_subdirectory_for_a_cortex_m(self) -> None:
+        """edsc is built for the host, independent of the compilers in the environment."""
+        line = blocks("A subdirectory", "cmake")[0].replace("(edsc)", f'("{self.sources}" edsc)')
+        toolchain = self.sources / "cmake" / TOOLCHAIN
+        project = Project(self.folder / "subdirectory-arm", line, build_dir=self.sources / "m3-a")  # as deep as build/test
+        variables = {"CXX": "arm-none-eabi-g++", "CXXFLAGS": "-mcpu=cortex-m3", "CMAKE_TOOLCHAIN_FILE": str(toolchain)}
+        ENVIRONMENT.update(variables)
+        try:
+            self.check_cross(project)
+        finally:
+            for name in variables:
+                del ENVIRONMENT[name]
+
+    def test_fetch_content_of_an_installed_edsc(self) -> None:
+        """The sources are not read."""
+        self.built()
+        project = Project(self.folder / "found", blocks(WITHOUT_COMPILING, "cmake")[0])
+        self.check_host(project, f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DEDSC_ARCHIVE=/does/not/exist.tar.gz")
+        self.assertIn(f"edsc_DIR:PATH={self.prefix}/", (project.build_dir / "CMakeCache.txt").read_text())
+
+    def test_sources_in_a_folder_with_a_blank(self) -> None:
+        """Tests the commands of the build other than compilers."""
+        sources = self.folder / "more sources"
+        copy_sources(sources)
+        run("cmake", "-S", sources, "-B", sources / "build", "-G", "Ninja", "-DEDSC_BUILD_TESTS=OFF",
+            "-DEDSC_BUILD_EXAMPLES=OFF")
+        run("cmake", "--build", sources / "build", "--target", "generator/built_in_templates.cpp")
+        self.assertIn("dictionary.hpp", (sources / "build/generator/built_in_templates.cpp").read_text())
 
 
 class CompiledInAProject(Projects):
