@@ -1,7 +1,7 @@
 /* A network file: its members as forms, its nodes and signals, and what they mean for the bus. */
 class NetworkView {
-  /* `change(changes, isForced)` returns why they are rejected, and `remove(changes)` also asks to force them; `showText(pointer)` shows
-     the lines of a member; `tabs` selects one. */
+  /* `change(changes, isForced)` returns a rejection or null, and `remove(changes)` also asks to force them; `showText(pointer)` shows the
+     lines of a member; `tabs` selects one. */
   constructor({ change, remove, announce, showText, tabs }) {
     Object.assign(this, { tabs });
     this.pointer = '';
