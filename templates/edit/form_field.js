@@ -13,6 +13,7 @@ class FormField {
     this.value = '';
     this.message = make('p', { id: `${id}-message` });
     this.force = forceButton(label, force);
+    this.force.hidden = true;
     this.problem = make('div', { class: 'field-problem', hidden: true }, this.message, this.force);
     this.hint = make('span', { class: 'field-hint', id: `${id}-hint`, text: hint });
     const name = make('label', { for: id, class: isCompact ? 'hidden' : null, text: label });

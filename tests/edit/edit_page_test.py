@@ -292,17 +292,20 @@ class EditPage(unittest.TestCase):
         self.with_gains()
         self.edsc("format", "drive.eds", "--dcf", "--node-id", 5, "-o", "axis.dcf")
         path = self.folder / "axis.dcf"
+        text = path.read_text(encoding="utf-8")
+        self.assertEqual(text.count("DefaultValue=30\n"), 1)
+        path.write_text(text.replace("DefaultValue=30\n", "DefaultValue=30\nParameterValue=31\n"), encoding="utf-8")
         before = path.read_text(encoding="utf-8").splitlines()
         found = self.browse(self.start("axis.dcf"), "value", "2000h", "77")
         self.assertIn("DCF", found["state"])
         self.assertEqual(found["columns"].index("Value"), found["columns"].index("Default") + 1)
         default, value = (found["columns"].index(name) for name in ("Default", "Value"))
         rows = [next(row for row in found[when] if row[0].startswith("2000h:03")) for when in ("before", "after")]
-        self.assertEqual([row[value] for row in rows], ["30", "77"])
+        self.assertEqual([row[value] for row in rows], ["31", "77"])
         self.assertEqual([row[default] for row in rows], ["30", "30"])
         after = path.read_text(encoding="utf-8").splitlines()
         changed = [pair for pair in zip(before, after, strict=True) if pair[0] != pair[1]]
-        self.assertEqual(changed, [("ParameterValue=30", "ParameterValue=77")])
+        self.assertEqual(changed, [("ParameterValue=31", "ParameterValue=77")])
 
     def test_lines_that_cannot_be_read(self) -> None:
         path = self.with_gains()

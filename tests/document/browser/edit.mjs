@@ -1,6 +1,6 @@
 // edit.mjs CHROMIUM URL STORY [ARGUMENT...]: what a user does with the page of edsc edit, by keyboard alone, and what it then shows,
 // as JSON.
-import { readFileSync, writeFileSync } from 'node:fs';
+import { readFileSync, renameSync, writeFileSync } from 'node:fs';
 import { inScheme, violations, watch, withPage } from './browser.mjs';
 
 const [chromium, url, story, ...parameters] = process.argv.slice(2);
@@ -15,6 +15,11 @@ class User {
     await this.page.goto(address, { waitUntil: 'load' });
     await this.until(() => document.querySelector('.grid-row [role=gridcell], .workspace.of-network #section-text > *'));
     await this.frame();
+  }
+
+  // The end of the transitions of buttons, which axe would see.
+  still() {
+    return this.page.evaluate(() => Promise.allSettled(document.getAnimations().map((one) => one.finished)));
   }
 
   frame() {
@@ -370,7 +375,8 @@ const stories = {
     const replace = (from, to) => {
       const text = readFileSync(file, 'utf8');
       if (!text.includes(from)) throw new Error(`${from} is missing`);
-      writeFileSync(file, text.replace(from, to));
+      writeFileSync(`${file}.new`, text.replace(from, to));
+      renameSync(`${file}.new`, file);
     };
     await user.open();
     await user.find(words);
@@ -738,6 +744,7 @@ const stories = {
     };
     await user.open();
     await reject();
+    await user.still();
     const problems = await violations(user.page);
     await user.press('Tab');
     const name = await user.focused();
@@ -767,6 +774,7 @@ const stories = {
     }
     await user.press('Enter');
     await user.until(() => document.querySelector('dialog .danger:not([hidden])'));
+    await user.still();
     const problems = await violations(user.page);
     await user.tabTo('dialog .danger');
     await user.press('Enter');
