@@ -400,7 +400,7 @@ const showConnection = (problem) => {
   if (problem === 'lost') announce('The server does not answer. Edits are not possible.');
 };
 
-const showNetwork = () => networkView?.show(part('network'), part('findings').list, isLocked());
+const showNetwork = () => networkView?.show(part('network'), part('entries').lists, part('findings').list, isLocked());
 
 const showAll = () => {
   showNetwork();

@@ -26,8 +26,10 @@ class NetworkView {
     this.findings = [];
   }
 
-  /* `network`: the part of the state, or null if the text is not a network file. `findings`: their list. */
-  show(network, findings, isLocked) {
+  /* `state`: the part `network`, or null if the text is not a network file. `lists`: of the entries of nodes. `findings`: their
+     list. */
+  show(state, lists, findings, isLocked) {
+    const network = state && { ...state, nodes: state.nodes.map((node) => ({ ...node, objects: lists[node.objects] ?? [] })) };
     this.network = network;
     this.findings = findings;
     byId('workspace').classList.toggle('text-only', !network);
