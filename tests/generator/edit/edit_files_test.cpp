@@ -49,9 +49,9 @@ class RandomEdits {
 
   void run(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) make_step();
-    while (at_ > 0) undo();
+    while (at_ > 0 && !testing::Test::HasFailure()) undo();
     EXPECT_FALSE(is_done("undo"));
-    while (at_ + 1 < states_.size()) redo();
+    while (at_ + 1 < states_.size() && !testing::Test::HasFailure()) redo();
     EXPECT_FALSE(is_done("redo"));
     restart(true);
   }
