@@ -16,6 +16,8 @@ class EditParts {
   void set(std::string name, const Json& part) {
     texts_[std::move(name)] = part.dump(-1, ' ', false, Json::error_handler_t::replace);
   }
+  /// `json`: the text of a part.
+  void set_text(std::string name, std::string json) { texts_[std::move(name)] = std::move(json); }
   [[nodiscard]] const std::map<std::string, std::string>& texts() const { return texts_; }
 
  private:

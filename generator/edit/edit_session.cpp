@@ -320,7 +320,11 @@ bool EditSession::look_at_disk() {
       }
     } else {
       try {
-        merge(saved_, bytes_, disk.bytes);
+        // With conflicts, the bytes have the lines of the other program in place of edits.
+        const bool has_conflicts = !conflicts_.empty();
+        const std::string base = has_conflicts ? conflict_base_ : saved_;
+        const std::string mine = has_conflicts ? conflict_mine_ : bytes_;
+        merge(base, mine, disk.bytes);
       } catch (const EditRejection& rejection) {
         message_ = rejection.message;
       }
@@ -345,6 +349,10 @@ void EditSession::merge(const std::string& base, const std::string& mine, const 
   become(std::move(merged.bytes));
   saved_ = disk;
   conflicts_ = std::move(merged.conflicts);
+  if (!conflicts_.empty()) {
+    conflict_base_ = base;
+    conflict_mine_ = mine;
+  }
   history_.restart({"the edits before the file was changed", bytes_between(saved_, bytes_)});
   message_ = "the file was changed by another program";
   if (bytes_ != saved_) message_ += "; your edits of other lines remain";

@@ -96,6 +96,7 @@ class EditSession {
   EditHistory history_;
   std::optional<StoredEdits> stored_;  ///< of an earlier session, not yet used or discarded
   std::vector<EditConflict> conflicts_;
+  std::string conflict_base_, conflict_mine_;  ///< what was merged; while there are conflicts
   std::string message_;
   std::unique_ptr<const SourceFile> imported_;
 

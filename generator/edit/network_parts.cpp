@@ -50,7 +50,7 @@ class NetworkView {
   NetworkView(const Network& network, const JsonRanges& ranges)
       : network_{network}, ranges_{ranges}, uses_{cob_id_uses(network)}, timing_{network_timing(network, uses_)} {}
 
-  [[nodiscard]] Json view() const {
+  [[nodiscard]] Json view() {
     Json groups = Json::array();
     groups.push_back(group("Network", {}));
     groups.push_back(group("SYNC", {"sync"}));
@@ -65,7 +65,21 @@ class NetworkView {
             {"load", load()}};
   }
 
+  /// The lists of entries that the nodes of the view name by their place.
+  [[nodiscard]] Json entry_lists() const {
+    Json lists = Json::array();
+    for (const EntryNames& names : entry_lists_) {
+      Json list = Json::array();
+      for (const auto& [address, name] : names) {
+        list.push_back({{"text", entry_label(address.first, address.second)}, {"name", name}});
+      }
+      lists.push_back(std::move(list));
+    }
+    return lists;
+  }
+
  private:
+  using EntryNames = std::map<std::pair<std::uint16_t, std::uint8_t>, std::string_view>;
   using Found = std::optional<std::size_t>;  ///< an index of `ranges_`
 
   [[nodiscard]] Found member_of(Found object, std::string_view name) const {
@@ -126,7 +140,7 @@ class NetworkView {
     return list;
   }
 
-  [[nodiscard]] Json nodes() const {
+  [[nodiscard]] Json nodes() {
     Json list = Json::array();
     const Found nodes = ranges_.find({"nodes"});
     if (!nodes || is_list(nodes)) return list;
@@ -156,22 +170,22 @@ class NetworkView {
     return list;
   }
 
-  /// The entries that `set` and signals can name.
-  [[nodiscard]] Json objects_of(std::string_view name) const {
-    Json list = Json::array();
+  /// The place of the list of entries that `set` and signals can name; null without a file. Nodes of one EDS have one
+  /// list.
+  [[nodiscard]] Json objects_of(std::string_view name) {
     const NetworkNode* const node = network_.find(name);
-    if (node == nullptr || !node->has_file()) return list;
-    std::map<std::pair<std::uint16_t, std::uint8_t>, const Entry*> entries;
+    if (node == nullptr || !node->has_file()) return nullptr;
+    EntryNames names;
     const auto add = [&](const std::vector<const Entry*>& some) {
-      for (const Entry* one : some) entries.emplace(std::pair{one->index, one->sub_index}, one);
+      for (const Entry* one : some) names.emplace(std::pair{one->index, one->sub_index}, one->name);
     };
     add(settable_entries(*node));
     add(mappable_entries(*node, canopen::Mappable::tpdo));
     add(mappable_entries(*node, canopen::Mappable::rpdo));
-    for (const auto& [address, entry] : entries) {
-      list.push_back({{"text", entry_label(address.first, address.second)}, {"name", entry->name}});
-    }
-    return list;
+    const auto known = std::ranges::find(entry_lists_, names);
+    const auto place = static_cast<std::size_t>(known - entry_lists_.begin());
+    if (known == entry_lists_.end()) entry_lists_.push_back(std::move(names));
+    return place;
   }
 
   [[nodiscard]] Json signals() const {
@@ -241,6 +255,7 @@ class NetworkView {
   const JsonRanges& ranges_;
   std::vector<CobIdUse> uses_;
   NetworkTiming timing_;
+  std::vector<EntryNames> entry_lists_;
 };
 
 /// The pointer of the member at a position.
@@ -254,7 +269,14 @@ std::string pointer_at(const SourceFile& source, const JsonRanges& ranges, const
 }  // namespace
 
 void add_network(const Network& network, const JsonRanges* ranges, EditParts& parts) {
-  parts.set("network", ranges == nullptr ? Json(nullptr) : NetworkView{network, *ranges}.view());
+  if (ranges == nullptr) {
+    parts.set("network", nullptr);
+    parts.set("entries", {{"lists", Json::array()}});
+    return;
+  }
+  NetworkView view{network, *ranges};
+  parts.set("network", view.view());
+  parts.set("entries", {{"lists", view.entry_lists()}});
 }
 
 Json network_finding_json(const SourceFile& source, const JsonRanges* ranges, const Diagnostic& one) {

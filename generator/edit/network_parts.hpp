@@ -8,7 +8,7 @@
 
 namespace edsc::edit {
 
-/// `network`; `ranges`: the text of the network file, which is a JSON object; null if it is not.
+/// `network` and `entries`; `ranges`: the text of the network file, which is a JSON object; null if it is not.
 void add_network(const Network& network, const JsonRanges* ranges, EditParts& parts);
 
 /// `findings`

@@ -11,6 +11,7 @@
 #include "device/meaning/profiles.hpp"
 #include "device/objects/object_type_name.hpp"
 #include "device/objects/standard_objects.hpp"
+#include "edit/member_text.hpp"
 #include "edit/sheet_parts.hpp"
 #include "eds/number.hpp"
 
@@ -57,48 +58,58 @@ std::string_view type_text(const EntryDescription& described, const Entry* entry
   return type != nullptr ? type->name : described.data_type.text;
 }
 
-Json directions_of(const Entry* entry) {
-  Json directions = Json::array();
-  if (entry == nullptr) return directions;
-  if (canopen::allows(entry->mappable(), canopen::Mappable::rpdo)) directions.push_back("rpdo");
-  if (canopen::allows(entry->mappable(), canopen::Mappable::tpdo)) directions.push_back("tpdo");
-  return directions;
+/// The directions in which PDOs can map an entry, as a JSON list.
+std::string_view directions_of(const Entry* entry) {
+  const bool rpdo = entry != nullptr && canopen::allows(entry->mappable(), canopen::Mappable::rpdo);
+  const bool tpdo = entry != nullptr && canopen::allows(entry->mappable(), canopen::Mappable::tpdo);
+  if (rpdo && tpdo) return R"(["rpdo","tpdo"])";
+  return rpdo ? R"(["rpdo"])" : tpdo ? R"(["tpdo"])" : "[]";
 }
 
-Json described_entry(const OpenSheet& sheet, const EntryDescription& described, std::uint16_t index,
-                     std::optional<std::uint8_t> sub_index, bool is_section_of_object) {
+/// What the file and the device state about an entry.
+struct EntryText {
+  std::string section;  ///< empty for an element of a compact form
+  std::string sub;      ///< two digits; empty for the section of an object with sub-objects
+  MemberText members;
+};
+
+EntryText described_entry(const OpenSheet& sheet, const EntryDescription& described, std::uint16_t index,
+                          std::optional<std::uint8_t> sub_index, bool is_section_of_object) {
   const Entry* const entry = sheet.device && sub_index ? sheet.device->find(index, *sub_index) : nullptr;
-  Json json{{"section", section_of(sheet, index, is_section_of_object ? -1 : int{sub_index.value_or(0)})},
-            {"sub", sub_index ? fmt::format("{:02X}", *sub_index) : ""}};
+  EntryText text{section_of(sheet, index, is_section_of_object ? -1 : int{sub_index.value_or(0)}),
+                 sub_index ? fmt::format("{:02X}", *sub_index) : "",
+                 {}};
+  text.members.add_text("section", text.section).add_text("sub", text.sub);
   for (const EntryColumn& column : entry_columns) {
     const Field& field = described.*column.field;
-    json[std::string{column.member}] = field.text;
+    if (sub_index && column.field == &EntryDescription::data_type) {
+      text.members.add_text(column.member, type_text(described, entry));
+    } else if (sub_index && column.field == &EntryDescription::pdo_mapping) {
+      text.members.add_flag(column.member, number_of(field).value_or(0) != 0);
+    } else {
+      text.members.add_text(column.member, field.text);
+    }
   }
-  if (!sub_index) return json;
-  json["type"] = type_text(described, entry);
-  json["pdo"] = number_of(described.pdo_mapping).value_or(0) != 0;
-  json["mappable"] = directions_of(entry);
-  return json;
+  if (sub_index) text.members.add_json("mappable", directions_of(entry));
+  return text;
 }
 
-/// An element of a compact form, which does not have a section.
-Json compact_entry(const Entry& entry) {
-  return {{"section", ""},
-          {"sub", fmt::format("{:02X}", entry.sub_index)},
-          {"name", entry.name},
-          {"type", entry.type != nullptr ? entry.type->name : std::string_view{}},
-          {"access", canopen::row_of(entry.access).name},
-          {"pdo", entry.pdo_mapping},
-          {"low", ""},
-          {"high", ""},
-          {"default", ""},
-          {"value", ""},
-          {"unit", entry.unit},
-          {"factor", entry.factor},
-          {"mappable", directions_of(&entry)}};
+EntryText compact_entry(const Entry& entry) {
+  EntryText text{"", fmt::format("{:02X}", entry.sub_index), {}};
+  text.members.add_text("section", "")
+      .add_text("sub", text.sub)
+      .add_text("name", entry.name)
+      .add_text("type", entry.type != nullptr ? entry.type->name : std::string_view{})
+      .add_text("access", canopen::row_of(entry.access).name)
+      .add_flag("pdo", entry.pdo_mapping);
+  for (const std::string_view member : {"low", "high", "default", "value"}) text.members.add_text(member, "");
+  text.members.add_text("unit", entry.unit)
+      .add_text("factor", entry.factor)
+      .add_json("mappable", directions_of(&entry));
+  return text;
 }
 
-/// Calls `use` with the JSON of each entry.
+/// Calls `use` with each entry.
 template <class Use>
 void for_each_entry(const OpenSheet& sheet, const ObjectDescription& described, Use use) {
   const Object* const object = sheet.device ? sheet.device->find(described.index) : nullptr;
@@ -116,17 +127,14 @@ void for_each_entry(const OpenSheet& sheet, const ObjectDescription& described, 
   }
 }
 
-std::string key_of(const Json& entry, std::uint16_t index) {
-  const std::string& section = entry["section"].get_ref<const std::string&>();
-  return section.empty() ? fmt::format("{:04X}:{}", index, entry["sub"].get_ref<const std::string&>()) : section;
+std::string key_of(const EntryText& entry, std::uint16_t index) {
+  return entry.section.empty() ? fmt::format("{:04X}:{}", index, entry.sub) : entry.section;
 }
 
-std::string text_of(const Json& entry) { return entry.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
-bool is_known_entry(const KnownEntries* earlier, const Json& entry, std::uint16_t index) {
+bool is_known_entry(const KnownEntries* earlier, const EntryText& entry, std::uint16_t index) {
   if (earlier == nullptr) return false;
   const auto found = earlier->find(key_of(entry, index));
-  return found != earlier->end() && found->second == text_of(entry);
+  return found != earlier->end() && found->second == entry.members.text();
 }
 
 /// The PDOs that map an object.
@@ -150,27 +158,28 @@ std::string kind_of(const OpenSheet& sheet, const ObjectDescription& described) 
   return described.sub_objects.empty() ? "VAR" : "RECORD";
 }
 
-Json object_json(const OpenSheet& sheet, const ObjectDescription& described, const EarlierEntries& earlier,
-                 const MappedBy& mapped) {
-  Json entries = Json::array();
+std::string object_text(const OpenSheet& sheet, const ObjectDescription& described, const EarlierEntries& earlier,
+                        const MappedBy& mapped) {
+  std::string entries;
   bool is_changed = false;
-  for_each_entry(sheet, described, [&](Json entry) {
+  for_each_entry(sheet, described, [&](EntryText entry) {
     const bool is_new = earlier.committed != nullptr && !is_known_entry(earlier.committed, entry, described.index);
     const bool is_of_base = is_known_entry(earlier.base, entry, described.index);
-    const bool is_locked = entry["section"].get_ref<const std::string&>().empty();
     is_changed = is_changed || is_new;
-    entry["locked"] = is_locked;
-    entry["changed"] = is_new;
-    entry["from_base"] = is_of_base;
-    entries.push_back(std::move(entry));
+    entry.members.add_flag("locked", entry.section.empty())
+        .add_flag("changed", is_new)
+        .add_flag("from_base", is_of_base);
+    entries.append(entries.empty() ? "{" : ",{").append(entry.members.text()).append("}");
   });
   const auto labels = mapped.find(described.index);
-  return {{"index", fmt::format("{:04X}", described.index)},
-          {"name", described.parameter_name.text},
-          {"kind", kind_of(sheet, described)},
-          {"mapped_by", labels == mapped.end() ? Json::array() : Json(labels->second)},
-          {"changed", is_changed},
-          {"entries", std::move(entries)}};
+  MemberText object;
+  object.add_text("index", fmt::format("{:04X}", described.index))
+      .add_text("name", described.parameter_name.text)
+      .add_text("kind", kind_of(sheet, described))
+      .add_json("mapped_by", labels == mapped.end() ? "[]" : Json(labels->second).dump())
+      .add_flag("changed", is_changed)
+      .add_json("entries", fmt::format("[{}]", entries));
+  return fmt::format("{{{}}}", object.text());
 }
 
 constexpr std::string_view object_kinds[] = {"VAR", "ARRAY", "RECORD"};
@@ -192,8 +201,9 @@ std::uint16_t profile_of(const OpenSheet& sheet) {
 KnownEntries known_entries(const OpenSheet& sheet) {
   KnownEntries known;
   for (const ObjectDescription& described : sheet.sheet.objects) {
-    for_each_entry(sheet, described,
-                   [&](const Json& entry) { known.emplace(key_of(entry, described.index), text_of(entry)); });
+    for_each_entry(sheet, described, [&](const EntryText& entry) {
+      known.emplace(key_of(entry, described.index), entry.members.text());
+    });
   }
   return known;
 }
@@ -215,7 +225,7 @@ void add_objects(const OpenSheet& sheet, const EarlierEntries& earlier, EditPart
   }
   parts.set("tree", {{"areas", std::move(areas)}});
   for (const ObjectDescription& described : sheet.sheet.objects) {
-    parts.set(fmt::format("object/{:04X}", described.index), object_json(sheet, described, earlier, mapped));
+    parts.set_text(fmt::format("object/{:04X}", described.index), object_text(sheet, described, earlier, mapped));
   }
 }
 

@@ -9,21 +9,6 @@
 namespace edsc {
 namespace {
 
-/// Spells all sections. Returns false after the section of an object whose entries are not spelled so, if `stops`
-/// there.
-bool spell_sections(Document& document, const DataSheet& sheet, const Device& device, bool stops) {
-  for (DocumentSection& section : document.sections) {
-    if (!stops || !is_object_section(section.kind.kind)) {
-      spell_section(section, sheet, device);
-      continue;
-    }
-    const std::vector<DocumentEntry> before = section.entries;
-    spell_section(section, sheet, device);
-    if (section.entries != before) return false;
-  }
-  return true;
-}
-
 void order_document(Document& document, const DataSheet& sheet) {
   renew_object_lists(document, sheet);
   order_sections(document, sheet);
@@ -34,15 +19,23 @@ void order_document(Document& document, const DataSheet& sheet) {
 Document canonical_form(const IniFile& ini, const DataSheet& sheet, const Device& device) {
   Document document = document_of(ini);
   drop_second_sections(document);
-  static_cast<void>(spell_sections(document, sheet, device, false));
+  for (DocumentSection& section : document.sections) spell_section(section, sheet, device);
   order_document(document, sheet);
   return document;
 }
 
 bool is_canonical_form(std::string_view text, const IniFile& ini, const DataSheet& sheet, const Device& device) {
-  Document document = document_of(ini);
+  bool is_spelled = true;
+  const auto spell = [&](DocumentSection& section) {
+    const bool is_of_object = is_object_section(section.kind.kind);
+    const std::vector<DocumentEntry> before = is_of_object ? section.entries : std::vector<DocumentEntry>{};
+    spell_section(section, sheet, device);
+    is_spelled = !is_of_object || section.entries == before;
+    return is_spelled;
+  };
+  Document document = document_of(ini, spell);
+  if (!is_spelled) return false;
   drop_second_sections(document);
-  if (!spell_sections(document, sheet, device, true)) return false;
   order_document(document, sheet);
   return to_text(document) == text;
 }

@@ -19,7 +19,7 @@ class DocumentReader {
  public:
   explicit DocumentReader(const IniFile& ini) : ini_(ini) {}
 
-  Document read() {
+  Document read(const std::function<bool(DocumentSection&)>& change) {
     Document document;
     if (!ini_.sections.empty()) {
       document.head = take_head(ini_.sections.front().line);
@@ -27,6 +27,7 @@ class DocumentReader {
     document.sections.reserve(ini_.sections.size());
     for (const IniSection& section : ini_.sections) {
       document.sections.push_back(read_section(section));
+      if (!change(document.sections.back())) return document;
     }
     document.tail = take(ini_.remarks.size());
     return document;
@@ -124,7 +125,13 @@ class DocumentWriter {
 
 }  // namespace
 
-Document document_of(const IniFile& ini) { return DocumentReader(ini).read(); }
+Document document_of(const IniFile& ini) {
+  return document_of(ini, [](const DocumentSection&) { return true; });
+}
+
+Document document_of(const IniFile& ini, const std::function<bool(DocumentSection&)>& change) {
+  return DocumentReader(ini).read(change);
+}
 
 std::string to_text(const Document& document) { return DocumentWriter().write(document); }
 

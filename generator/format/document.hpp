@@ -1,6 +1,7 @@
 /// An INI file for output: sections and entries with the comments before them.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct Document {
 /// The complete file, in its order. Comments that begin with `#`, and lines that are neither section nor entry, become
 /// `;` comments.
 [[nodiscard]] Document document_of(const IniFile& ini);
+
+/// The same, each section changed by `change`. Nothing is read after a section for which it returns false.
+[[nodiscard]] Document document_of(const IniFile& ini, const std::function<bool(DocumentSection&)>& change);
 
 /// With LF, one blank line between sections, no blanks around `=`.
 [[nodiscard]] std::string to_text(const Document& document);

@@ -1,6 +1,6 @@
 /* The sections of the file that are not objects, as a form: identity once, as the server writes it to both of its places. */
 class DeviceForm {
-  /* `focus(section)` is called with the section of the field that gets the focus. */
+  /* `set(section, key, value, isForced)` returns a rejection or null; `focus(section)` is called with the section of the field that gets the focus. */
   constructor(element, { set, focus }) {
     Object.assign(this, { element, set, focus });
     this.fields = new Map();
@@ -28,7 +28,7 @@ class DeviceForm {
       const title = `form-group-${at}`;
       const fieldOf = (field) => {
         const one = new FormField({ label: field.label, kind: field.kind === 'flag' ? 'check' : 'text', hint: field.object ? `${field.object}` : '',
-          change: (text) => this.set(field.section, field.key, text, field.label) });
+          change: (text, isForced) => this.set(field.section, field.key, text, isForced) });
         one.input.addEventListener('focus', () => this.focus(field.section));
         this.fields.set(`${field.section} ${field.key}`, one);
         return one.element;

@@ -81,7 +81,7 @@ const deviceKeys = [
   ['F1', 'this list'], ['/', 'search'], ['Ctrl+S', 'review and save'], ['Ctrl+Z, Ctrl+Y', 'undo, redo'], ['Alt+1, Alt+2, Alt+3', 'tab Device, Objects, PDOs'],
   ['Ctrl+Alt+N', 'new object'], ['Ctrl+Delete', 'remove the selected objects or entries'],
   ['arrow keys, Page Up, Page Down, Home, End', 'move in the tree, the entries, a frame'], ['Shift+arrow, Ctrl+A', 'select several rows: an edit changes all of them'],
-  ['Enter, F2, or any character', 'edit a cell'], ['Enter, Tab', 'accept'], ['Escape', 'discard the typed or rejected text'],
+  ['Enter, F2, or any character', 'edit a cell'], ['Enter, Tab', 'accept'], ['Ctrl+Enter', 'apply a text that was rejected for its errors'], ['Escape', 'discard the typed or rejected text'],
   ['Delete', 'clear a cell; remove an object from a PDO'], ['Ctrl+C, Ctrl+V', 'copy and paste cells'],
   ['Alt+arrow', 'move an object in a PDO'], ['Enter in the mappable objects', 'map the object'],
 ];

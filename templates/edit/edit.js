@@ -21,18 +21,21 @@ const rejectedText = (rejected) => {
   return [...new Set(texts)].join('; ') || 'rejected';
 };
 
-/* Sends changes as one step. Returns why they are rejected, or an empty text. What can be forced is asked. */
+/* Why an edit is rejected, and whether it can be applied anyway. */
+const rejectionOf = (rejected) => ({ text: rejectedText(rejected), canForce: Boolean(rejected.can_force) });
+
+/* Sends changes as one step. Returns a rejection, or null. What can be forced is asked. */
 const change = async (changes, { isForced = false, canAsk = true } = {}) => {
   const rejected = await client.send('change', { changes, force: isForced });
-  if (!rejected) return '';
+  if (!rejected) return null;
   if (rejected.can_force && canAsk) askToForce(rejected, changes);
-  return rejectedText(rejected);
+  return rejectionOf(rejected);
 };
 
 const askToForce = (rejected, changes) => {
   const force = make('button', { type: 'button', class: 'danger', text: 'Apply anyway', onclick: async () => {
-    const message = await change(changes, { isForced: true, canAsk: false });
-    if (message) dialog.reject(message);
+    const rejection = await change(changes, { isForced: true, canAsk: false });
+    if (rejection) dialog.reject(rejection.text);
     else dialog.close();
   } });
   const dialog = new Dialog({ title: 'This edit was rejected', actions: [force], body: [
@@ -44,38 +47,39 @@ const askToForce = (rejected, changes) => {
 /* A finding is allowed with a reason, which becomes a comment of the file. */
 const askForReason = (fix) => {
   const reason = make('input', { type: 'text', id: 'reason', maxlength: 200, required: true });
-  const allow = make('button', { type: 'button', class: 'main', text: 'Allow', onclick: async () => {
-    const message = reason.value.trim() ? await change(fix.changes.map((one) => ({ ...one, reason: reason.value.trim() })), { canAsk: false })
-      : 'State the reason.';
-    if (message) dialog.reject(message);
+  const allow = make('button', { type: 'button', class: 'main', text: 'Allow', onclick: () => send() });
+  const send = async () => {
+    const text = reason.value.trim();
+    const rejection = text ? await change(fix.changes.map((one) => ({ ...one, reason: text })), { canAsk: false }) : { text: 'State the reason.' };
+    if (rejection) dialog.reject(rejection.text);
     else dialog.close();
-  } });
+  };
+  reason.addEventListener('keydown', (event) => {
+    if (event.key === 'Enter') send();
+  });
   const dialog = new Dialog({ title: fix.title, actions: [allow], body: [make('label', { for: 'reason', text: 'Reason' }), reason] });
   reason.focus();
 };
 
-/* Why a text is rejected, and how it is applied nevertheless. */
-const fieldText = (rejected) => rejectedText(rejected) + (rejected.can_force ? ' (Ctrl+Enter applies it anyway)' : '');
-
-/* Edits of cells are one step. A rejected one does not stop the others. */
+/* Edits of cells are one step. A rejected one does not stop the others. Returns the rejections by the places of the edits. */
 const maxRejected = 50;
 const changeCells = async (edits, isForced) => {
-  const messages = [];
+  const rejections = [];
   let open = edits.map((edit, at) => ({ at, change: { do: 'set', section: edit.row.section, key: edit.key, value: valueOf(edit.key, edit.text) } }));
   for (let count = 0; open.length > 0; ++count) {
     const rejected = await client.send('change', { changes: open.map((one) => one.change), force: isForced });
     if (!rejected) break;
-    const text = fieldText(rejected);
+    const rejection = rejectionOf(rejected);
     if (rejected.index === null || rejected.index === undefined || count === maxRejected) {
-      for (const one of open) messages[one.at] = text;
+      for (const one of open) rejections[one.at] = rejection;
       break;
     }
     const [failed] = open.splice(rejected.index, 1);
-    messages[failed.at] = text;
+    rejections[failed.at] = rejection;
   }
-  const failed = messages.filter(Boolean);
-  if (failed.length) announce(failed[0]);
-  return messages;
+  const first = rejections.find(Boolean);
+  if (first) announce(first.text);
+  return rejections;
 };
 
 const yes = /^(yes|y|1|0x1|true)$/i;
@@ -239,8 +243,8 @@ const removeSelected = async () => {
   const isGridFocused = byId('grid').contains(document.activeElement);
   const sections = isGridFocused && rows.length && rows.every(isSub) ? rows.map((row) => row.section)
     : isGridFocused && rows.length ? [...new Set(rows.map((row) => row.index))] : chosen;
-  const message = await change(sections.map((section) => ({ do: 'remove', section })));
-  announce(message || `${sections.length === 1 ? `${sections[0]} removed` : `${sections.length} removed`}.`);
+  const rejection = await change(sections.map((section) => ({ do: 'remove', section })));
+  announce(rejection?.text ?? `${sections.length === 1 ? `${sections[0]} removed` : `${sections.length} removed`}.`);
 };
 
 /* Findings, links */
@@ -270,17 +274,17 @@ const side = new SidePanel({
   client, announce, open: openPlace,
   fix: async (one) => {
     if (one.needs_reason) return askForReason(one);
-    const message = await change(one.changes);
-    announce(message || `Done: ${one.title}.`);
+    const rejection = await change(one.changes);
+    announce(rejection?.text ?? `Done: ${one.title}.`);
   },
 });
 
 /* Tabs */
 
-const setValue = (section, key, value) => change([{ do: 'set', section, key, value }], { canAsk: false });
+const setValue = (section, key, value, isForced) => change([{ do: 'set', section, key, value }], { isForced, canAsk: false });
 const deviceForm = new DeviceForm(byId('device-form'), { set: setValue, focus: (section) => side.showSection(section) });
 const pdoEditor = new PdoEditor(byId('pdo-editor'), {
-  change: (changes) => change(changes, { canAsk: changes.some((one) => one.do === 'remove') }), announce, showSection: (title) => side.showSection(title),
+  change: (changes, isForced) => change(changes, { isForced, canAsk: changes.some((one) => one.do === 'remove') }), announce, showSection: (title) => side.showSection(title),
 });
 const mainTabs = new Tabs(document.querySelector('.middle > .tabs'), (id) => showTab(id));
 const showTab = (id) => {
@@ -352,8 +356,8 @@ const showBanners = () => {
   const banners = [];
   if (problems[client.problem]) banners.push(banner('bad', problems[client.problem]));
   if (status?.journal) {
-    const { edits, names, time } = status.journal;
-    banners.push(banner('', `${plural(edits, 'edit')} of ${time} ${edits === 1 ? 'was' : 'were'} not saved: ${names.slice(-3).join(', ')}${names.length > 3 ? ', ...' : ''}.`,
+    const { edits, names } = status.journal;
+    banners.push(banner('', `${plural(edits, 'edit')} ${edits === 1 ? 'was' : 'were'} not saved: ${names.slice(-3).join(', ')}${names.length > 3 ? ', ...' : ''}.`,
       make('button', { type: 'button', class: 'main', text: 'Restore', onclick: () => useJournal(true) }),
       make('button', { type: 'button', text: 'Discard', onclick: () => useJournal(false) })));
   }
@@ -396,7 +400,7 @@ const showConnection = (problem) => {
   if (problem === 'lost') announce('The server does not answer. Edits are not possible.');
 };
 
-const showNetwork = () => networkView?.show(part('network'), part('findings').list, isLocked());
+const showNetwork = () => networkView?.show(part('network'), part('entries').lists, part('findings').list, isLocked());
 
 const showAll = () => {
   showNetwork();
@@ -437,10 +441,7 @@ const startNetwork = () => {
   setText(byId('skip'), 'Skip to the drawing');
   byId('skip').href = '#picture';
   side.drawLine = jsonLine;
-  const changeMember = async (changes, isForced) => {
-    const rejected = await client.send('change', { changes, force: isForced });
-    return rejected ? fieldText(rejected) : '';
-  };
+  const changeMember = (changes, isForced) => change(changes, { isForced, canAsk: false });
   networkView = new NetworkView({ change: changeMember, remove: change, announce, showText: (pointer) => side.showSection(pointer), tabs: mainTabs });
   mainTabs.select('tab-network', true);
   side.showSection('');

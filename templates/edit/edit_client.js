@@ -60,9 +60,9 @@ class EditClient {
     }
   }
 
-  /* An answer that is older than the state has nothing new. */
+  /* An answer that is not newer than the state has nothing new: that to a change and that to the waiting request have the same parts. */
   take(update) {
-    if (update.version < this.version) return;
+    if (update.version <= this.version) return;
     this.version = update.version;
     const names = new Set([...Object.keys(update.parts ?? {}), ...(update.removed ?? [])]);
     for (const [name, part] of Object.entries(update.parts ?? {})) this.parts.set(name, part);

@@ -32,6 +32,10 @@ const plural = (count, one, many = `${one}s`) => `${count} ${count === 1 ? one :
 /* A text for screen readers that is not visible. */
 const hidden = (text) => make('span', { class: 'hidden', text });
 
+/* Applies the text of a field or cell for which it is named, which was rejected for the errors that it adds. */
+const forceButton = (name, force) => make('button', { type: 'button', class: 'small danger', text: 'Apply anyway', 'aria-label': `Apply anyway: ${name}`,
+  title: 'Ctrl+Enter in the field', onclick: force });
+
 /* Calls at most once in a frame. */
 const onceInFrame = (action) => {
   let isAsked = false;

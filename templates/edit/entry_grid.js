@@ -1,9 +1,10 @@
 /* Entries as a spreadsheet: a row for each entry, a column for each key. It holds no rules of CANopen: an edit goes to the server,
-   which changes the file or rejects the text. A rejected text remains in its cell, with the message below the row. */
+   which changes the file or rejects the text. A rejected text remains in its cell, with the message below the row, and a button if it can
+   be applied anyway. */
 class EntryGrid {
   /* `columns`: { key, title, width: the least in rem, share: of the rest, kind: 'text' | 'number' | 'choice' | 'fixed',
      choices: () => texts }.
-     `change(edits, isForced)`: sends [{ row, key, text }]; returns the messages of rejected ones, by their places in `edits`. */
+     `change(edits, isForced)`: sends [{ row, key, text }]; returns the rejections, { text, canForce }, by the places in `edits`. */
   constructor(element, { columns, change, activate, act }) {
     Object.assign(this, { element, columns, change, activate, act });
     this.rows = [];
@@ -158,12 +159,19 @@ class EntryGrid {
       setAttributes(element, { role: 'presentation', 'aria-rowindex': null, 'aria-hidden': 'true' });
       return;
     }
-    const id = this.rows[slot.messageOf].id;
-    const lines = this.columns.map((column) => [column, this.rejected.get(`${id} ${column.key}`)]).filter(([, one]) => one);
+    const row = this.rows[slot.messageOf];
+    const lines = this.columns.map((column) => [column, this.rejected.get(this.keyOf(row, column))]).filter(([, one]) => one);
     element.className = 'grid-row message';
     setAttributes(element, { role: 'row', 'aria-rowindex': null, 'aria-hidden': null });
-    element.replaceChildren(make('span', { role: 'gridcell', class: 'message-text', id: `message-${slot.messageOf}` },
-      ...lines.flatMap(([column, one], at) => [at > 0 && ' ', make('b', { text: `${column.title}: ` }), one.message])));
+    const id = `message-${slot.messageOf}`;
+    const shown = element.firstChild;
+    /* A button keeps the focus. */
+    if (shown?.id === id && shown.lines?.length === lines.length && lines.every(([, one], at) => one === shown.lines[at][1])) return;
+    const cell = make('span', { role: 'gridcell', class: 'message-text', id },
+      ...lines.flatMap(([column, one], at) => [at > 0 && ' ', make('b', { text: `${column.title}: ` }), one.message,
+        one.canForce && forceButton(`${column.title} of ${row.label}`, () => this.applyAnyway(row, column))]));
+    cell.lines = lines;
+    element.replaceChildren(cell);
   }
 
   /* The active cell and the selection */
@@ -253,6 +261,7 @@ class EntryGrid {
       this.keyInEditor(event);
       return;
     }
+    if (event.target !== this.element) return;  /* a button of a message */
     const { key, shiftKey, ctrlKey, metaKey, altKey } = event;
     const isControl = ctrlKey || metaKey;
     const { row, column } = this.active;
@@ -422,6 +431,13 @@ class EntryGrid {
     this.send(edits, true);
   }
 
+  /* Sends one rejected text again. */
+  applyAnyway(row, column) {
+    this.element.focus({ preventScroll: true });
+    this.goTo(row.id, column.key);
+    this.send([{ row, column, text: this.rejected.get(this.keyOf(row, column)).text }], true);
+  }
+
   async send(all, isForced = false) {
     const edits = all.filter(({ row, column, text }) => this.rejected.has(this.keyOf(row, column)) || text.trim() !== (row.cells[column.key] ?? ''));
     for (const { row, column } of all) {
@@ -435,11 +451,11 @@ class EntryGrid {
     }
     for (const { row, column, text } of changed) this.sent.set(this.keyOf(row, column), text);
     this.redraw();
-    const messages = await this.change(changed.map(({ row, column, text }) => ({ row, key: column.key, text: text.trim() })), isForced);
+    const rejections = await this.change(changed.map(({ row, column, text }) => ({ row, key: column.key, text: text.trim() })), isForced);
     changed.forEach(({ row, column, text }, at) => {
       const key = this.keyOf(row, column);
       this.sent.delete(key);
-      if (messages[at]) this.rejected.set(key, { id: row.id, text, message: messages[at] });
+      if (rejections[at]) this.rejected.set(key, { id: row.id, text, message: rejections[at].text, canForce: rejections[at].canForce });
     });
     this.layOut();
   }

@@ -1,15 +1,20 @@
-/* A value with its label. It is sent when the input loses the focus or at Enter; a rejected text remains, with a message below. */
+/* A value with its label. It is sent when the input loses the focus or at Enter; a rejected text remains, with a message below, and a
+   button if it can be applied anyway. */
 class FormField {
   static count = 0;
 
-  /* `kind`: 'text', 'choice' with `choices`: [{ value, text }], or 'check'. `change(text, isForced)` returns a message if it is rejected,
-     and is forced by Ctrl+Enter; without `change`, the text remains in the field for its dialog. `complete()` returns the choices of a text, of which a list has several. The label of
-     a compact field is for screen readers. */
-  constructor({ label, kind = 'text', choices = [], hint = '', isWide = false, isCompact = false, isList = false, complete, change }) {
+  /* `kind`: 'text', 'choice' with `choices`: [{ value, text }], or 'check'. `change(text, isForced)` returns a rejection or null, and is
+     forced by Ctrl+Enter or the button; without `change`, the text remains in the field, and `force()` is called by the button.
+     `complete()` returns the choices of a text, of which a list has several. The label of a compact field is for screen readers. */
+  constructor({ label, kind = 'text', choices = [], hint = '', isWide = false, isCompact = false, isList = false, complete, change,
+    force = () => this.send(true) }) {
     Object.assign(this, { label, kind, change });
     const id = `field-${++FormField.count}`;
     this.value = '';
-    this.message = make('p', { class: 'field-message', id: `${id}-message`, hidden: true });
+    this.message = make('p', { id: `${id}-message` });
+    this.force = forceButton(label, force);
+    this.force.hidden = true;
+    this.problem = make('div', { class: 'field-problem', hidden: true }, this.message, this.force);
     this.hint = make('span', { class: 'field-hint', id: `${id}-hint`, text: hint });
     const name = make('label', { for: id, class: isCompact ? 'hidden' : null, text: label });
     if (kind === 'choice') {
@@ -20,9 +25,12 @@ class FormField {
     }
     setAttributes(this.input, { 'aria-describedby': `${id}-hint ${id}-message` });
     this.element = make('div', { class: `field ${kind}${isWide || isCompact ? ' wide' : ''}` },
-      ...(kind === 'check' ? [this.input, name] : [name, this.input]), this.hint, this.message);
+      ...(kind === 'check' ? [this.input, name] : [name, this.input]), this.hint, this.problem);
     if (complete) this.completion = new Completion(this.input, { complete, isList, pick: () => this.send() });
-    this.input.addEventListener('change', () => this.send());
+    /* Tab from a rejected text, to the button, does not send it again. */
+    this.input.addEventListener('change', () => {
+      if (this.text.trim() !== this.rejectedText) this.send();
+    });
     this.input.addEventListener('keydown', (event) => {
       if (event.key === 'Enter' && event.ctrlKey && this.change && this.isRejected) {
         event.preventDefault();
@@ -32,7 +40,7 @@ class FormField {
         this.send();
       } else if (event.key === 'Escape' && kind === 'text' && this.change && (this.isRejected || this.input.value !== this.value)) {
         event.preventDefault();
-        this.reject('');
+        this.reject(null);
         this.show(this.value);
       }
     });
@@ -59,7 +67,7 @@ class FormField {
     const isTyped = document.activeElement === this.input && this.kind === 'text' && this.input.value !== this.value;
     const isNew = text !== this.value;
     this.value = text;
-    if (isNew) this.reject('');
+    if (isNew) this.reject(null);
     if (!isTyped && !this.isRejected) this.show(text);
     if (hint !== undefined) setText(this.hint, hint);
     this.lock(isLocked);
@@ -69,29 +77,37 @@ class FormField {
     this.isLocked = isLocked;
     if (this.kind === 'text') this.input.readOnly = isLocked || document.body.classList.contains('lost');
     else this.input.disabled = isLocked || document.body.classList.contains('lost');
+    this.force.disabled = isLocked || document.body.classList.contains('lost');
     this.element.classList.toggle('locked', isLocked);
   }
 
-  reject(message) {
-    this.isRejected = Boolean(message);
-    setText(this.message, message);
-    this.message.hidden = !message;
-    setAttributes(this.input, { 'aria-invalid': message ? 'true' : null });
+  get isRejected() {
+    return this.rejectedText !== undefined;
+  }
+
+  /* `rejection`: { text, canForce } of the text of the field, or null. */
+  reject(rejection) {
+    this.rejectedText = rejection ? this.text.trim() : undefined;
+    if (!rejection?.canForce && document.activeElement === this.force) this.input.focus();
+    setText(this.message, rejection?.text ?? '');
+    this.force.hidden = !rejection?.canForce;
+    this.problem.hidden = !rejection;
+    setAttributes(this.input, { 'aria-invalid': rejection ? 'true' : null });
   }
 
   async send(isForced = false) {
     const text = this.text.trim();
     if (!this.change || this.isLocked || this.input.readOnly) return;
     if (text === this.value) {
-      this.reject('');
+      this.reject(null);
       this.show(this.value);
       return;
     }
-    if (this.sending === text) return;
+    if (this.sending === text && !isForced) return;
     this.sending = text;
-    const message = await this.change(text, isForced);
+    const rejection = await this.change(text, isForced);
     this.sending = undefined;
-    this.reject(message ?? '');
-    if (!message) this.show(this.value);
+    this.reject(rejection);
+    if (!rejection) this.show(this.value);
   }
 }

@@ -1,7 +1,7 @@
 /* A new node or signal: its fields are sent together. */
 class MemberDialog {
   /* `fields` of the state without pointers; `complete(offers, valueOf)` returns choices, where `valueOf(member)` is a text of this
-     dialog; `add(members, name, isForced)` returns why the item is rejected. `isNamed`: it has a name beside its members. `closed(isAdded)`. */
+     dialog; `add(members, name, isForced)` returns a rejection or null. `isNamed`: it has a name beside its members. `closed(isAdded)`. */
   constructor({ title, fields, isNamed = false, complete, add, closed }) {
     Object.assign(this, { fields, add, isAdded: false });
     const valueOf = (member) => this.inputs.get(member)?.text.trim() ?? '';
@@ -10,7 +10,8 @@ class MemberDialog {
     this.button = make('button', { type: 'button', class: 'main', text: 'Add', onclick: () => this.send() });
     const elements = (isFlag) => fields.filter((field) => (field.kind === 'flag') === isFlag).map((field) => this.inputs.get(field.member).element);
     const flags = elements(true);
-    this.dialog = new Dialog({ title, actions: [this.button], onclose: () => closed(this.isAdded), body: [
+    this.force = make('button', { type: 'button', class: 'danger', text: 'Add anyway', title: 'Ctrl+Enter', hidden: true, onclick: () => this.send(true) });
+    this.dialog = new Dialog({ title, actions: [this.force, this.button], onclose: () => closed(this.isAdded), body: [
       make('div', { class: 'member-fields' }, this.name?.element, ...elements(false), flags.length > 0 && make('div', { class: 'checks' }, ...flags))] });
     this.dialog.element.addEventListener('keydown', (event) => {
       if (event.key === 'Enter' && (event.ctrlKey || event.target.matches('input[type=text]'))) this.send(event.ctrlKey);
@@ -30,11 +31,12 @@ class MemberDialog {
       this.name.input.focus();
       return;
     }
-    this.button.disabled = true;
-    const message = await this.add(this.members, name, isForced);
-    this.button.disabled = false;
-    this.isAdded = !message;
-    if (message) this.dialog.reject(message);
+    this.button.disabled = this.force.disabled = true;
+    const rejection = await this.add(this.members, name, isForced);
+    this.button.disabled = this.force.disabled = false;
+    this.force.hidden = !rejection?.canForce;
+    this.isAdded = !rejection;
+    if (rejection) this.dialog.reject(rejection.text);
     else this.dialog.close();
   }
 }

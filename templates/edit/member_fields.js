@@ -23,7 +23,7 @@ const pointerPart = (key) => key.replaceAll('~', '~0').replaceAll('/', '~1');
 const isWithin = (pointer, outer) => pointer === outer || pointer.startsWith(`${outer}/`);
 
 class MemberFields {
-  /* `set(pointer, value, isForced)` returns why a value is rejected; `focus()` is called when a field gets the focus. */
+  /* `set(pointer, value, isForced)` returns a rejection or null; `focus()` is called when a field gets the focus. */
   constructor({ set, complete, focus, announce }) {
     Object.assign(this, { set, complete, focus, announce });
     this.fields = new Map();
@@ -40,7 +40,7 @@ class MemberFields {
 
   /* The focus stays at the member, also in another object. */
   build(fields) {
-    const focused = [...this.fields.values()].find((one) => one.input === document.activeElement)?.label;
+    const focused = [...this.fields.values()].find((one) => one.element.contains(document.activeElement))?.label;
     this.fields = new Map(fields.map((field) => [field.pointer, this.fieldOf(field)]));
     const elements = (isFlag) => fields.filter((field) => (field.kind === 'flag') === isFlag).map((field) => this.fields.get(field.pointer).element);
     const flags = elements(true);
@@ -52,9 +52,9 @@ class MemberFields {
     const one = memberField(field, {
       complete: this.complete,
       change: async (text, isForced) => {
-        const message = await this.set(field.pointer, memberValue(field, text), isForced);
-        if (message && !one.element.isConnected) this.announce(`${field.member}: ${message}`);
-        return message;
+        const rejection = await this.set(field.pointer, memberValue(field, text), isForced);
+        if (rejection && !one.element.isConnected) this.announce(`${field.member}: ${rejection.text}`);
+        return rejection;
       },
     });
     one.input.addEventListener('focus', () => this.focus());

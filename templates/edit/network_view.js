@@ -1,7 +1,7 @@
 /* A network file: its members as forms, its nodes and signals, and what they mean for the bus. */
 class NetworkView {
-  /* `change(changes, isForced)` returns why they are rejected, and `remove(changes)` also asks to force them; `showText(pointer)` shows
-     the lines of a member; `tabs` selects one. */
+  /* `change(changes, isForced)` returns a rejection or null, and `remove(changes)` also asks to force them; `showText(pointer)` shows the
+     lines of a member; `tabs` selects one. */
   constructor({ change, remove, announce, showText, tabs }) {
     Object.assign(this, { tabs });
     this.pointer = '';
@@ -26,8 +26,10 @@ class NetworkView {
     this.findings = [];
   }
 
-  /* `network`: the part of the state, or null if the text is not a network file. `findings`: their list. */
-  show(network, findings, isLocked) {
+  /* `state`: the part `network`, or null if the text is not a network file. `lists`: of the entries of nodes. `findings`: their
+     list. */
+  show(state, lists, findings, isLocked) {
+    const network = state && { ...state, nodes: state.nodes.map((node) => ({ ...node, objects: lists[node.objects] ?? [] })) };
     this.network = network;
     this.findings = findings;
     byId('workspace').classList.toggle('text-only', !network);

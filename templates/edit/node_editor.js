@@ -1,6 +1,6 @@
 /* The nodes of a network file: their list, and the members and values of one of them. */
 class NodeEditor {
-  /* `change(changes, isForced)`, `remove(changes)` and `set(pointer, value, isForced)` return why they are rejected; `select(node)` is
+  /* `change(changes, isForced)`, `remove(changes)` and `set(pointer, value, isForced)` return a rejection or null; `select(node)` is
      called with the node that is shown. */
   constructor(element, { change, remove, set, announce, complete, showText, select, marksOf }) {
     Object.assign(this, { change, removeItems: remove, announce, showText, select, marksOf });
@@ -88,10 +88,10 @@ class NodeEditor {
 
   rename(node, name, isForced) {
     this.wanted = name;
-    return this.change([{ do: 'rename', pointer: node.pointer, name }], isForced).then((message) => {
-      if (message) this.wanted = undefined;
+    return this.change([{ do: 'rename', pointer: node.pointer, name }], isForced).then((rejection) => {
+      if (rejection) this.wanted = undefined;
       else this.announce(`${node.name} renamed to ${name}.`);
-      return message;
+      return rejection;
     });
   }
 
@@ -107,10 +107,10 @@ class NodeEditor {
       },
       add: async (members, name, isForced) => {
         this.wanted = name;
-        const message = await this.change([{ do: 'add', pointer: `/nodes/${pointerPart(name)}`, members }], isForced);
-        if (message) this.wanted = undefined;
+        const rejection = await this.change([{ do: 'add', pointer: `/nodes/${pointerPart(name)}`, members }], isForced);
+        if (rejection) this.wanted = undefined;
         else this.announce(`${name} added.`);
-        return message;
+        return rejection;
       },
     });
   }
@@ -118,8 +118,8 @@ class NodeEditor {
   async remove() {
     const { node } = this;
     if (!node || this.isLocked) return;
-    const message = await this.removeItems([{ do: 'remove', pointer: node.pointer }]);
-    this.announce(message || `${node.name} removed.`);
+    const rejection = await this.removeItems([{ do: 'remove', pointer: node.pointer }]);
+    this.announce(rejection?.text ?? `${node.name} removed.`);
     if (!document.querySelector('dialog')) this.list.focusOr(this.addButton);
   }
 }

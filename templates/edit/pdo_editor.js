@@ -42,10 +42,10 @@ class PdoEditor {
   }
 
   buildMain() {
-    const set = (key) => (text) => this.send({ [key]: text });
+    const set = (key) => (text, isForced) => this.send({ [key]: text }, isForced);
     this.fields = {
-      kind: new FormField({ label: 'COB-ID', kind: 'choice', choices: PdoEditor.cobIdKinds, change: (kind) => this.setKind(kind) }),
-      value: new FormField({ label: 'CAN-ID or offset', change: (value) => this.send({ cob_id: { kind: this.kind, value } }) }),
+      kind: new FormField({ label: 'COB-ID', kind: 'choice', choices: PdoEditor.cobIdKinds, change: (kind, isForced) => this.setKind(kind, isForced) }),
+      value: new FormField({ label: 'CAN-ID or offset', change: (value, isForced) => this.send({ cob_id: { kind: this.kind, value } }, isForced) }),
       type: new FormField({ label: 'Transmission type', change: set('type') }),
       inhibit: new FormField({ label: 'Inhibit time in ms', change: set('inhibit_ms') }),
       event: new FormField({ label: 'Event timer in ms', change: set('event_ms') }),
@@ -170,7 +170,7 @@ class PdoEditor {
   select(at) {
     if (this.list.length === 0) return;
     this.at = Math.max(0, Math.min(this.list.length - 1, at));
-    for (const field of Object.values(this.fields)) field.reject('');
+    for (const field of Object.values(this.fields)) field.reject(null);
     this.candidate = 0;
     this.showList();
     this.showPdo();
@@ -302,33 +302,33 @@ class PdoEditor {
   }
 
   async arrange(entries, text) {
-    const message = await this.send({ entries: entries.map((one) => one.raw) });
-    this.announce(message ?? text);
+    const rejection = await this.send({ entries: entries.map((one) => one.raw) });
+    this.announce(rejection?.text ?? text);
   }
 
-  setKind(kind) {
-    if (kind === 'predefined' || kind === 'disabled') return this.send({ cob_id: { kind } });
+  setKind(kind, isForced) {
+    if (kind === 'predefined' || kind === 'disabled') return this.send({ cob_id: { kind } }, isForced);
     /* The number is typed next. */
     this.kind = kind;
     this.fields.value.element.hidden = false;
     this.fields.value.input.focus();
     this.fields.value.input.select();
-    return this.send({ cob_id: { kind, value: this.pdo.cob_id.text } });
+    return this.send({ cob_id: { kind, value: this.pdo.cob_id.text } }, isForced);
   }
 
-  /* Returns why the change is rejected. */
-  send(values) {
+  /* Returns a rejection or null. */
+  send(values, isForced) {
     const { direction, number } = this.pdo;
-    return this.change([{ do: 'pdo', direction, number, ...values }]);
+    return this.change([{ do: 'pdo', direction, number, ...values }], isForced);
   }
 
   async add(direction) {
     const number = this.next[direction];
     this.wanted = `${direction}${number}`;
-    const message = await this.change([{ do: 'pdo', direction, number, cob_id: { kind: 'predefined' }, type: '255', entries: [] }]);
-    if (message) {
+    const rejection = await this.change([{ do: 'pdo', direction, number, cob_id: { kind: 'predefined' }, type: '255', entries: [] }]);
+    if (rejection) {
       this.wanted = undefined;
-      this.announce(message);
+      this.announce(rejection.text);
       return;
     }
     this.announce(`${direction.toUpperCase()} ${number} added.`);
@@ -338,8 +338,8 @@ class PdoEditor {
   async remove() {
     const { pdo } = this;
     if (!pdo) return;
-    const message = await this.change([pdo.communication, pdo.mapping].filter(Boolean).map((section) => ({ do: 'remove', section })));
-    this.announce(message ?? `${PdoEditor.nameOf(pdo)} removed.`);
+    const rejection = await this.change([pdo.communication, pdo.mapping].filter(Boolean).map((section) => ({ do: 'remove', section })));
+    this.announce(rejection?.text ?? `${PdoEditor.nameOf(pdo)} removed.`);
     this.items.focus();
   }
 }

@@ -1,17 +1,17 @@
 /* The values of entries that a node has besides its EDS or DCF, as rows of entry and value. */
 class SetValues {
-  /* `change(changes, isForced)` and `remove(changes)` return why they are rejected. */
+  /* `change(changes, isForced)` and `remove(changes)` return a rejection or null. */
   constructor({ change, remove, announce, focus }) {
     Object.assign(this, { change, removeItems: remove, announce, focus });
     this.rows = new Map();
     this.body = make('tbody');
     const complete = () => this.node.objects.filter((one) => !this.node.values.some((value) => value.entry === one.text)).map(({ text, name }) => ({ text, hint: name }));
     this.entry = new FormField({ label: 'New entry', isCompact: true, complete });
-    this.value = new FormField({ label: 'Value of the new entry', isCompact: true });
+    this.value = new FormField({ label: 'Value of the new entry', isCompact: true, force: () => this.add(true) });
     this.addButton = make('button', { type: 'button', class: 'small', text: 'Add', 'aria-label': 'Add the entry', onclick: () => this.add() });
     const last = make('tr', {}, ...[this.entry.element, this.value.element, this.addButton].map((one) => make('td', {}, one)));
     last.addEventListener('keydown', (event) => {
-      if (event.key !== 'Enter' || event.target === this.addButton) return;
+      if (event.key !== 'Enter' || event.target.localName === 'button') return;
       event.preventDefault();
       if (!event.ctrlKey && this.entry.text.trim() && event.target === this.entry.input) this.value.input.focus();
       else this.add(event.ctrlKey);
@@ -43,7 +43,7 @@ class SetValues {
   clear() {
     for (const field of [this.entry, this.value]) {
       field.show('');
-      field.reject('');
+      field.reject(null);
     }
   }
 
@@ -61,23 +61,23 @@ class SetValues {
 
   async add(isForced = false) {
     const entry = this.entry.text.trim(), value = this.value.text.trim();
-    this.entry.reject(entry ? '' : 'Type an entry, such as 6083h.');
-    this.value.reject(value || !entry ? '' : 'Type a value.');
+    this.entry.reject(entry ? null : { text: 'Type an entry, such as 6083h.' });
+    this.value.reject(value || !entry ? null : { text: 'Type a value.' });
     if (!entry || !value) {
       (entry ? this.value : this.entry).input.focus();
       return;
     }
-    const message = await this.change([{ do: 'set', pointer: `${this.node.pointer}/set/${pointerPart(entry)}`, value }], isForced);
-    this.value.reject(message);
-    if (message) return;
+    const rejection = await this.change([{ do: 'set', pointer: `${this.node.pointer}/set/${pointerPart(entry)}`, value }], isForced);
+    this.value.reject(rejection);
+    if (rejection) return;
     this.clear();
     this.entry.input.focus();
     this.announce(`${entry} added.`);
   }
 
   async remove(pointer, entry) {
-    const message = await this.removeItems([{ do: 'remove', pointer }]);
-    this.announce(message || `${entry} removed.`);
+    const rejection = await this.removeItems([{ do: 'remove', pointer }]);
+    this.announce(rejection?.text ?? `${entry} removed.`);
     if (!document.querySelector('dialog')) this.entry.input.focus();
   }
 

@@ -1,6 +1,6 @@
 /* The signals of a network file: their list, and the members of one of them. */
 class SignalEditor {
-  /* `change(changes, isForced)`, `remove(changes)` and `set(pointer, value, isForced)` return why they are rejected; `complete(offers, from)`
+  /* `change(changes, isForced)`, `remove(changes)` and `set(pointer, value, isForced)` return a rejection or null; `complete(offers, from)`
      returns choices for a signal of the node `from`. */
   constructor(element, { change, remove, set, announce, complete, showText, marksOf }) {
     Object.assign(this, { change, removeItems: remove, announce, complete, showText, marksOf });
@@ -85,18 +85,18 @@ class SignalEditor {
   /* Sends changes after which the signal at `wanted` is selected. */
   async changeAndSelect(changes, wanted, isForced) {
     this.wanted = wanted;
-    const message = await this.change(changes, isForced);
+    const rejection = await this.change(changes, isForced);
     this.wanted = undefined;
-    return message;
+    return rejection;
   }
 
   async moveBy(step) {
     const { signal } = this;
     const to = this.list.at + step;
     if (!signal || this.isLocked || !this.signals[to]) return;
-    const message = await this.changeAndSelect([{ do: 'move', pointer: signal.pointer, to }], to);
-    if (!message) this.showText(this.signal.pointer);
-    this.announce(message || `${signal.title} is signal ${to + 1} of ${this.signals.length}.`);
+    const rejection = await this.changeAndSelect([{ do: 'move', pointer: signal.pointer, to }], to);
+    if (!rejection) this.showText(this.signal.pointer);
+    this.announce(rejection?.text ?? `${signal.title} is signal ${to + 1} of ${this.signals.length}.`);
   }
 
   add() {
@@ -110,9 +110,9 @@ class SignalEditor {
         this.showText(this.signal.pointer);
       },
       add: async (members, name, isForced) => {
-        const message = await this.changeAndSelect([{ do: 'add', pointer: '/signals/-', members }], this.signals.length, isForced);
-        if (!message) this.announce(`${this.signal?.title} added.`);
-        return message;
+        const rejection = await this.changeAndSelect([{ do: 'add', pointer: '/signals/-', members }], this.signals.length, isForced);
+        if (!rejection) this.announce(`${this.signal?.title} added.`);
+        return rejection;
       },
     });
   }
@@ -120,8 +120,8 @@ class SignalEditor {
   async remove() {
     const { signal } = this;
     if (!signal || this.isLocked) return;
-    const message = await this.removeItems([{ do: 'remove', pointer: signal.pointer }]);
-    this.announce(message || `${signal.title} removed.`);
+    const rejection = await this.removeItems([{ do: 'remove', pointer: signal.pointer }]);
+    this.announce(rejection?.text ?? `${signal.title} removed.`);
     if (!document.querySelector('dialog')) this.list.focusOr(this.addButton);
   }
 }

@@ -186,7 +186,7 @@ class EditPage(unittest.TestCase):
         self.server.wait()
         self.assertEqual(path.read_bytes(), before)
         found = self.browse(self.start("drive.eds"), "restore")
-        self.assertIn("1 edit", found["offered"][0])
+        self.assertIn("1 edit was not saved: ", found["offered"][0])
         self.assertIn("Unsaved name", found["offered"][0])
         self.assertTrue(found["isLocked"])
         self.assertEqual(found["after"], [])
@@ -276,6 +276,60 @@ class EditPage(unittest.TestCase):
         self.assertNotEqual(found["before"], found["after"])
         self.edsc("check", "--strict", path)
 
+    def test_finding_that_is_allowed(self) -> None:
+        path = self.with_gains()
+        text = path.read_text(encoding="utf-8").replace("[2000sub1]\n", "[2000sub1]\nUnknownKey=1\n")
+        path.write_text(text, encoding="utf-8")
+        found = self.browse(self.start("drive.eds"), "reason", "the tool of the vendor needs it")
+        self.assertTrue(found["name"].startswith("Allow unknown-key here"), found["name"])
+        self.assertIn("reason", found["asked"])
+        self.assertNotEqual(found["before"], found["after"])
+        comment = "; edsc: allow unknown-key - the tool of the vendor needs it\n"
+        self.assertEqual(path.read_text(encoding="utf-8"), text.replace("UnknownKey", f"{comment}UnknownKey"))
+        self.edsc("check", "--strict", path)
+
+    def test_values_of_a_dcf(self) -> None:
+        self.with_gains()
+        self.edsc("format", "drive.eds", "--dcf", "--node-id", 5, "-o", "axis.dcf")
+        path = self.folder / "axis.dcf"
+        text = path.read_text(encoding="utf-8")
+        self.assertEqual(text.count("DefaultValue=30\n"), 1)
+        path.write_text(text.replace("DefaultValue=30\n", "DefaultValue=30\nParameterValue=31\n"), encoding="utf-8")
+        before = path.read_text(encoding="utf-8").splitlines()
+        found = self.browse(self.start("axis.dcf"), "value", "2000h", "77")
+        self.assertIn("DCF", found["state"])
+        self.assertEqual(found["columns"].index("Value"), found["columns"].index("Default") + 1)
+        default, value = (found["columns"].index(name) for name in ("Default", "Value"))
+        rows = [next(row for row in found[when] if row[0].startswith("2000h:03")) for when in ("before", "after")]
+        self.assertEqual([row[value] for row in rows], ["31", "77"])
+        self.assertEqual([row[default] for row in rows], ["30", "30"])
+        after = path.read_text(encoding="utf-8").splitlines()
+        changed = [pair for pair in zip(before, after, strict=True) if pair[0] != pair[1]]
+        self.assertEqual(changed, [("ParameterValue=31", "ParameterValue=77")])
+
+    def test_lines_that_cannot_be_read(self) -> None:
+        path = self.with_gains()
+        text = path.read_text(encoding="utf-8").replace("[2000sub1]\n", "<<< what is this\n[2000sub1]\n").replace("SubNumber=4", "SubNumber=4\n=")
+        path.write_text(text, encoding="utf-8")
+        found = self.browse(self.start("drive.eds"), "unreadable", "2000h", "Factors")
+        self.assertEqual(found["problems"], [])
+        self.assertEqual(len(found["banners"]), 1)
+        self.assertIn("2 lines cannot be read and are kept", found["banners"][0])
+        self.assertIn("<<< what is this", found["read"])
+        self.assertEqual(found["after"], found["banners"])
+        self.assertEqual(path.read_text(encoding="utf-8"), text.replace("ParameterName=Gains", "ParameterName=Factors"))
+
+    def test_cell_that_is_applied_anyway(self) -> None:
+        path = self.with_gains()
+        text = path.read_text(encoding="utf-8")
+        found = self.browse(self.start("drive.eds"), "anywayCell", "2000h", "Default", "70000")
+        self.assertEqual(found["name"], "Apply anyway: Default of 2000h:03 Gain 3")
+        self.assertIn("Default: ", found["message"])
+        self.assertNotIn("unsaved", found["state"])
+        self.assertEqual(found["problems"], [])
+        self.assertEqual(found["focus"], "grid")
+        self.assertEqual(path.read_text(encoding="utf-8"), text.replace("DefaultValue=30", "DefaultValue=70000"))
+
     def test_drag_and_drop(self) -> None:
         self.new("drive.eds")
         for index in (0x2000, 0x2001):
@@ -352,6 +406,21 @@ class EditPage(unittest.TestCase):
         for line in before.splitlines():
             if '"from": "encoder"' in line:
                 self.assertIn(line, path.read_text(encoding="utf-8").splitlines())
+
+    def test_member_that_is_applied_anyway(self) -> None:
+        path = self.with_plant()
+        text = path.read_text(encoding="utf-8")
+        found = self.browse(self.start("line.json"), "anyway", "2")
+        self.assertEqual(found["problems"], [])
+        self.assertEqual(found["name"], "Apply anyway: node_id")
+        self.assertEqual(found["focus"], "2", "the field has the focus again")
+        self.assertEqual(path.read_text(encoding="utf-8"), text.replace('"node_id": 127', '"node_id": 2'))
+
+    def test_node_that_is_added_anyway(self) -> None:
+        self.with_plant()
+        found = self.browse(self.start("line.json"), "anywayNode", "valve", json.dumps({"node_id": "5", "eds": "can-2057c.eds"}))
+        self.assertEqual(found["problems"], [])
+        self.assertIn("valve", found["nodes"])
 
     def test_text_and_focus_in_a_network(self) -> None:
         self.with_plant()

@@ -1,6 +1,6 @@
 // edit.mjs CHROMIUM URL STORY [ARGUMENT...]: what a user does with the page of edsc edit, by keyboard alone, and what it then shows,
 // as JSON.
-import { readFileSync, writeFileSync } from 'node:fs';
+import { readFileSync, renameSync, writeFileSync } from 'node:fs';
 import { inScheme, violations, watch, withPage } from './browser.mjs';
 
 const [chromium, url, story, ...parameters] = process.argv.slice(2);
@@ -15,6 +15,11 @@ class User {
     await this.page.goto(address, { waitUntil: 'load' });
     await this.until(() => document.querySelector('.grid-row [role=gridcell], .workspace.of-network #section-text > *'));
     await this.frame();
+  }
+
+  // The end of the transitions of buttons, which axe would see.
+  still() {
+    return this.page.evaluate(() => Promise.allSettled(document.getAnimations().map((one) => one.finished)));
   }
 
   frame() {
@@ -370,7 +375,8 @@ const stories = {
     const replace = (from, to) => {
       const text = readFileSync(file, 'utf8');
       if (!text.includes(from)) throw new Error(`${from} is missing`);
-      writeFileSync(file, text.replace(from, to));
+      writeFileSync(`${file}.new`, text.replace(from, to));
+      renameSync(`${file}.new`, file);
     };
     await user.open();
     await user.find(words);
@@ -492,6 +498,74 @@ const stories = {
     const found = { name, before, after: await user.text('#findings-count'), told: await user.text('#announcements') };
     await user.save();
     return found;
+  },
+
+  // A finding is allowed with a reason.
+  async reason(user) {
+    await user.open();
+    const before = await user.text('#findings-count');
+    await user.tabTo('#findings .small');
+    for (let at = 0; at < 20 && !(await user.focused()).startsWith('Allow'); ++at) await user.press('Tab');
+    const name = await user.focused();
+    await user.press('Enter');
+    await user.dialog();
+    await user.press('Enter');
+    await user.until(() => document.querySelector('.dialog-message').textContent);
+    const asked = await user.text('.dialog-message');
+    await user.type(parameters[0]);
+    await user.press('Enter');
+    await user.noDialog();
+    await user.until((text) => document.getElementById('findings-count').textContent !== text, before);
+    return { name, asked, before, after: await user.text('#findings-count'), review: await user.save() };
+  },
+
+  // The ParameterValue of a DCF, beside its DefaultValue.
+  async value(user) {
+    const [words, text] = parameters;
+    await user.open();
+    await user.find(words);
+    const columns = await user.page.$$eval('[role=columnheader]', (all) => all.map((one) => one.textContent));
+    await user.press('Control+End');
+    await user.toColumn('Value');
+    const before = await user.rows();
+    await user.type(text);
+    await user.press('Enter');
+    await user.until(() => document.getElementById('file-state').textContent.includes('1 unsaved edit'));
+    return { columns, before, after: await user.rows(), state: await user.text('#file-state'), review: await user.save() };
+  },
+
+  // Lines that cannot be read are shown.
+  async unreadable(user) {
+    await user.open();
+    const banners = await user.banners();
+    const problems = await violations(user.page);
+    await user.tabTo('.banner pre', 'Shift+Tab');
+    const read = await user.focused();
+    await user.find(parameters[0]);
+    await user.toColumn('Name');
+    await user.type(parameters[1]);
+    await user.press('Enter');
+    await user.edited(parameters[1]);
+    await user.save();
+    return { banners, problems, read, after: await user.banners() };
+  },
+
+  // A cell that was rejected is applied anyway by the button of its message.
+  async anywayCell(user) {
+    const [words, column, text] = parameters;
+    await user.open();
+    await user.find(words);
+    await user.press('Control+End');
+    await user.toColumn(column);
+    await user.type(text);
+    await user.press('Enter');
+    await user.tabTo('.message-text .danger');
+    const found = { name: await user.focused(), message: await user.text('.message-text'), state: await user.text('#file-state'),
+      problems: await violations(user.page) };
+    await user.press('Enter');
+    await user.until(() => document.getElementById('file-state').textContent.includes('1 unsaved edit'));
+    await user.until(() => !document.querySelector('.rejected'));
+    return { ...found, rows: await user.rows(), focus: await user.page.evaluate(() => document.activeElement.id), review: await user.save() };
   },
 
   // By mouse: an object is dragged into the frame, and then before the first one.
@@ -655,6 +729,57 @@ const stories = {
     const name = await user.page.evaluate(() => document.activeElement.value);
     const review = await user.save();
     return { before, withNode, read, rejected, state, forced, withSignal, undone, moved, name, signals: await user.items('signals'), review };
+  },
+
+  // A field that was rejected is applied anyway by its button: with the keyboard, and with the mouse.
+  async anyway(user) {
+    const [used] = parameters;
+    const isApplied = () => user.until(() => !document.getElementById('findings-count').textContent.startsWith('0 errors'));
+    const reject = async () => {
+      await user.press('Alt+2');
+      await user.tabToLabel('node_id');
+      await user.replace(used);
+      await user.press('Enter');
+      await user.until(() => document.querySelector('.field-problem .danger:not([hidden])')?.checkVisibility());
+    };
+    await user.open();
+    await reject();
+    await user.still();
+    const problems = await violations(user.page);
+    await user.press('Tab');
+    const name = await user.focused();
+    await user.press('Enter');
+    await isApplied();
+    await user.until(() => !document.querySelector('.field-problem:not([hidden])'));
+    const focus = await user.page.evaluate(() => document.activeElement.value);
+    await user.tabTo('#nodes', 'Shift+Tab');
+    await user.press('Control+z');
+    await user.until(() => document.getElementById('undo').disabled);
+    await reject();
+    await user.page.click('.field-problem .danger:not([hidden])');
+    await isApplied();
+    return { problems, name, focus, review: await user.save() };
+  },
+
+  // A new node that was rejected is added anyway.
+  async anywayNode(user) {
+    const [node, members] = parameters.map((one, at) => (at === 1 ? Object.entries(JSON.parse(one)) : one));
+    await user.open();
+    await user.press('Alt+2', 'Control+Alt+n');
+    await user.dialog();
+    for (const [label, text] of [['name', node], ...members]) {
+      await user.tabToLabel(label);
+      await user.replace(text);
+      await user.pick();
+    }
+    await user.press('Enter');
+    await user.until(() => document.querySelector('dialog .danger:not([hidden])'));
+    await user.still();
+    const problems = await violations(user.page);
+    await user.tabTo('dialog .danger');
+    await user.press('Enter');
+    await user.noDialog();
+    return { problems, nodes: await user.items('nodes') };
   },
 
   // The text of a new signal and of one that is moved; where the focus is after the last signal and node are removed.

@@ -17,6 +17,7 @@
 #include "backend/json/device_view.hpp"
 #include "change/apply_changes.hpp"
 #include "change/sheet_text.hpp"
+#include "support/sheet_files.hpp"
 #include "text/source_file.hpp"
 
 namespace edsc {
@@ -314,18 +315,6 @@ class FileChanges {
   std::size_t made_ = 0;
 };
 
-std::vector<std::string> files_in(const fs::path& folder) {
-  std::vector<std::string> files;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
-    std::string extension = entry.path().extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-    if (entry.is_regular_file() && (extension == ".eds" || extension == ".dcf")) files.push_back(entry.path().string());
-  }
-  std::ranges::sort(files);
-  return files;
-}
-
 void change_files(const std::vector<std::string>& files) {
   std::size_t made = 0;
   for (const std::string& path : files) {
@@ -341,8 +330,8 @@ void change_files(const std::vector<std::string>& files) {
 
 TEST(ChangeFiles, OfTheRepository) {
   const fs::path root = EDSC_SOURCE_DIR;
-  change_files(files_in(root / "eds"));
-  change_files(files_in(root / "tests/fixtures"));
+  change_files(sheet_files_in(root / "eds"));
+  change_files(sheet_files_in(root / "tests/fixtures"));
 }
 
 TEST(ChangeFiles, OfACorpus) {
@@ -353,7 +342,7 @@ TEST(ChangeFiles, OfACorpus) {
     std::cout << "SKIPPED: no corpus; set EDSC_CORPUS to its folder\n";
     return;
   }
-  std::vector<std::string> files = files_in(corpus);
+  std::vector<std::string> files = sheet_files_in(corpus);
   if (named == nullptr) {
     std::vector<std::string> some;
     for (std::size_t i = 0; i < files.size(); i += 24) some.push_back(files[i]);

@@ -100,6 +100,20 @@ class EditNetworkTest : public ::testing::Test {
   TemporaryFolder folder_{"edit_network"};
 };
 
+TEST_F(EditNetworkTest, NodesOfOneEdsHaveOneListOfEntries) {
+  write(plant);
+  EditSession session = open();
+  const nlohmann::json known = part(session, "entries");
+  const nlohmann::json outputs = part(session, "network")["nodes"][1];
+  const std::string eds = field(outputs["fields"], "eds")["value"];
+  const auto answer =
+      change(session, {{{"do", "add"}, {"pointer", "/nodes/more"}, {"members", {{"node_id", "9"}, {"eds", eds}}}}});
+  ASSERT_FALSE(answer.contains("rejected")) << answer;
+  EXPECT_EQ(part(session, "network")["nodes"].back()["objects"], outputs["objects"]);
+  EXPECT_EQ(part(session, "entries"), known);
+  EXPECT_FALSE(answer["parts"].contains("entries"));
+}
+
 TEST_F(EditNetworkTest, ShowsTheMembersOfTheFile) {
   write(plant);
   const EditSession session = open();
@@ -119,8 +133,9 @@ TEST_F(EditNetworkTest, ShowsTheMembersOfTheFile) {
   EXPECT_EQ(network["nodes"][1]["name"], "outputs");
   EXPECT_EQ(field(network["nodes"][0]["fields"], "master")["value"], "1");
   EXPECT_EQ(field(network["nodes"][0]["fields"], "eds")["present"], false);
-  EXPECT_TRUE(network["nodes"][0]["objects"].empty());
-  const auto& objects = network["nodes"][2]["objects"];
+  EXPECT_TRUE(network["nodes"][0]["objects"].is_null());
+  const auto lists = part(session, "entries")["lists"];
+  const auto& objects = lists.at(network["nodes"][2]["objects"].get<std::size_t>());
   EXPECT_NE(std::ranges::find(objects, "6000h:01", [](const auto& one) { return one["text"]; }), objects.end());
   EXPECT_EQ(network["signals"][0]["title"], "inputs.6000h:01 to control");
   EXPECT_EQ(network["signals"][1]["title"], "control to outputs.6200h:01");

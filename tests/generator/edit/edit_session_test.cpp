@@ -345,6 +345,19 @@ TEST_F(EditSessionTest, SameLineIsAConflict) {
   }
 }
 
+TEST_F(EditSessionTest, EditsRemainWhileTheFileIsWrittenInParts) {
+  write("a.eds", small_eds);
+  EditSession session = open();
+  change(session, {set("2000", "DefaultValue", "17")});
+  const std::string theirs = replaced(small_eds, "ParameterName=Error register", "ParameterName=Errors");
+  for (const std::size_t written : {std::size_t{0}, theirs.find("[2000]"), theirs.size()}) {
+    write("a.eds", theirs.substr(0, written));
+    EXPECT_TRUE(session.look_at_disk());
+  }
+  EXPECT_TRUE(part(session, "status")["conflicts"].empty());
+  EXPECT_EQ(session.bytes(), replaced(theirs, "0x0010", "0x0011"));
+}
+
 TEST_F(EditSessionTest, KeepsUnreadableLines) {
   const std::string bytes = replaced(small_eds, "[2000]\r\n", "what is this\r\n[2000]\r\n");
   write("a.eds", bytes);
