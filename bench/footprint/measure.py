@@ -402,7 +402,7 @@ def page(bench: Bench) -> str:
         return table(unit, "flash", "RAM", rows=[(what, size.flash, size.ram) for what, size in rows])
 
     return (HERE / "page.md").read_text(encoding="utf-8").format(
-        **tables(bench),
+        **tables(bench), rebuilt=other_stacks.rebuilt_text(),
         parts=table("instructions", "edsc", rows=[(what, f"{count:g}") for what, count in parts(bench)]),
         services=with_bytes("service", services(bench)), objects=with_bytes("object", objects(bench)),
         twins="\n".join(twins.table(bench.edsc, bench.runtime)))

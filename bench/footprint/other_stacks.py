@@ -32,7 +32,6 @@ QUOTED: dict[str, dict[str, tuple[str, float]]] = {
         "segmented SDO upload, per byte": (NODE, 36),
         "segmented SDO download, per byte": (NODE, 36),
         "4 RPDOs, SYNC, 4 TPDOs, static mapping": (NODE, 1651),
-        "4 RPDOs, SYNC, 4 TPDOs, dynamic mapping": (NODE, 1651),
         "RPDO for the next SYNC": (UNNAMED, 294),
         "`on_time` with nothing due": (UNNAMED, 32),
     },
@@ -42,7 +41,6 @@ QUOTED: dict[str, dict[str, tuple[str, float]]] = {
         "expedited SDO download of a new value, static mapping": (STACK, 381),
         "expedited SDO download of a new value, dynamic mapping": (STACK, 381),
         "4 RPDOs, SYNC, 4 TPDOs, static mapping": (NODE, 2297),
-        "4 RPDOs, SYNC, 4 TPDOs, dynamic mapping": (NODE, 2297),
         "`on_time` with nothing due": (UNNAMED, 34),
     },
 }
@@ -60,6 +58,11 @@ class Other:
 def rebuilt() -> dict[str, dict[str, Any]]:
     """Version, commit, date and figures of each rebuilt stack."""
     return json.loads(REBUILT.read_text(encoding="utf-8")) if REBUILT.exists() else {}
+
+
+def rebuilt_text() -> str:
+    """Name, version and date of the rebuilt stacks."""
+    return " and ".join(f"{stack} {made['version']} on {made['date']}" for stack, made in rebuilt().items())
 
 
 def best(kind: str, row: str) -> Other | None:

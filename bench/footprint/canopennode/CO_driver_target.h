@@ -23,7 +23,7 @@
 #define CO_CONFIG_EM (CO_CONFIG_EM_PRODUCER | CO_CONFIG_EM_HISTORY)
 // The application reports its error with the first status bit of the manufacturer.
 #define CO_CONFIG_ERR_CONDITION_CURRENT ((em->errorStatusBits[6] & 1U) != 0U)
-#define CO_CONFIG_PDO                                                                                         \
+#define CO_CONFIG_PDO                                                                                            \
   (CO_CONFIG_RPDO_ENABLE | CO_CONFIG_TPDO_ENABLE | CO_CONFIG_RPDO_TIMERS_ENABLE | CO_CONFIG_TPDO_TIMERS_ENABLE | \
    CO_CONFIG_PDO_SYNC_ENABLE | PEER_MAPPING)
 #ifdef PEER_BLOCK

@@ -50,7 +50,8 @@ void expect(const char* step, const PeerMessage& message, std::initializer_list<
   print(step, has_sent(expected) ? 1 : 0, 1);
 }
 
-void expect_sdo(const char* step, std::uint32_t first, std::uint32_t second, std::uint32_t answer, std::uint32_t value) {
+void expect_sdo(const char* step, std::uint32_t first, std::uint32_t second, std::uint32_t answer,
+                std::uint32_t value) {
   expect(step, {0x605, 8, first, second}, {{0x585, 8, answer, value}});
 }
 

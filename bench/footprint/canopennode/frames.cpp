@@ -16,7 +16,8 @@ std::uint32_t sent = 0;
 volatile std::uint32_t ramp_register = 0;
 
 /// As from a driver: the compiler does not see which frame it is.
-[[gnu::noinline]] void receive(std::uint32_t id, std::uint32_t size, std::uint32_t first = 0, std::uint32_t second = 0) {
+[[gnu::noinline]] void receive(std::uint32_t id, std::uint32_t size, std::uint32_t first = 0,
+                               std::uint32_t second = 0) {
   PeerFrame frame{id, size, {.words = {first, second}}};
   node.receive(frame);
 }
@@ -70,9 +71,9 @@ void program() {
   node.process(0);
   print_sending("on-time", 0, [](std::uint32_t) { node.process(0); });
   print_sending("rpdo", 0, [](std::uint32_t) { receive(0x305, 8, 1, 2); });
-  print_sending("foreign", 0, [](std::uint32_t) { receive(0x1A3, 8, 1, 2); });               // a TPDO of node 35
-  print_sending("upload", 1, [](std::uint32_t) { request(0x0060'8440, 0); });                // 6084h
-  print_sending("download", 1, [](std::uint32_t i) { request(0x0060'8423, i + 1); });        // with a new value
+  print_sending("foreign", 0, [](std::uint32_t) { receive(0x1A3, 8, 1, 2); });         // a TPDO of node 35
+  print_sending("upload", 1, [](std::uint32_t) { request(0x0060'8440, 0); });          // 6084h
+  print_sending("download", 1, [](std::uint32_t i) { request(0x0060'8423, i + 1); });  // with a new value
   print_sending("sync-cycle", 4, [](std::uint32_t i) {
     for (const std::uint32_t id : {0x205u, 0x305u, 0x405u, 0x505u}) receive(id, 8, i, id);
     receive(0x80, 0);

@@ -11,8 +11,8 @@ class PeerNode {
   /// Starts the node as after a reset. Returns whether CANopenNode accepts the object dictionary.
   bool start() {
     constexpr std::uint8_t node_id = 5;
-    constexpr std::uint16_t bit_rate = 500;       // kbit/s; the driver ignores it
-    constexpr std::uint16_t server_timeout = 1000;  // ms
+    constexpr std::uint16_t bit_rate = 500;          // kbit/s; the driver ignores it
+    constexpr std::uint16_t server_timeout = 1000;   // ms
     constexpr std::uint16_t first_heartbeat = 1000;  // ms
     std::uint32_t erroneous_entry = 0;
     stack_ = CO_new(nullptr, nullptr);
