@@ -1,11 +1,11 @@
-/// Instructions of a node of CANopenNode, with the frames of whole_frame.cpp and long_transfers.cpp. The SDO server and
-/// the PDOs are processed after the frame without the other services.
+/// Instructions of a node of another stack, with the frames of whole_frame.cpp and long_transfers.cpp. The SDO server
+/// and the PDOs are processed after the frame without the other services.
 #include "../../cortex_m/count.hpp"
 #include "../../cortex_m/startup.hpp"
 #include "../transfers.hpp"
-#include "node.hpp"
 
 #include <cstdint>
+#include <node.hpp>
 
 namespace {
 
@@ -18,8 +18,7 @@ volatile std::uint32_t ramp_register = 0;
 /// As from a driver: the compiler does not see which frame it is.
 [[gnu::noinline]] void receive(std::uint32_t id, std::uint32_t size, std::uint32_t first = 0,
                                std::uint32_t second = 0) {
-  PeerFrame frame{id, size, {.words = {first, second}}};
-  node.receive(frame);
+  node.receive(id, size, first, second);
 }
 
 void request(std::uint32_t first, std::uint32_t second) {

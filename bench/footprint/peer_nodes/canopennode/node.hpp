@@ -8,6 +8,11 @@
 
 class PeerNode {
  public:
+  // Words of the messages of the error: error register, and the status bit that CANopenNode adds.
+  static constexpr std::uint32_t emergency = 0x3002'2320;
+  static constexpr std::uint32_t emergency_over = 0x3000'0000;
+  static constexpr std::uint32_t error_in_history = 0x3002'2320;
+
   /// Starts the node as after a reset. Returns whether CANopenNode accepts the object dictionary.
   bool start() {
     constexpr std::uint8_t node_id = 5;
@@ -27,7 +32,10 @@ class PeerNode {
     return true;
   }
 
-  void receive(PeerFrame& frame) { peer_driver::dispatch(*stack_->CANmodule, frame); }
+  void receive(std::uint32_t id, std::uint32_t size, std::uint32_t first, std::uint32_t second) {
+    PeerFrame frame{id, size, {.words = {first, second}}};
+    peer_driver::dispatch(*stack_->CANmodule, frame);
+  }
 
   /// Processes PDOs and SYNC. `elapsed`: us since the last call.
   void process_pdos(std::uint32_t elapsed) {

@@ -1,9 +1,9 @@
-/// A complete node of CANopenNode as in firmware, with the mailboxes and the registers of node.cpp.
+/// A complete node of another stack as in firmware, with the mailboxes and the registers of node.cpp.
 #include "../../cortex_m/startup.hpp"
 #include "../mailbox_bus.hpp"
-#include "node.hpp"
 
 #include <cstdint>
+#include <node.hpp>
 
 namespace {
 
@@ -29,8 +29,7 @@ void program() {
       if (MailboxBus::has_frame()) {
         const canopen::Frame frame = MailboxBus::receive();
         const canopen::FrameWords words = canopen::words_of(frame);
-        PeerFrame received{frame.id, frame.size, {.words = {words.first, words.second}}};
-        node.receive(received);
+        node.receive(frame.id, frame.size, words.first, words.second);
       }
       node.check(word_at(fault) != 0);
       const std::uint32_t now = word_at(timer);
