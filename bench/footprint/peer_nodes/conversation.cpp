@@ -162,5 +162,6 @@ void program() {
 #ifdef PEER_DYNAMIC
   check_mapping();
 #endif
+  print("end", 1, 1);
   end_program();
 }

@@ -44,7 +44,7 @@ inline CO_IF_DRV all{&can, &timer, &memory};
 
 }  // namespace peer_drivers
 
-class PeerNode {
+class CanopenStackPeer {
  public:
   // Words of the messages of the error.
   static constexpr std::uint32_t emergency = 0x0003'2320;
@@ -122,6 +122,9 @@ class PeerNode {
   bool is_faulty_ = false;
 };
 
+/// The node of the programs.
+using PeerNode = CanopenStackPeer;
+
 inline std::uint32_t size_of_value(CO_OBJ* entry, CO_NODE* node, std::uint32_t width) {
   return COTInt32.Size(entry, node, width);
 }
@@ -131,5 +134,5 @@ inline CO_ERR read_value(CO_OBJ* entry, CO_NODE* node, void* bytes, std::uint32_
 
 extern "C" {
 extern const CO_OBJ_TYPE peer_written;
-const CO_OBJ_TYPE peer_written{size_of_value, nullptr, read_value, PeerNode::write_acceleration, nullptr};
+const CO_OBJ_TYPE peer_written{size_of_value, nullptr, read_value, CanopenStackPeer::write_acceleration, nullptr};
 }

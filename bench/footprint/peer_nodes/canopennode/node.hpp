@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-class PeerNode {
+class CanopenNodePeer {
  public:
   // Words of the messages of the error: error register, and the status bit that CANopenNode adds.
   static constexpr std::uint32_t emergency = 0x3002'2320;
@@ -83,3 +83,6 @@ class PeerNode {
   OD_extension_t written_{nullptr, OD_readOriginal, write_acceleration, {}};
   bool is_faulty_ = false;
 };
+
+/// The node of the programs.
+using PeerNode = CanopenNodePeer;
