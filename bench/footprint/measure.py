@@ -30,12 +30,14 @@ COMPILER = ("arm-none-eabi-g++", "-std=c++20", "-mthumb", "-ffunction-sections",
             "-fno-rtti", "-fno-threadsafe-statics", "-Wall", "-Wextra", "-Wno-register", "--specs=nano.specs",
             "-nostartfiles", "-Wl,--gc-sections", f"-T{BENCH / 'cortex_m/firmware.ld'}")
 sys.path.insert(0, str(BENCH))
+import other_stacks  # noqa: E402
 import sheets  # noqa: E402
 import twins  # noqa: E402
+from other_stacks import BYTES, M0, M4, Other  # noqa: E402
 
 SMALL = ("-mcpu=cortex-m0plus", "-Os", "-flto=auto")
 # Builds whose instructions are counted. QEMU runs both on a Cortex-M4.
-COUNTED = {"M4 -O2": ("-mcpu=cortex-m4", "-O2", "-flto=auto", "-DCOUNT"), "M0+ -Os": (*SMALL, "-DCOUNT")}
+COUNTED = {M4: ("-mcpu=cortex-m4", "-O2", "-flto=auto", "-DCOUNT"), M0: (*SMALL, "-DCOUNT")}
 
 
 @dataclass(frozen=True)
@@ -96,24 +98,28 @@ BLOCK_SERVER = Variant("bench100", block_transfer=True)
 
 @dataclass(frozen=True)
 class Figure:
-    """A measured value, its mark and the best other stack's value, which was measured once (`quoted`)."""
+    """A measured value, its mark and the best figure of another stack."""
 
     value: float
     mark: float | None = None
-    peer: float | None = None
-    peer_name: str = ""
+    other: Other | None = None
 
     @property
     def mark_text(self) -> str:
         return "-" if self.mark is None else f"{self.mark:g}"
 
     @property
-    def peer_text(self) -> str:
-        return "-" if self.peer is None else f"{self.peer:g}, {self.peer_name}" if self.peer_name else f"{self.peer:g}"
+    def other_text(self) -> str:
+        """The value of the other stack, with `q` if it is quoted."""
+        return "-" if self.other is None else f"{self.other.value:g}{' q' if self.other.is_quoted else ''}"
+
+    @property
+    def other_and_stack(self) -> str:
+        return "-" if self.other is None else f"{self.other_text}, {self.other.stack}"
 
     @property
     def ratio_text(self) -> str:
-        return "-" if self.peer is None else f"{self.value / self.peer:.2f}"
+        return "-" if self.other is None else f"{self.value / self.other.value:.2f}"
 
     @property
     def missed_text(self) -> str:
@@ -172,9 +178,7 @@ class Bench:
 
     def size(self, program: str, variant: Variant) -> Size:
         """The size of the whole image."""
-        text, data, bss = (int(word) for word in output("arm-none-eabi-size", self.build(program, variant, SMALL))
-                           .splitlines()[1].split()[:3])
-        return Size(text + data, data + bss)
+        return size_of(self.build(program, variant, SMALL))
 
     def cost(self, program: str, variant: Variant) -> Size:
         """The size without that of an empty program."""
@@ -192,11 +196,7 @@ class Bench:
         return len(re.findall(r"(?m)^ +\{0x[0-9A-F]{4}, 0x[0-9A-F]{2}, ", text))
 
     def instructions(self, program: str, variant: Variant, build: str = "M4 -O2") -> dict[str, float]:
-        made = self.build(program, variant, COUNTED[build])
-        printed = subprocess.run(["qemu-system-arm", "-M", "mps2-an386", "-icount", "shift=0", "-semihosting",
-                                  "-nographic", "-kernel", made], check=False, capture_output=True, text=True, timeout=120,
-                                 stdin=subprocess.DEVNULL).stderr
-        return {name: float(number) for name, number in map(str.split, printed.splitlines())}
+        return run(self.build(program, variant, COUNTED[build]))
 
     def functions(self, program: str, variant: Variant) -> list[tuple[int, str, str]]:
         """Size in bytes, type of memory and name of the symbols of an image, the largest first."""
@@ -207,6 +207,19 @@ class Bench:
 
 def output(*command: str | Path) -> str:
     return subprocess.run(command, check=True, capture_output=True, text=True).stdout
+
+
+def size_of(image: Path) -> Size:
+    text, data, bss = (int(word) for word in output("arm-none-eabi-size", image).splitlines()[1].split()[:3])
+    return Size(text + data, data + bss)
+
+
+def run(image: Path) -> dict[str, float]:
+    """Runs a program under QEMU and returns the numbers that it prints, by their names."""
+    printed = subprocess.run(["qemu-system-arm", "-M", "mps2-an386", "-icount", "shift=0", "-semihosting", "-nographic",
+                              "-kernel", image], check=False, capture_output=True, text=True, timeout=120,
+                             stdin=subprocess.DEVNULL).stderr
+    return {name: float(number) for name, number in map(str.split, printed.splitlines())}
 
 
 def changed(text: str, variant: Variant) -> str:
@@ -242,15 +255,18 @@ def short_name(name: str) -> str:
 
 def sizes(bench: Bench) -> list[Row]:
     static, dynamic, block = (bench.cost("node", variant) for variant in (STATIC, DYNAMIC, BLOCK))
-    node = "CANopenNode"
+
+    def row(what: str, value: float, mark: float) -> Row:
+        return Row(what, Figure(value, mark, other_stacks.best(BYTES, what)))
+
     return [
-        Row("flash, static mapping", Figure(static.flash, 5600, 11808, node)),
-        Row("flash, dynamic mapping", Figure(dynamic.flash, 6900, 14424, node)),
-        Row("flash, dynamic mapping, block transfer with CRC", Figure(block.flash, 8200, 16772, node)),
-        Row("RAM, static mapping", Figure(static.ram, 548, 1016, "modm-canopen, expedited SDO only")),
-        Row("RAM, dynamic mapping", Figure(dynamic.ram, 800, 3196, "canopen-stack")),
-        Row("dictionary, flash for each entry", Figure(bench.bytes_per_entry("ref"), 4.0, 13.4, "canopen-stack")),
-        Row("dictionary of a servo drive, with limits, for each entry", Figure(bench.bytes_per_entry("../eds/cpc-tc1"), 4.5)),
+        row("flash, static mapping", static.flash, 5600),
+        row("flash, dynamic mapping", dynamic.flash, 6900),
+        row("flash, dynamic mapping, block transfer with CRC", block.flash, 8200),
+        row("RAM, static mapping", static.ram, 548),
+        row("RAM, dynamic mapping", dynamic.ram, 800),
+        row("dictionary, flash for each entry", bench.bytes_per_entry("ref"), 4.0),
+        row("dictionary of a servo drive, with limits, for each entry", bench.bytes_per_entry("../eds/cpc-tc1"), 4.5),
     ]
 
 
@@ -302,30 +318,42 @@ def objects(bench: Bench) -> list[tuple[str, Size]]:
     ]
 
 
-# What is measured: program, its name there, kind of mapping or block transfer; then mark and best other stack for each build.
+@dataclass(frozen=True)
+class Frame:
+    """What is measured of a frame: row of the page, program, its name there, kind of mapping or block transfer, and marks."""
+
+    what: str
+    program: str
+    name: str
+    variant: str
+    marks: dict[str, float]
+
+
 FRAMES = [
-    ("expedited SDO upload, static mapping", "whole_frame", "upload", "static", (200, 321), (370, 400)),
-    ("expedited SDO upload, dynamic mapping", "whole_frame", "upload", "dynamic", (200, 321), (370, 400)),
-    ("expedited SDO download of a new value, static mapping", "whole_frame", "download", "static", (270, 310), (381, 381)),
-    ("expedited SDO download of a new value, dynamic mapping", "whole_frame", "download", "dynamic", (300, 310), (420, 381)),
-    ("segmented SDO upload, per byte", "long_transfers", "segmented-upload", "block", (20, 36), (None, None)),
-    ("segmented SDO download, per byte", "long_transfers", "segmented-download", "block", (22, 36), (None, None)),
-    ("SDO block upload with CRC, per byte", "long_transfers", "block-upload", "block", (None, None), (None, None)),
-    ("SDO block download with CRC, per byte", "long_transfers", "block-download", "block", (None, None), (None, None)),
-    ("4 RPDOs, SYNC, 4 TPDOs, static mapping", "whole_frame", "sync-cycle", "static", (680, 1651), (1300, 2297)),
-    ("4 RPDOs, SYNC, 4 TPDOs, dynamic mapping", "whole_frame", "sync-cycle", "dynamic", (950, 1651), (2200, 2297)),
-    ("RPDO for the next SYNC", "whole_frame", "rpdo", "static", (50, 294), (None, None)),
-    ("a TPDO of another node", "whole_frame", "foreign", "static", (60, None), (110, None)),
-    ("`on_time` with nothing due", "whole_frame", "on-time", "static", (13, 32), (20, 34)),
+    Frame("expedited SDO upload, static mapping", "whole_frame", "upload", "static", {M4: 200, M0: 370}),
+    Frame("expedited SDO upload, dynamic mapping", "whole_frame", "upload", "dynamic", {M4: 200, M0: 370}),
+    Frame("expedited SDO download of a new value, static mapping", "whole_frame", "download", "static", {M4: 270, M0: 381}),
+    Frame("expedited SDO download of a new value, dynamic mapping", "whole_frame", "download", "dynamic", {M4: 300, M0: 420}),
+    Frame("segmented SDO upload, per byte", "long_transfers", "segmented-upload", "block", {M4: 20}),
+    Frame("segmented SDO download, per byte", "long_transfers", "segmented-download", "block", {M4: 22}),
+    Frame("SDO block upload with CRC, per byte", "long_transfers", "block-upload", "block", {}),
+    Frame("SDO block download with CRC, per byte", "long_transfers", "block-download", "block", {}),
+    Frame("4 RPDOs, SYNC, 4 TPDOs, static mapping", "whole_frame", "sync-cycle", "static", {M4: 680, M0: 1300}),
+    Frame("4 RPDOs, SYNC, 4 TPDOs, dynamic mapping", "whole_frame", "sync-cycle", "dynamic", {M4: 950, M0: 2200}),
+    Frame("RPDO for the next SYNC", "whole_frame", "rpdo", "static", {M4: 50}),
+    Frame("a TPDO of another node", "whole_frame", "foreign", "static", {M4: 60, M0: 110}),
+    Frame("`on_time` with nothing due", "whole_frame", "on-time", "static", {M4: 13, M0: 20}),
 ]
 FRAME_VARIANTS = {"static": Variant("bench100", static_mapping=True), "dynamic": Variant("bench100"), "block": BLOCK_SERVER}
 
 
 def whole_frames(bench: Bench) -> list[FrameRow]:
     """Instructions from the frame that a node receives to those that it sends."""
-    return [FrameRow(what, {build: Figure(bench.instructions(program, FRAME_VARIANTS[variant], build)[name], *mark_and_peer)
-                            for build, mark_and_peer in zip(COUNTED, of_builds, strict=True)})
-            for what, program, name, variant, *of_builds in FRAMES]
+    def figure(frame: Frame, build: str) -> Figure:
+        value = bench.instructions(frame.program, FRAME_VARIANTS[frame.variant], build)[frame.name]
+        return Figure(value, frame.marks.get(build), other_stacks.best(build, frame.what))
+
+    return [FrameRow(frame.what, {build: figure(frame, build) for build in COUNTED}) for frame in FRAMES]
 
 
 def parts(bench: Bench) -> list[tuple[str, float]]:
@@ -349,7 +377,7 @@ def parts(bench: Bench) -> list[tuple[str, float]]:
 def print_figures(title: str, rows: Iterable[tuple[str, Figure]]) -> None:
     print(f"{title:<57}{'edsc':>8}{'mark':>8}{'':3}ratio to the best other stack")
     for what, figure in rows:
-        print(f"{what:<57}{figure.value:8g}{figure.mark_text:>8}{figure.missed_text:3}{figure.ratio_text:>5}  {figure.peer_text}")
+        print(f"{what:<57}{figure.value:8g}{figure.mark_text:>8}{figure.missed_text:3}{figure.ratio_text:>5}  {figure.other_and_stack}")
 
 
 def table(*columns: str, rows: Iterable[Sequence[object]]) -> str:
@@ -360,11 +388,11 @@ def table(*columns: str, rows: Iterable[Sequence[object]]) -> str:
 def tables(bench: Bench) -> dict[str, str]:
     """The tables of whole devices and whole frames, by their names in page.md."""
     return {"sizes": table("bytes", "edsc", "mark", "best other stack", "ratio", rows=[
-                (row.what, f"{row.figure.value:g}", row.figure.mark_text, row.figure.peer_text, row.figure.ratio_text)
+                (row.what, f"{row.figure.value:g}", row.figure.mark_text, row.figure.other_and_stack, row.figure.ratio_text)
                 for row in sizes(bench)]),
             "whole_frames": table("instructions", *(head for build in COUNTED for head in (build, "mark", "best other stack")), rows=[
                 (row.what, *(text for figure in row.figures.values()
-                             for text in (f"{figure.value:g}", figure.mark_text, figure.peer_text)))
+                             for text in (f"{figure.value:g}", figure.mark_text, figure.other_text)))
                 for row in whole_frames(bench)])}
 
 
@@ -374,7 +402,7 @@ def page(bench: Bench) -> str:
         return table(unit, "flash", "RAM", rows=[(what, size.flash, size.ram) for what, size in rows])
 
     return (HERE / "page.md").read_text(encoding="utf-8").format(
-        **tables(bench),
+        **tables(bench), rebuilt=other_stacks.rebuilt_text(),
         parts=table("instructions", "edsc", rows=[(what, f"{count:g}") for what, count in parts(bench)]),
         services=with_bytes("service", services(bench)), objects=with_bytes("object", objects(bench)),
         twins="\n".join(twins.table(bench.edsc, bench.runtime)))
