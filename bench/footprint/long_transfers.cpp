@@ -34,8 +34,9 @@ std::uint8_t exchange(const Bytes& request) {
 template <class Transfer>
 void print_per_byte(const char* name, Transfer transfer) {
   const std::uint32_t before = bus.sent();
-  const std::uint32_t instructions = count([&] { transfer(exchange); });
-  if (bus.sent() - before > 8) print(name, instructions, domain_bytes);
+  bool is_complete = false;
+  const std::uint32_t instructions = count([&] { is_complete = transfer(exchange); });
+  if (is_complete && bus.sent() - before > 8) print(name, instructions, domain_bytes);
 }
 
 }  // namespace
@@ -45,11 +46,11 @@ void program() {
   node.start(canopen::NodeId{5}, start);
   receive(0x000, 2, 0x0501, 0);  // NMT: start node 5
   node.on_time(start);
-  print_per_byte("segmented-upload", [](auto exchange) { upload_segments(exchange); });
-  print_per_byte("segmented-download", [](auto exchange) { download_segments(exchange); });
+  print_per_byte("segmented-upload", [](auto exchange) { return upload_segments(exchange); });
+  print_per_byte("segmented-download", [](auto exchange) { return download_segments(exchange); });
   if constexpr (device::Device::options.sdo_block_transfer) {
-    print_per_byte("block-upload", [](auto exchange) { upload_blocks(exchange); });
-    print_per_byte("block-download", [](auto exchange) { download_blocks(exchange); });
+    print_per_byte("block-upload", [](auto exchange) { return upload_blocks(exchange); });
+    print_per_byte("block-download", [](auto exchange) { return download_blocks(exchange); });
   }
   end_program();
 }
