@@ -193,6 +193,10 @@ TEST(SlcanPort, IsReadableAfterAWakeUntilItIsServed) {
   EXPECT_EQ(::poll(&readable, 1, 0), 1);
   bus->serve(node);
   EXPECT_EQ(::poll(&readable, 1, 0), 0);
+  bus->wake();
+  while (bus->receive(0us)) {
+  }
+  EXPECT_EQ(::poll(&readable, 1, 0), 0) << "nor after a program without a node has found no frame";
 }
 
 TEST(SlcanPort, TellsWhatCannotBeOpened) {

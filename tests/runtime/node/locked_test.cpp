@@ -1,10 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <canopen/base/lock.hpp>
+#include <canopen/node/accepted_frames.hpp>
 #include <canopen/node/locked.hpp>
 #include <canopen/port/cortex_m.hpp>
 
+#include <algorithm>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "support/bench.hpp"
 
@@ -55,6 +59,25 @@ TEST(Locked, HoldsTheLockWhileTheNodeWorks) {
   log.clear();
   EXPECT_EQ(locked.with([](auto& device) { return device.node_id(); }), canopen::NodeId{5});
   EXPECT_EQ(log, "()");
+}
+
+TEST(Locked, HoldsTheLockWhileAPortReadsItsFrames) {
+  std::string log;
+  LoggingBus bus{log};
+  RecordingLock lock{log};
+  auto node = bench::make_node<sample::Device>(bus, canopen::NodeId{5});
+  Locked locked{node, lock};
+  locked.start(canopen::TimePoint{});
+  const auto ids_of = [](auto& some) {
+    std::vector<std::uint32_t> ids;
+    for_each_accepted_frame(some, [&](const canopen::AcceptedFrame& frame) { ids.push_back(frame.id); });
+    return ids;
+  };
+  log.clear();
+  const std::vector<std::uint32_t> ids = ids_of(locked);
+  EXPECT_EQ(log, "()");
+  EXPECT_EQ(ids, ids_of(node));
+  EXPECT_NE(std::ranges::find(ids, 0x605U), ids.end());
 }
 
 TEST(Locked, HoldsTheLockWhileTheNodeStartsWithANodeId) {

@@ -104,6 +104,7 @@ template <class Port>
     }
     const TimePoint now = monotonic_now();
     if (now >= end) {
+      port.events().take_wake();
       port.events().set_alarm(port.has_more() ? std::optional{now} : port.next_deadline(), now);
       return std::nullopt;
     }

@@ -123,13 +123,13 @@ class Locked : public ObjectSetters<Locked<Node, LockType>> {
 
 template <class Node>
 Locked(Node&) -> Locked<Node, NoLock>;
+template <class Node, Lock LockType>
+Locked(Node&, LockType&) -> Locked<Node, LockType>;
 
 /// For a port that filters frames: the frames of the node (accepted_frames.hpp), read while the lock is held.
 template <class Node, class LockType, class Visit>
 void for_each_accepted_frame(Locked<Node, LockType>& locked, Visit&& visit) {
   locked.with([&](Node& node) { for_each_accepted_frame(node, visit); });
 }
-template <class Node, Lock LockType>
-Locked(Node&, LockType&) -> Locked<Node, LockType>;
 
 }  // namespace canopen
