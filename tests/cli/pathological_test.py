@@ -5,8 +5,9 @@ Also pages, comparisons, overlays and logs.
     pathological_test.py SOURCE_DIR EDSC [--times] [--large]
 
 Creates files of 0.2 to 0.8 MB in a temporary folder, five times as much with --large, and runs `edsc check`, `generate`, `dump`
-and `format` on each. Without --large, each third of the files that grow in one part is compared. The limit of 10 s of CPU time per MB detects hangs and steps of quadratic cost, and is sufficient for a slow
-machine and sanitizers; bench/ measures the time of edsc. For files that grow in one part, the CPU time of two sizes is compared.
+and `format` on each. The limit of 10 s of CPU time per MB detects hangs and steps of quadratic cost, and is sufficient for a slow
+machine and sanitizers; bench/ measures the time of edsc. For files that grow in one part, the CPU time of two sizes is compared:
+for each third of them, for all with --large.
 """
 
 from __future__ import annotations
