@@ -4,8 +4,9 @@
     compile_time.py EDSC RUNTIME_INCLUDE_DIR
 
 Prints for each EDS of sheets.py the user time and the peak memory of edsc, and of g++ and clang++ for the device header
-alone and, for the sheets of NODES, for a node, at -O2. Best of three runs. The header needs only the compilers' default limits for constant
-expressions; for the node, Clang gets the limit of edsc_add_dictionary.
+alone, for a file with a node, and for another file of the same program, which sets an object of the node and gets one, at -O2. Best of
+three runs. The header needs only the compilers' default limits for constant expressions; for a node, Clang gets the limit of
+edsc_add_dictionary.
 """
 
 from __future__ import annotations
@@ -21,19 +22,28 @@ import sheets
 COMPILERS = ["g++", "clang++"]
 RUNS = 3
 HEADER = "#include <device/device.hpp>\n"
-NODE = HEADER + """#include <canopen/node.hpp>
+TYPE = HEADER + """#include <canopen/node.hpp>
 struct Bus {
   bool send(const canopen::Frame&) { return true; }
-} bus;
-canopen::Node<canopen::Composition<device::Device>, Bus> node{bus};
+};
+using Node = canopen::Node<canopen::Composition<device::Device>, Bus>;
+"""
+NODE = TYPE + """Bus bus;
+Node node{bus};
 int main() {
   node.start(canopen::NodeId{5}, {});
   node.on_time({});
   node.on_frame(canopen::make_frame(0x605, 8, {0x0060'8323, 77}), {});
 }
 """
-NODES = {"ref", "eds1000", "pdos512"}  # the other sheets have DOMAINs, for which a node needs memory
-LIMITS = {"header": {}, "node": {"clang++": ["-fconstexpr-steps=100000000"]}}
+OTHER = TYPE + """extern Node node;
+bool set(std::uint16_t time) { return node.set(device::od::hb_producer_time{}, canopen::raw(time)) == canopen::ok; }
+std::uint32_t get() { return to_raw(node.get(device::od::cycle_period{})); }
+"""
+SOURCES = {"header": HEADER, "node": NODE, "other file": OTHER}
+SHEETS = {"node": {"ref", "eds1000", "pdos512"},  # the other sheets have DOMAINs, for which a node needs memory
+          "other file": {"ref"}}
+LIMITS = {"clang++": ["-fconstexpr-steps=100000000"]}
 
 
 def measure(command: list[str]) -> tuple[float, float]:
@@ -53,18 +63,19 @@ def best(command: list[str]) -> str:
 
 def main() -> None:
     edsc, runtime = sys.argv[1], sys.argv[2]
-    print(f"{'':12}{'edsc':>17}" + "".join(f"{compiler + ' ' + what:>19}" for what in LIMITS for compiler in COMPILERS))
+    print(f"{'':12}{'edsc':>17}" + "".join(f"{compiler + ' ' + what:>19}" for what in SOURCES for compiler in COMPILERS))
     with tempfile.TemporaryDirectory() as folder:
         for sheet in sheets.SHEETS:
             path = sheets.write(sheet, Path(folder))
             row = best([edsc, "generate", str(path), "-o", folder, "--name", "device"])
-            for what, text in ("header", HEADER), ("node", NODE):
-                if what == "node" and sheet not in NODES:
+            for what, text in SOURCES.items():
+                if what in SHEETS and sheet not in SHEETS[what]:
                     continue
-                source = Path(folder) / f"{what}.cpp"
+                source = Path(folder) / "source.cpp"
                 source.write_text(text, encoding="utf-8")
+                limits = {} if what == "header" else LIMITS
                 for compiler in COMPILERS:
-                    row += "  " + best([compiler, "-std=c++20", "-O2", "-c", *LIMITS[what].get(compiler, []), f"-I{folder}",
+                    row += "  " + best([compiler, "-std=c++20", "-O2", "-c", *limits.get(compiler, []), f"-I{folder}",
                                         f"-I{runtime}", str(source), "-o", os.devnull])
             print(f"{sheet:12} {row}", flush=True)
     print("\nOthers, on such a machine: generating eds1000 / eds5000: lely dcf2c 0.02 / 0.11 s, objdictgen 0.43 / 2.9 s,")
