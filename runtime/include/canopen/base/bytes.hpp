@@ -15,15 +15,15 @@ namespace bytes_detail {
 /// Copies byte by byte: the library's memcpy and memset would add hundreds of bytes to an image. The fence keeps the
 /// compiler from replacing these loops with calls of them; `<atomic>` would bring threads with it.
 [[gnu::noinline]] inline void copy_by_loop(std::uint8_t* to, const std::uint8_t* from, std::size_t size) {
-  for (const std::uint8_t* const end = to + size; to != end;) {
-    *to++ = *from++;
+  while (size-- != 0) {
+    to[size] = from[size];
     __atomic_signal_fence(__ATOMIC_ACQ_REL);
   }
 }
 
 [[gnu::noinline]] inline void clear_by_loop(std::uint8_t* to, std::size_t size) {
-  for (const std::uint8_t* const end = to + size; to != end;) {
-    *to++ = 0;
+  while (size-- != 0) {
+    to[size] = 0;
     __atomic_signal_fence(__ATOMIC_ACQ_REL);
   }
 }
