@@ -133,9 +133,10 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device, Bus
     if (Host::state == NmtState::initialisation) return serve_without_node_id();
     if (Host::attention) Host::serve();
     const std::uint32_t cob_id = cob_id_of(frame);
-    const bool taken = !frame.remote && (Host::services.on_frequent_frame(host(), frame, cob_id) ||
-                                         !Host::services.may_take(host(), cob_id));
-    if (!taken) on_other_frame(frame);
+    if (frame.remote || !Host::services.on_frequent_frame(host(), frame, cob_id)) {
+      if (!frame.remote && !Host::services.may_take(host(), cob_id)) return;  // for other nodes
+      on_other_frame(frame);
+    }
     if (Host::attention) Host::serve();
   }
 
