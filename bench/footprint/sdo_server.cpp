@@ -21,9 +21,12 @@ constinit canopen::SdoServer<device::Device> server;
 struct Hooks {
   static auto entries() { return store.entries(); }
   static canopen::AbortCode before_read(std::uint16_t, std::uint8_t) { return canopen::ok; }
-  static canopen::AbortCode before_write(std::uint16_t, std::uint8_t, std::span<std::uint8_t>) { return canopen::ok; }
-  static bool is_new(canopen::entry::Word, std::span<const std::uint8_t>) { return true; }
-  static void after_write(std::uint16_t, std::uint8_t) {}
+  static canopen::AbortCode write(std::uint16_t, std::uint8_t, canopen::entry::Word word,
+                                  std::span<std::uint8_t> bytes) {
+    store.entries().write(word, bytes);
+    return canopen::ok;
+  }
+  static void written(std::uint16_t, std::uint8_t) {}
   static canopen::AbortCode command(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
     return canopen::AbortCode::not_stored;
   }

@@ -53,11 +53,12 @@ class Application {
     std::uint32_t& expected;  ///< offset of the next piece of this server's download
     [[nodiscard]] auto entries() const { return application.store.entries(); }
     [[nodiscard]] AbortCode before_read(std::uint16_t, std::uint8_t) const { return application.answer; }
-    [[nodiscard]] AbortCode before_write(std::uint16_t, std::uint8_t, std::span<std::uint8_t>) const {
+    [[nodiscard]] AbortCode write(std::uint16_t, std::uint8_t, canopen::entry::Word word,
+                                  std::span<std::uint8_t> bytes) const {
+      if (application.answer == canopen::ok) entries().write(word, bytes);
       return application.answer;
     }
-    [[nodiscard]] static bool is_new(canopen::entry::Word, std::span<const std::uint8_t>) { return true; }
-    void after_write(std::uint16_t, std::uint8_t) const {}
+    void written(std::uint16_t, std::uint8_t) const {}
     static canopen::AbortCode command(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
       return canopen::AbortCode::not_stored;
     }

@@ -24,11 +24,13 @@ class StreamBench {
     StreamBench& bench;
     [[nodiscard]] canopen::EntryAccess<bench::WithBlock> entries() const { return bench.store.entries(); }
     [[nodiscard]] AbortCode before_read(std::uint16_t, std::uint8_t) const { return canopen::ok; }
-    [[nodiscard]] AbortCode before_write(std::uint16_t, std::uint8_t, std::span<std::uint8_t>) const {
+    [[nodiscard]] AbortCode write(std::uint16_t index, std::uint8_t sub_index, canopen::entry::Word word,
+                                  std::span<std::uint8_t> bytes) const {
+      entries().write(word, bytes);
+      written(index, sub_index);
       return canopen::ok;
     }
-    [[nodiscard]] static bool is_new(canopen::entry::Word, std::span<const std::uint8_t>) { return true; }
-    void after_write(std::uint16_t, std::uint8_t) const { ++bench.written; }
+    void written(std::uint16_t, std::uint8_t) const { ++bench.written; }
     static canopen::AbortCode command(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
       return canopen::AbortCode::not_stored;
     }

@@ -53,12 +53,13 @@ struct PlainHooks {
   [[nodiscard]] canopen::AbortCode before_read(std::uint16_t index, std::uint8_t sub_index) const {
     return refuse ? refuse(index, sub_index) : canopen::ok;
   }
-  [[nodiscard]] canopen::AbortCode before_write(std::uint16_t index, std::uint8_t sub_index,
-                                                std::span<std::uint8_t> /*bytes*/) const {
-    return refuse ? refuse(index, sub_index) : canopen::ok;
+  [[nodiscard]] canopen::AbortCode write(std::uint16_t index, std::uint8_t sub_index, canopen::entry::Word word,
+                                         std::span<std::uint8_t> bytes) const {
+    const canopen::AbortCode code = refuse ? refuse(index, sub_index) : canopen::ok;
+    if (code == canopen::ok) store.entries().write(word, bytes);
+    return code;
   }
-  [[nodiscard]] static bool is_new(canopen::entry::Word, std::span<const std::uint8_t>) { return true; }
-  void after_write(std::uint16_t /*index*/, std::uint8_t /*sub_index*/) const {}
+  void written(std::uint16_t /*index*/, std::uint8_t /*sub_index*/) const {}
   [[nodiscard]] static canopen::AbortCode command(std::uint16_t, std::uint8_t, std::span<const std::uint8_t>) {
     return canopen::AbortCode::not_stored;
   }

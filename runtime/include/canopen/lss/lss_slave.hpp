@@ -74,13 +74,13 @@ class LssSlave {
   }
 
   /// Processes a frame from the bus. One that is not a request of eight bytes is ignored.
-  void on_frame(const Frame& frame, LssSlaveHooks auto&& hooks, TimePoint now) {
+  void on_frame(const Frame& frame, LssSlaveHooks auto hooks, TimePoint now) {
     if (!lss::is_lss(frame, lss::request_id) || !served_ || silent()) return;
     handle(frame, hooks, now);
   }
 
   /// Switches the bit rate when the delay has elapsed.
-  void on_time([[maybe_unused]] LssSlaveHooks auto&& hooks, [[maybe_unused]] TimePoint now) {
+  void on_time([[maybe_unused]] LssSlaveHooks auto hooks, [[maybe_unused]] TimePoint now) {
     if constexpr (has_bit_timing) {
       if (timing_.phase == Phase::before_switch && now >= timing_.due) {
         timing_.phase = Phase::silent;
@@ -177,7 +177,7 @@ class LssSlave {
            command >= lss::Command::inquire_vendor_id;
   }
 
-  void handle(const Frame& frame, auto& hooks, [[maybe_unused]] TimePoint now) {
+  void handle(const Frame& frame, auto hooks, [[maybe_unused]] TimePoint now) {
     const auto command = static_cast<lss::Command>(frame.data[0]);
     const std::uint32_t word = lss::word_of(frame);
     const std::uint8_t expected = expected_;
@@ -223,7 +223,7 @@ class LssSlave {
 
   /// Switches the state. A device without node-ID that has received one leaves Initialisation when it returns
   /// to waiting.
-  void switch_state(std::uint8_t mode, auto& hooks) {
+  void switch_state(std::uint8_t mode, auto hooks) {
     if (mode == static_cast<std::uint8_t>(LssState::configuration)) {
       state_ = LssState::configuration;
     } else if (mode == static_cast<std::uint8_t>(LssState::waiting)) {
@@ -233,7 +233,7 @@ class LssSlave {
   }
 
   /// Compares one frame of switch state selective or identify remote slave. All frames must match, in their order.
-  void compare(std::uint8_t command, std::uint8_t expected, std::uint32_t word, auto& hooks) {
+  void compare(std::uint8_t command, std::uint8_t expected, std::uint32_t word, auto hooks) {
     constexpr auto select = static_cast<std::uint8_t>(lss::Command::select_vendor_id);
     constexpr auto identify = static_cast<std::uint8_t>(lss::Command::identify_vendor_id);
     const bool selecting = command < identify;
@@ -265,7 +265,7 @@ class LssSlave {
       {1, 1, 1, 0}, {2, 1, 1, 0}, {3, 1, 0, 1}, {3, 0, 1, 1}, {4, 1, 0, 0}, {4, 0, 1, 0},
   };
 
-  [[nodiscard]] static bool matches(std::uint8_t command, std::uint32_t word, auto& hooks) {
+  [[nodiscard]] static bool matches(std::uint8_t command, std::uint32_t word, auto hooks) {
     const Condition condition = conditions[command - static_cast<std::uint8_t>(lss::Command::select_vendor_id)];
     std::uint32_t own = hooks.identity(condition.sub_index);
     if (condition.major != 0) {
@@ -282,7 +282,7 @@ class LssSlave {
 
   /// Compares bits BitCheck..31 of one number of 1018h. After the last bit, a slave proceeds to the number LSSNext or,
   /// if that is an earlier one, to the configuration state.
-  void fastscan(const Frame& frame, std::uint32_t id_number, auto& hooks) {
+  void fastscan(const Frame& frame, std::uint32_t id_number, auto hooks) {
     const std::uint8_t bit_check = frame.data[5];
     const std::uint8_t lss_sub = frame.data[6];
     const std::uint8_t lss_next = frame.data[7];
@@ -299,7 +299,7 @@ class LssSlave {
     answer(lss::Command::identified);
   }
 
-  [[nodiscard]] LssError configure_node_id(NodeId node_id, auto& hooks) {
+  [[nodiscard]] LssError configure_node_id(NodeId node_id, auto hooks) {
     const bool takes_away = chosen().unconfigurable && node_id == unconfigured_node_id;
     if (!node_id.valid() && !takes_away) return lss::node_id_out_of_range;
     const LssError error = hooks.accept(node_id);
@@ -312,7 +312,7 @@ class LssSlave {
     return bit_timing.table == 0 && bit_timing.index < 16 && (chosen().bit_rates >> bit_timing.index & 1) != 0;
   }
 
-  [[nodiscard]] LssError configure_bit_timing(LssBitTiming bit_timing, auto& hooks) {
+  [[nodiscard]] LssError configure_bit_timing(LssBitTiming bit_timing, auto hooks) {
     if constexpr (has_bit_timing) {
       if (supports(bit_timing)) {
         const LssError error = hooks.accept(bit_timing);
@@ -332,7 +332,7 @@ class LssSlave {
     }
   }
 
-  [[nodiscard]] LssError store(auto& hooks) {
+  [[nodiscard]] LssError store(auto hooks) {
     LssBitTiming bit_timing{};
     if constexpr (has_bit_timing) bit_timing = timing_.pending;
     const LssError error = hooks.store(pending_, bit_timing);

@@ -15,6 +15,13 @@
 
 namespace canopen {
 
+/// Whether `check_received` has anything to check.
+template <class Host>
+[[nodiscard]] inline bool has_checks(Host& host, std::uint16_t index, std::uint8_t sub_index) {
+  return Host::Handlers::has_write_handlers || is_communication_index(index) ||
+         host.services.checks_application_object(index, sub_index);
+}
+
 /// Checks whether a received value, whose length and limits are correct, may be written: asks the services, then calls
 /// the write handlers of the object. Both may change the bytes.
 template <class Host>
@@ -52,7 +59,7 @@ inline void take_received(Host& host, std::uint16_t index, std::uint8_t sub_inde
   if (host.store.entries().check(index, sub_index, word, bytes) != ok) return;
   if (check_received(host, index, sub_index, bytes) != ok) return;
   if (!host.handler_calls.set_by_handler() && !host.store.entries().holds(word, bytes)) {
-    host.store.entries().write(word, bytes);
+    host.store.entries().write_value(word, bytes);
     host.after_write(index, sub_index, true);
   }
   notify_written(host, index, sub_index);

@@ -202,6 +202,7 @@ class EntryAccess : public EntryDirectory<Device> {
   [[nodiscard]] AbortCode check_length(std::uint16_t index, std::uint8_t sub_index, entry::Word word,
                                        std::size_t length) const {
     const std::size_t fixed = bytes_of(word);
+    if (length == fixed) return ok;
     if (length < fixed) return AbortCode::length_too_low;
     return length > longest(index, sub_index, word) ? AbortCode::length_too_high : ok;
   }
@@ -248,23 +249,25 @@ class EntryAccess : public EntryDirectory<Device> {
     return changed != 0;
   }
 
-  /// Stores bytes that `check` has accepted in an entry in RAM.
+  /// Stores bytes that `check` has accepted in an entry in RAM, those of a DOMAIN in its memory.
   void write(entry::Word word, std::span<const std::uint8_t> bytes) const {
+    if (!is_domain(word)) return write_value(word, bytes);
+    resize_domain(word, static_cast<std::uint32_t>(bytes.size()));
+    std::uint8_t* const memory = domain(word).data;
+    if (memory != bytes.data()) copy_bytes(memory, bytes.data(), bytes.size());
+  }
+  /// The same for an entry that is not a DOMAIN.
+  void write_value(entry::Word word, std::span<const std::uint8_t> bytes) const {
     std::uint8_t* where = ram(word);
     const std::size_t size = bytes.size();
     if (kinds.strings_in_ram && entry::is_string(word)) {
       store(where, static_cast<std::uint16_t>(size));
       where += string_header;
       if (is_terminated(word)) where[size] = 0;
-    } else if (is_domain(word)) {
-      resize_domain(word, static_cast<std::uint32_t>(size));
-      where = domain(word).data;
     } else if (kinds.padded && (size & (size - 1)) != 0) {
       return extend(word, where, bytes, size == 3 ? 4 : 8);  // such numbers are stored in the next wider type
     }
-    const std::uint8_t* from = bytes.data();
-    if (where == from) return;  // a download in several frames has already written a DOMAIN's bytes
-    copy_few_bytes(where, from, size);
+    copy_few_bytes(where, bytes.data(), size);
   }
 
   /// Returns the capacity of a string entry in bytes. `of_node`: as in `with_sheet`.

@@ -60,7 +60,7 @@ struct ChannelObject {
     std::memcpy(bytes.data(), &value, sizeof value);
     if (silently) {
       AccessProbe<Device>::uses(Index, static_cast<std::uint8_t>(channel + 1));
-      node.entries().write(words[channel], bytes);
+      node.entries().write_value(words[channel], bytes);
     } else {
       static_cast<void>(node.set(Index, static_cast<std::uint8_t>(channel + 1), bytes));
     }

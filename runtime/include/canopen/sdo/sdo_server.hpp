@@ -33,7 +33,7 @@ class SdoServer : private SdoServerTransfer<Device> {  // its bytes are first: t
 
  public:
   /// Accepts a request. A response that has not been sent yet is replaced.
-  void on_request(const sdo::Data& request, SdoServerHooks<Device> auto&& hooks, TimePoint now) {
+  void on_request(const sdo::Data& request, SdoServerHooks<Device> auto hooks, TimePoint now) {
     if constexpr (has_timeout) last_activity_ = now;
     if constexpr (has_sheet<Device>)
       timeout_.length = from_milliseconds(sdo_timeout_of(options_of<Device>(hooks.entries())));
@@ -63,7 +63,7 @@ class SdoServer : private SdoServerTransfer<Device> {  // its bytes are first: t
   using Transfer::has_reply, Transfer::reply;
 
   /// Reports that the response has been passed to the controller: the next segment of a block upload replaces it.
-  void reply_sent(SdoServerHooks<Device> auto&& hooks, [[maybe_unused]] TimePoint now) {
+  void reply_sent(SdoServerHooks<Device> auto hooks, [[maybe_unused]] TimePoint now) {
     if constexpr (has_timeout) last_activity_ = now;
     Transfer::drop_reply();
     if constexpr (has_block) {
@@ -114,7 +114,7 @@ class SdoServer : private SdoServerTransfer<Device> {  // its bytes are first: t
   static constexpr bool has_timeout = has_sheet<Device> || OfType::length.count() != 0;
   static constexpr bool has_block = Device::options.sdo_block_transfer;
 
-  [[nodiscard]] AbortCode handle(const sdo::Data& request, auto& hooks) {
+  [[nodiscard]] AbortCode handle(const sdo::Data& request, auto hooks) {
     const bool blocks = has_block && options_of<Device>(hooks.entries()).sdo_block_transfer;
     if constexpr (has_block) {
       if (takes_segments() && request[0] != sdo::abort_command) return Blocks::take_segment(request, *this, hooks);
@@ -149,7 +149,7 @@ class SdoServer : private SdoServerTransfer<Device> {  // its bytes are first: t
 
   // Expedited and segmented upload
 
-  [[nodiscard]] AbortCode initiate_upload(auto& hooks) {
+  [[nodiscard]] AbortCode initiate_upload(auto hooks) {
     if (const AbortCode code = Transfer::find_readable(hooks); code != ok) return code;
     if (Transfer::is_short_number()) {
       Transfer::answer_number(hooks);
@@ -160,7 +160,7 @@ class SdoServer : private SdoServerTransfer<Device> {  // its bytes are first: t
     return ok;
   }
 
-  [[nodiscard]] AbortCode upload_segment(std::uint8_t command, auto& hooks) {
+  [[nodiscard]] AbortCode upload_segment(std::uint8_t command, auto hooks) {
     if (Transfer::state() != State::uploading) return Transfer::reject_command();
     if ((command & sdo::toggle) != Transfer::toggle()) return AbortCode::toggle_bit;
     Transfer::clear_reply(Transfer::toggle());
@@ -179,7 +179,7 @@ class SdoServer : private SdoServerTransfer<Device> {  // its bytes are first: t
 
   // Expedited and segmented download
 
-  [[nodiscard]] AbortCode initiate_download(const sdo::Data& request, auto& hooks) {
+  [[nodiscard]] AbortCode initiate_download(const sdo::Data& request, auto hooks) {
     if (const AbortCode code = Transfer::find(entry::writable, AbortCode::read_only, hooks); code != ok) return code;
     const bool indicated = (request[0] & sdo::size_indicated) != 0;
     if ((request[0] & sdo::expedited) != 0) {
@@ -194,7 +194,7 @@ class SdoServer : private SdoServerTransfer<Device> {  // its bytes are first: t
     return ok;
   }
 
-  [[nodiscard]] AbortCode download_segment(const sdo::Data& request, auto& hooks) {
+  [[nodiscard]] AbortCode download_segment(const sdo::Data& request, auto hooks) {
     if (Transfer::state() != State::downloading) return Transfer::reject_command();
     if ((request[0] & sdo::toggle) != Transfer::toggle()) return AbortCode::toggle_bit;
     const bool last = (request[0] & sdo::last_segment) != 0;

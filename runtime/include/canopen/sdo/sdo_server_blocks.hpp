@@ -21,7 +21,7 @@ class SdoServerBlocks {
   // Upload
 
   /// Starts a block upload; a value that is short enough for the client is sent without blocks.
-  [[nodiscard]] static AbortCode initiate_upload(const sdo::Data& request, Transfer& transfer, auto& hooks) {
+  [[nodiscard]] static AbortCode initiate_upload(const sdo::Data& request, Transfer& transfer, auto hooks) {
     if (!transfer.progress().set_size(request[4])) return AbortCode::block_size;
     if (const AbortCode code = transfer.find_readable(hooks); code != ok) return code;
     if (const AbortCode code = transfer.open_upload(hooks); code != ok) return code;
@@ -37,7 +37,7 @@ class SdoServerBlocks {
   }
 
   /// Accepts the start, a confirmation or the end of a block upload.
-  [[nodiscard]] static AbortCode upload(const sdo::Data& request, Transfer& transfer, auto& hooks) {
+  [[nodiscard]] static AbortCode upload(const sdo::Data& request, Transfer& transfer, auto hooks) {
     switch (static_cast<sdo::BlockUpload>(request[0] & 3)) {
       case sdo::BlockUpload::initiate: break;
       case sdo::BlockUpload::start:
@@ -62,7 +62,7 @@ class SdoServerBlocks {
   }
 
   /// Sets the next segment as the response.
-  [[nodiscard]] static AbortCode next_segment(Transfer& transfer, auto& hooks) {
+  [[nodiscard]] static AbortCode next_segment(Transfer& transfer, auto hooks) {
     SdoBlockProgress& progress = transfer.progress();
     transfer.clear_reply(++progress.sequence);
     std::uint32_t size = 0;
@@ -82,7 +82,7 @@ class SdoServerBlocks {
   // Download
 
   /// Starts a block download.
-  [[nodiscard]] static AbortCode initiate_download(const sdo::Data& request, Transfer& transfer, auto& hooks) {
+  [[nodiscard]] static AbortCode initiate_download(const sdo::Data& request, Transfer& transfer, auto hooks) {
     if (const AbortCode code = transfer.find(entry::writable, AbortCode::read_only, hooks); code != ok) return code;
     const bool indicated = (request[0] & sdo::block_size_indicated) != 0;
     if (const AbortCode code = transfer.open_download(indicated, sdo::word_of(request), hooks); code != ok) return code;
@@ -94,7 +94,7 @@ class SdoServerBlocks {
 
   /// Accepts the next segment in sequence; another one is only checked for the end of its sub-block. How many bytes of
   /// the last one are valid is not known before the end of the transfer: they are put in place, and counted then.
-  [[nodiscard]] static AbortCode take_segment(const sdo::Data& request, Transfer& transfer, auto& hooks) {
+  [[nodiscard]] static AbortCode take_segment(const sdo::Data& request, Transfer& transfer, auto hooks) {
     SdoBlockProgress& progress = transfer.progress();
     const auto sequence = static_cast<std::uint8_t>(request[0] & sdo::sequence_mask);
     const bool last = (request[0] & sdo::last_block_segment) != 0;
@@ -128,7 +128,7 @@ class SdoServerBlocks {
   }
 
   /// Completes a block download, if its CRC is right.
-  [[nodiscard]] static AbortCode end_download(const sdo::Data& request, Transfer& transfer, auto& hooks) {
+  [[nodiscard]] static AbortCode end_download(const sdo::Data& request, Transfer& transfer, auto hooks) {
     if (transfer.state() != State::block_download_ending) return transfer.reject_command();
     SdoBlockProgress& progress = transfer.progress();
     const std::uint32_t size = sdo::segment_bytes - ((request[0] >> 2) & 7u);
@@ -144,7 +144,7 @@ class SdoServerBlocks {
  private:
   /// The client has received the first segments of the sub-block. The missing ones are sent again, in the next
   /// sub-block.
-  [[nodiscard]] static AbortCode sub_block_confirmed(const sdo::Data& request, Transfer& transfer, auto& hooks) {
+  [[nodiscard]] static AbortCode sub_block_confirmed(const sdo::Data& request, Transfer& transfer, auto hooks) {
     SdoBlockProgress& progress = transfer.progress();
     if (request[1] > progress.sequence) return AbortCode::sequence_number;
     const auto lost = static_cast<std::uint8_t>(progress.sequence - request[1]);

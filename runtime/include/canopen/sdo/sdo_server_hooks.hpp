@@ -14,9 +14,8 @@ namespace canopen {
 /// Functions of the node that a server calls:
 ///   EntryAccess<Device> entries();
 ///   AbortCode before_read(index, sub_index);            may refresh the value, or reject the access
-///   AbortCode before_write(index, sub_index, bytes);    the bytes fit the entry; may reject or change them
-///   bool is_new(word, bytes);                           after before_write: whether the bytes still need to be stored
-///   void after_write(index, sub_index);
+///   AbortCode write(index, sub_index, word, bytes);     the bytes fit the entry: stores them, or rejects the access
+///   void written(index, sub_index);                     the application has taken all bytes of a DOMAIN
 ///   AbortCode command(index, sub_index, bytes);         a write to an entry without a value, such as 1010h
 /// and, optionally:
 ///   bool started_command();                             whether the request started a command that has not ended yet
@@ -25,9 +24,8 @@ concept SdoServerHooks = requires(Type hooks, std::uint16_t index, std::uint8_t 
                                   std::span<std::uint8_t> bytes) {
   { hooks.entries() } -> std::same_as<EntryAccess<Device>>;
   { hooks.before_read(index, sub_index) } -> std::same_as<AbortCode>;
-  { hooks.before_write(index, sub_index, bytes) } -> std::same_as<AbortCode>;
-  { hooks.is_new(word, bytes) } -> std::same_as<bool>;
-  hooks.after_write(index, sub_index);
+  { hooks.write(index, sub_index, word, bytes) } -> std::same_as<AbortCode>;
+  hooks.written(index, sub_index);
   { hooks.command(index, sub_index, bytes) } -> std::same_as<AbortCode>;
 };
 

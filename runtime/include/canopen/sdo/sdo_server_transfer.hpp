@@ -75,7 +75,7 @@ class SdoServerTransfer {
   [[nodiscard]] const auto& progress() const { return progress_; }
 
   /// Finds the entry of the request; returns `refusal` if it does not have this access right.
-  [[nodiscard]] AbortCode find(entry::Word right, AbortCode refusal, [[maybe_unused]] auto& hooks) {
+  [[nodiscard]] AbortCode find(entry::Word right, AbortCode refusal, [[maybe_unused]] auto hooks) {
     word_ = hooks.entries().find(index(), sub_index());
     if (word_ == Dictionary::no_object) return AbortCode::no_object;
     if (word_ == Dictionary::no_sub_index) return AbortCode::no_sub_index;
@@ -85,7 +85,7 @@ class SdoServerTransfer {
   // Upload
 
   /// Finds an entry that can be read now.
-  [[nodiscard]] AbortCode find_readable(auto& hooks) {
+  [[nodiscard]] AbortCode find_readable(auto hooks) {
     if (const AbortCode code = find(entry::readable, AbortCode::write_only, hooks); code != ok) return code;
     return hooks.before_read(index(), sub_index());
   }
@@ -94,14 +94,14 @@ class SdoServerTransfer {
   [[nodiscard]] bool is_short_number() const {
     return entry::class_of(word_) != entry::Class::special && entry::size_of(word_) <= 4;
   }
-  void answer_number(auto& hooks) {
+  void answer_number(auto hooks) {
     const std::uint32_t bytes = entry::size_of(word_);
     answer_value(bytes, hooks.entries().number(word_) & (0xFFFF'FFFF >> (32 - 8 * bytes)), hooks);
   }
 
   /// Finds the bytes to send.
   template <class Hooks>
-  [[nodiscard]] AbortCode open_upload(Hooks& hooks) {
+  [[nodiscard]] AbortCode open_upload(Hooks hooks) {
     if constexpr (DomainStreamHooks<Hooks, Device>) {
       bytes_ = nullptr;
       size_ = sdo::unknown_size;
@@ -134,7 +134,7 @@ class SdoServerTransfer {
   }
 
   /// Sets the response to an initiate: the value, if it fits; otherwise its size, and segments are requested next.
-  void answer_upload(auto& hooks) {
+  void answer_upload(auto hooks) {
     if (size_ - 1u < 4u) {
       answer_value(size_, 0, hooks);
       copy_bytes(&reply_[4], bytes_, size_);
@@ -153,7 +153,7 @@ class SdoServerTransfer {
 
   /// Writes the next bytes of an upload after the command byte. `size` is their number; `last` marks the end.
   template <class Hooks>
-  [[nodiscard]] AbortCode fetch([[maybe_unused]] Hooks& hooks, std::uint32_t& size, bool& last) {
+  [[nodiscard]] AbortCode fetch([[maybe_unused]] Hooks hooks, std::uint32_t& size, bool& last) {
     if constexpr (DomainStreamHooks<Hooks, Device>) {
       if (bytes_ == nullptr) {
         const Result<std::uint32_t> count = hooks.read_domain(
@@ -185,7 +185,7 @@ class SdoServerTransfer {
   }
 
   /// Accepts four bytes, of which the first `size` are the value.
-  [[nodiscard]] AbortCode take_expedited(const std::uint8_t* bytes, std::uint32_t size, auto& hooks) {
+  [[nodiscard]] AbortCode take_expedited(const std::uint8_t* bytes, std::uint32_t size, auto hooks) {
     std::memcpy(buffer_.data(), bytes, 4);
     if (Entries::is_domain(word_)) {
       if (const AbortCode code = open_download(true, size, hooks); code != ok) return code;
@@ -199,7 +199,7 @@ class SdoServerTransfer {
   /// Finds the destination of a download and the number of bytes that it accepts: those announced, if the client has
   /// indicated the size.
   template <class Hooks>
-  [[nodiscard]] AbortCode open_download(bool indicated, std::uint32_t announced, Hooks& hooks) {
+  [[nodiscard]] AbortCode open_download(bool indicated, std::uint32_t announced, Hooks hooks) {
     size_indicated_ = indicated;
     size_ = size_indicated_ ? announced : sdo::unknown_size;
     if constexpr (DomainStreamHooks<Hooks, Device>) {
@@ -235,7 +235,7 @@ class SdoServerTransfer {
 
   /// Accepts the next bytes of a download.
   template <class Hooks>
-  [[nodiscard]] AbortCode store([[maybe_unused]] Hooks& hooks, const std::uint8_t* from, std::uint32_t size,
+  [[nodiscard]] AbortCode store([[maybe_unused]] Hooks hooks, const std::uint8_t* from, std::uint32_t size,
                                 [[maybe_unused]] bool last) {
     if (const AbortCode code = check_room(size); code != ok) return code;
     if constexpr (DomainStreamHooks<Hooks, Device>) {
@@ -262,11 +262,11 @@ class SdoServerTransfer {
 
   /// Completes a download.
   template <class Hooks>
-  [[nodiscard]] AbortCode finish(Hooks& hooks) {
+  [[nodiscard]] AbortCode finish(Hooks hooks) {
     state_ = State::idle;
     if (size_indicated_ && position_ != size_) return AbortCode::length_mismatch;
     if (streamed(hooks)) {
-      hooks.after_write(index(), sub_index());
+      hooks.written(index(), sub_index());
       return ok;
     }
     if (const AbortCode code = check_length(hooks.entries()); code != ok) return code;
@@ -292,7 +292,7 @@ class SdoServerTransfer {
   void answer(unsigned command, std::uint32_t word = 0) { put_reply(multiplexer_ | command, word); }
 
   /// Ends the transfer with an abort, with the code of the device for a wrong length.
-  void abort(AbortCode code, auto& hooks) {
+  void abort(AbortCode code, auto hooks) {
     if (!options_of<Device>(hooks.entries()).sdo_length_codes) {
       if (code == AbortCode::length_too_high || code == AbortCode::length_too_low) code = AbortCode::length_mismatch;
     }
@@ -351,7 +351,7 @@ class SdoServerTransfer {
   [[nodiscard]] std::uint8_t sub_index() const { return static_cast<std::uint8_t>(multiplexer_ >> 24); }
 
   /// Returns the bytes of the buffer that a download may use.
-  [[nodiscard]] static std::uint32_t room_in_buffer([[maybe_unused]] auto& hooks) {
+  [[nodiscard]] static std::uint32_t room_in_buffer([[maybe_unused]] auto hooks) {
     if constexpr (has_sheet<Device>) {
       const std::size_t longest = Device::sheet_of(hooks.entries()).longest_download;
       return static_cast<std::uint32_t>(std::clamp(longest, number_bytes, buffer_bytes));  // of all strings at most
@@ -361,32 +361,28 @@ class SdoServerTransfer {
   }
 
   /// Writes bytes whose length fits. "save" needs much stack, so writing a value has a stack frame of its own.
-  [[nodiscard, gnu::noinline]] AbortCode write(std::span<std::uint8_t> bytes, auto& hooks) {
+  [[nodiscard, gnu::noinline]] AbortCode write(std::span<std::uint8_t> bytes, auto hooks) {
     if (entry::place_of(word_) != entry::Place::ram) return hooks.command(index(), sub_index(), bytes);
     if constexpr (takes_commands) return write_value_apart(bytes, hooks);
     return write_value(bytes, hooks);
   }
 
   static constexpr bool takes_commands = Device::dictionary.has(0x1010, 0) || Device::dictionary.has(0x1011, 0);
-  [[nodiscard, gnu::noinline]] AbortCode write_value_apart(std::span<std::uint8_t> bytes, auto& hooks) {
+  [[nodiscard, gnu::noinline]] AbortCode write_value_apart(std::span<std::uint8_t> bytes, auto hooks) {
     return write_value(bytes, hooks);
   }
 
   /// Writes a value, unless a check rejects it.
-  [[nodiscard]] AbortCode write_value(std::span<std::uint8_t> bytes, auto& hooks) {
+  [[nodiscard]] AbortCode write_value(std::span<std::uint8_t> bytes, auto hooks) {
     const Entries entries = hooks.entries();
+    const std::uint16_t index = this->index();
+    const std::uint8_t sub_index = this->sub_index();
     if constexpr (has_sheet<Device>) {
-      if (const AbortCode code = entries.check_value(index(), sub_index(), word_, bytes, entries); code != ok)
-        return code;
+      if (const AbortCode code = entries.check_value(index, sub_index, word_, bytes, entries); code != ok) return code;
     } else {
-      if (const AbortCode code = entries.check_value(index(), sub_index(), word_, bytes); code != ok) return code;
+      if (const AbortCode code = entries.check_value(index, sub_index, word_, bytes); code != ok) return code;
     }
-    if (const AbortCode code = hooks.before_write(index(), sub_index(), bytes); code != ok) return code;
-    // A handler may have bound a DOMAIN to other memory: the application has then taken the bytes.
-    const bool in_place = !Entries::is_domain(word_) || entries.domain(word_).data == bytes.data();
-    if (in_place && hooks.is_new(word_, bytes)) entries.write(word_, bytes);
-    hooks.after_write(index(), sub_index());
-    return ok;
+    return hooks.write(index, sub_index, word_, bytes);
   }
 
   [[nodiscard]] AbortCode check_length(Entries entries) const {
@@ -395,7 +391,7 @@ class SdoServerTransfer {
 
   /// Whether the application reads or writes the bytes of this transfer.
   template <class Hooks>
-  [[nodiscard]] bool streamed([[maybe_unused]] const Hooks& hooks) const {
+  [[nodiscard]] bool streamed([[maybe_unused]] Hooks hooks) const {
     if constexpr (DomainStreamHooks<Hooks, Device>) return bytes_ == nullptr;
     return false;
   }
@@ -408,7 +404,7 @@ class SdoServerTransfer {
   }
 
   /// Sets an expedited response.
-  void answer_value(std::uint32_t bytes, std::uint32_t value, [[maybe_unused]] auto& hooks) {
+  void answer_value(std::uint32_t bytes, std::uint32_t value, [[maybe_unused]] auto hooks) {
     answer(options_of<Device>(hooks.entries()).sdo_upload_size_indicated ? 0x43u | (4 - bytes) << 2 : 0x42u, value);
   }
 

@@ -393,11 +393,11 @@ class ParameterStorage {
       if (entry::is_string(word)) {
         const std::span<std::uint8_t> text{entries.ram(word) + stored_format::length_bytes, record.size};
         if (!storage.read(record.position, text)) return false;
-        entries.write(word, text);
+        entries.write_value(word, text);
         return true;
       }
     }
-    if (!follows_node_id(pass, record, word, number)) entries.write(word, number);
+    if (!follows_node_id(pass, record, word, number)) entries.write_value(word, number);
     return true;
   }
 
@@ -418,7 +418,7 @@ class ParameterStorage {
             word <= Dictionary::no_sub_index || entry::place_of(word) != entry::Place::ram ||
             !Check::is_possible(index, sub_index, word, value))
           return false;
-        pass.store->entries().write(word, value);
+        pass.store->entries().write_value(word, value);
       }
       return answer.discarded;
     }
