@@ -1,4 +1,4 @@
-// expect: candidate expects 3 arguments, 4 provided|too many arguments to function call, expected 3, have 4
+// expect: candidate expects 3 arguments, 4 provided|requires 3 arguments, but 4 were provided
 // TPDO 1 maps three objects.
 #include <canopen/od/object_store.hpp>
 #include <every_type/device.hpp>
