@@ -29,7 +29,7 @@ CLASSES = {"Node": "Node", "ObjectValues": "Node", "ObjectSetters": "Node", "Loc
 # Of the runtime itself: not called by an application.
 INTERNAL_CLASSES = {"AcceptedFrame", "Composition", "DomainHandlerSet", "EventHandler", "HandlerCall", "HandlerCalls", "HandlerSet",
                     "ServiceDefaults", "ServiceHost", "ServiceSet"}
-INTERNAL = {"check_limits", "check_received", "checked_handlers", "is_communication_index", "notify_written",
+INTERNAL = {"check_limits", "check_received", "checked_handlers", "has_checks", "is_communication_index", "notify_written",
             "take_received"}
 ROW = re.compile(r"^\| ((?:`[^`]+`(?:, )?)+) \|", re.MULTILINE)
 
