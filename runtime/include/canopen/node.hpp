@@ -232,9 +232,10 @@ class Node : private ServiceHost<Node<Device, BusType, Handlers...>, Device, Bus
     return {};
   }
 
-  /// Sets an object by index and sub-index, with its bytes as in SDO. Its access type is ignored, handlers are not
-  /// called, and services apply a new parameter without checking whether it may change now. TPDOs are sent as with the
-  /// typed `set`. Length and limits are checked as for a download; read_only: it is a constant in the EDS.
+  /// Sets an object by index and sub-index, with its bytes as in SDO; they must not be a part of its present value. Its
+  /// access type is ignored, handlers are not called, and services apply a new parameter without checking whether it
+  /// may change now. TPDOs are sent as with the typed `set`. Length and limits are checked as for a download;
+  /// read_only: it is a constant in the EDS.
   [[nodiscard]] AbortCode set(std::uint16_t index, std::uint8_t sub_index, std::span<const std::uint8_t> bytes) {
     AccessProbe<Device>::uses(index, sub_index);
     report_use();

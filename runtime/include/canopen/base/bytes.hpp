@@ -13,7 +13,8 @@ namespace canopen {
 namespace bytes_detail {
 
 /// Copies byte by byte: the library's memcpy and memset would add hundreds of bytes to an image. The fence keeps the
-/// compiler from replacing these loops with calls of them; `<atomic>` would bring threads with it.
+/// compiler from replacing these loops with calls of them; `<atomic>` would bring threads with it. The last byte is the
+/// first, so that one register counts and addresses: saves 2 instructions of a Cortex-M0+ for each byte.
 [[gnu::noinline]] inline void copy_by_loop(std::uint8_t* to, const std::uint8_t* from, std::size_t size) {
   while (size-- != 0) {
     to[size] = from[size];
@@ -30,8 +31,8 @@ namespace bytes_detail {
 
 }  // namespace bytes_detail
 
-/// Copies any number of bytes. The loop saves the 152 bytes of memcpy on a Cortex-M0+; a Cortex-M4 would take about 30
-/// instructions more for seven bytes.
+/// Copies any number of bytes between memories that do not overlap. The loop saves the 152 bytes of memcpy on a
+/// Cortex-M0+; a Cortex-M4 would take about 30 instructions more for seven bytes.
 inline void copy_bytes(void* to, const void* from, std::size_t size) {
   if constexpr (prefers_size) {
     bytes_detail::copy_by_loop(static_cast<std::uint8_t*>(to), static_cast<const std::uint8_t*>(from), size);

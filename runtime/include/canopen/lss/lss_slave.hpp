@@ -15,7 +15,7 @@
 
 namespace canopen {
 
-/// Functions of the node that a slave calls:
+/// Functions of the node that a slave calls. They are passed by value, and have a reference to what they change:
 ///   std::uint32_t identity(sub_index);      1018h:01..04
 ///   LssError accept(node_id);               1..127 or 255, not active yet; may reject it
 ///   LssError accept(bit_timing);            one that the options allow, not active yet; may reject it

@@ -15,7 +15,7 @@
 
 namespace canopen {
 
-/// Whether `check_received` has anything to check.
+/// Whether `check_received` may have anything to check.
 template <class Host>
 [[nodiscard]] inline bool has_checks(Host& host, std::uint16_t index, std::uint8_t sub_index) {
   return Host::Handlers::has_write_handlers || is_communication_index(index) ||

@@ -11,10 +11,11 @@
 
 namespace canopen {
 
-/// Functions of the node that a server calls:
+/// Functions of the node that a server calls. They are passed by value, and have a reference to what they change:
 ///   EntryAccess<Device> entries();
 ///   AbortCode before_read(index, sub_index);            may refresh the value, or reject the access
-///   AbortCode write(index, sub_index, word, bytes);     the bytes fit the entry: stores them, or rejects the access
+///   AbortCode write(index, sub_index, word, bytes);     the bytes fit the entry: stores them, or rejects the access;
+///                                                       those of a DOMAIN in memory are already there
 ///   void written(index, sub_index);                     the application has taken all bytes of a DOMAIN
 ///   AbortCode command(index, sub_index, bytes);         a write to an entry without a value, such as 1010h
 /// and, optionally:
